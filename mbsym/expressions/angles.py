@@ -1,0 +1,79 @@
+"""Angles as linear forms: what stands inside sin and cos.
+
+sin(2*theta - chi + pi/2) is polynomial in sin theta, cos theta, sin chi, cos chi because its argument is a linear
+form with rational coefficients.  An argument that is not (``Omega*t``, ``x*y``) is an angle of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+
+
+@dataclass(frozen=True, slots=True)
+class LinearForm:
+    """sum_k coefficient_k * name_k + turns * pi + constant; coefficients sorted by name, none zero."""
+
+    coefficients: tuple[tuple[str, Fraction], ...] = ()
+    turns: Fraction = Fraction(0)
+    constant: Fraction = Fraction(0)
+
+    def __add__(self, other: LinearForm) -> LinearForm:
+        total = dict(self.coefficients)
+        for name, value in other.coefficients:
+            total[name] = total.get(name, Fraction(0)) + value
+        kept = tuple(sorted((name, value) for name, value in total.items() if value))
+        return LinearForm(kept, self.turns + other.turns, self.constant + other.constant)
+
+    def scaled(self, factor: Fraction) -> LinearForm:
+        if not factor:
+            return LinearForm()
+        kept = tuple((name, value * factor) for name, value in self.coefficients)
+        return LinearForm(kept, self.turns * factor, self.constant * factor)
+
+    @property
+    def is_constant(self) -> bool:
+        return not self.coefficients and not self.turns
+
+
+def linear_form(expression: Expression) -> LinearForm | None:
+    """The linear form an expression is, or None where it is none with rational coefficients."""
+    match expression:
+        case Number(value):
+            return LinearForm(constant=value)
+        case Name("pi"):
+            return LinearForm(turns=Fraction(1))
+        case Name(name):
+            return LinearForm(((name, Fraction(1)),))
+        case Negative(operand):
+            inner = linear_form(operand)
+            return None if inner is None else inner.scaled(Fraction(-1))
+        case Operation("+" | "-" as operator, left, right):
+            first, second = linear_form(left), linear_form(right)
+            if first is None or second is None:
+                return None
+            return first + second.scaled(Fraction(1 if operator == "+" else -1))
+        case Operation("*", left, right):
+            first, second = linear_form(left), linear_form(right)
+            if first is None or second is None:
+                return None
+            if first.is_constant:
+                return second.scaled(first.constant)
+            return first.scaled(second.constant) if second.is_constant else None
+        case Operation("/", left, right):
+            first, second = linear_form(left), linear_form(right)
+            if first is None or second is None or not second.is_constant or not second.constant:
+                return None
+            return first.scaled(1 / second.constant)
+        case Operation("**", base, Number(exponent)):
+            inner = linear_form(base)
+            if inner is None or not inner.is_constant or exponent.denominator != 1 or abs(exponent) > 64:
+                return None
+            if not inner.constant and exponent <= 0:
+                return None
+            return LinearForm(constant=Fraction(inner.constant**exponent.numerator))
+        case Call():
+            return None
+    return None

@@ -1,0 +1,70 @@
+"""Places in a description file, and complaints that point at them.
+
+A complaint is a value, never an exception: readers collect all of them and go on.  ``Complaints`` is the list that
+they collect into.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Span:
+    """A piece of one line: 1-based line and column, ``length`` characters long (at least one is underlined)."""
+
+    line: int
+    column: int
+    length: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Complaint:
+    """What is wrong, where, and what to try next.
+
+    ``code`` is a short stable word such as ``unknown-name``; ``severity`` is ``error`` or ``warning``; a span of
+    None means that the complaint concerns the file as a whole.
+    """
+
+    code: str
+    message: str
+    span: Span | None = None
+    hint: str | None = None
+    severity: str = "error"
+
+
+@dataclass(slots=True)
+class Complaints:
+    """Collects complaints; readers append and go on."""
+
+    items: list[Complaint] = field(default_factory=list)
+
+    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
+        self._append(Complaint(code, message, span, hint))
+
+    def warning(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
+        self._append(Complaint(code, message, span, hint, "warning"))
+
+    def _append(self, complaint: Complaint) -> None:
+        if complaint not in self.items:
+            self.items.append(complaint)
+
+    def extend(self, others: Iterable[Complaint]) -> None:
+        for other in others:
+            self._append(other)
+
+    @property
+    def errors(self) -> list[Complaint]:
+        return [item for item in self.items if item.severity == "error"]
+
+    def sorted(self) -> list[Complaint]:
+        """In the order of the file; what has no place comes last."""
+        last = Span(2**31, 1)
+        return sorted(self.items, key=lambda item: (item.span or last, item.code, item.message))
+
+    def __iter__(self) -> Iterator[Complaint]:
+        return iter(self.items)
+
+    def __bool__(self) -> bool:
+        return bool(self.items)

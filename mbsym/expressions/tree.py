@@ -1,0 +1,284 @@
+"""Parsed expressions: small immutable trees of exact numbers, names, operations and function calls.
+
+An expression is what a description says, before any algebra: ``l/2`` stays a quotient of a name and a number.
+It knows how to print itself back (so that a description survives ``mbsym convert``), which names it holds, and
+how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.algebra`` gives it values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Union
+
+from mbsym.expressions.place import Span
+
+#: Functions of one argument that a description may call, in the spelling of Python's ``math``.
+FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
+
+#: ``pi`` is a number, never a parameter.
+CONSTANTS = ("pi",)
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An exact rational number; ``0.1`` is 1/10."""
+
+    value: Fraction
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A parameter, a coordinate, a velocity ``theta_dot``, ``pi`` or the time ``t``."""
+
+    name: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """``-operand``."""
+
+    operand: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """``left operator right`` with operator one of ``+ - * / **``."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``function(argument)`` with a function of :data:`FUNCTIONS`."""
+
+    function: str
+    argument: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+Expression = Union[Number, Name, Negative, Operation, Call]
+
+ZERO = Number(Fraction(0))
+ONE = Number(Fraction(1))
+
+
+def number(value: int | Fraction) -> Number:
+    return Number(Fraction(value))
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The direct operands of an expression, left to right."""
+    match expression:
+        case Negative(operand):
+            return (operand,)
+        case Operation(_, left, right):
+            return (left, right)
+        case Call(_, argument):
+            return (argument,)
+    return ()
+
+
+def walk(expression: Expression) -> Iterator[Expression]:
+    """Every node of the tree, parents first, left to right."""
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending.extend(reversed(children(node)))
+
+
+def names(expression: Expression) -> set[str]:
+    """The names that occur, ``pi`` excepted."""
+    return {node.name for node in walk(expression) if isinstance(node, Name)} - set(CONSTANTS)
+
+
+# --- building, with the few simplifications that keep derivatives readable -----------------------------------------
+
+
+def is_number(expression: Expression, value: int | None = None) -> bool:
+    return isinstance(expression, Number) and (value is None or expression.value == value)
+
+
+def add(left: Expression, right: Expression) -> Expression:
+    if is_number(left, 0):
+        return right
+    if is_number(right, 0):
+        return left
+    if isinstance(right, Negative):
+        return subtract(left, right.operand)
+    return Operation("+", left, right)
+
+
+def subtract(left: Expression, right: Expression) -> Expression:
+    if is_number(right, 0):
+        return left
+    if is_number(left, 0):
+        return negative(right)
+    return Operation("-", left, right)
+
+
+def negative(operand: Expression) -> Expression:
+    if is_number(operand, 0):
+        return ZERO
+    if isinstance(operand, Negative):
+        return operand.operand
+    return Negative(operand)
+
+
+def multiply(left: Expression, right: Expression) -> Expression:
+    if is_number(left, 0) or is_number(right, 0):
+        return ZERO
+    if is_number(left, 1):
+        return right
+    if is_number(right, 1):
+        return left
+    if isinstance(left, Negative):
+        return negative(multiply(left.operand, right))
+    if isinstance(right, Negative):
+        return negative(multiply(left, right.operand))
+    return Operation("*", left, right)
+
+
+def divide(left: Expression, right: Expression) -> Expression:
+    if is_number(left, 0):
+        return ZERO
+    if is_number(right, 1):
+        return left
+    return Operation("/", left, right)
+
+
+def power(base: Expression, exponent: Expression) -> Expression:
+    if is_number(exponent, 1):
+        return base
+    if is_number(exponent, 0):
+        return ONE
+    return Operation("**", base, exponent)
+
+
+def differentiate(expression: Expression, name: str) -> Expression:
+    """The partial derivative with respect to a name; all other names are constants.
+
+    d(u**n) = n u**(n-1) du for a constant exponent n; the other rules are the elementary ones.  A tree shared by
+    many parents is differentiated once, and the result is simplified only by dropping zeros and ones.
+    """
+    if name not in names(expression):
+        return ZERO
+    match expression:
+        case Name():
+            return ONE
+        case Negative(operand):
+            return negative(differentiate(operand, name))
+        case Operation("+", left, right):
+            return add(differentiate(left, name), differentiate(right, name))
+        case Operation("-", left, right):
+            return subtract(differentiate(left, name), differentiate(right, name))
+        case Operation("*", left, right):
+            return add(multiply(differentiate(left, name), right), multiply(left, differentiate(right, name)))
+        case Operation("/", left, right):
+            first = divide(differentiate(left, name), right)
+            second = divide(multiply(left, differentiate(right, name)), power(right, number(2)))
+            return subtract(first, second)
+        case Operation("**", base, exponent):
+            if isinstance(exponent, Number):
+                lowered: Expression = Number(exponent.value - 1)
+            else:
+                lowered = subtract(exponent, ONE)
+            return multiply(multiply(exponent, power(base, lowered)), differentiate(base, name))
+        case Call(function, argument):
+            return multiply(_derivative_of_function(function, argument), differentiate(argument, name))
+    raise TypeError(f"not an expression: {expression!r}")
+
+
+def _derivative_of_function(function: str, argument: Expression) -> Expression:
+    match function:
+        case "sin":
+            return Call("cos", argument)
+        case "cos":
+            return negative(Call("sin", argument))
+        case "tan":
+            return add(ONE, power(Call("tan", argument), number(2)))
+        case "sqrt":
+            return divide(ONE, multiply(number(2), Call("sqrt", argument)))
+        case "exp":
+            return Call("exp", argument)
+        case "log":
+            return divide(ONE, argument)
+        case "atan":
+            return divide(ONE, add(ONE, power(argument, number(2))))
+        case "sinh":
+            return Call("cosh", argument)
+        case "cosh":
+            return Call("sinh", argument)
+        case "tanh":
+            return subtract(ONE, power(Call("tanh", argument), number(2)))
+    raise ValueError(f"no derivative is known for {function}")
+
+
+def substitute(expression: Expression, replacements: Mapping[str, Expression]) -> Expression:
+    """The expression with names replaced, all at once."""
+    match expression:
+        case Name(name):
+            return replacements.get(name, expression)
+        case Negative(operand):
+            return negative(substitute(operand, replacements))
+        case Operation(operator, left, right):
+            return Operation(operator, substitute(left, replacements), substitute(right, replacements))
+        case Call(function, argument):
+            return Call(function, substitute(argument, replacements))
+    return expression
+
+
+# --- printing back ---------------------------------------------------------------------------------------------------
+
+_PRECEDENCE = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}
+
+
+def text(expression: Expression) -> str:
+    """The expression in the syntax of descriptions; parsing it again gives an equal tree."""
+    return _text(expression, 0)
+
+
+def _text(expression: Expression, outer: int) -> str:
+    match expression:
+        case Number(value):
+            written, own = _decimal(value), 5
+            if value < 0 or "/" in written:  # a literal is neither: only built trees hold such numbers
+                own = 1
+        case Name(name):
+            written, own = name, 5
+        case Call(function, argument):
+            written, own = f"{function}({_text(argument, 0)})", 5
+        case Negative(operand):
+            written, own = "-" + _text(operand, 3), 3
+        case Operation("**", base, exponent):
+            written, own = f"{_text(base, 5)}**{_text(exponent, 3)}", 4
+        case Operation(operator, left, right):
+            own = _PRECEDENCE[operator]
+            blank = " " if own == 1 else ""
+            written = f"{_text(left, own)}{blank}{operator}{blank}{_text(right, own + 1)}"
+    return f"({written})" if own < outer else written
+
+
+def _decimal(value: Fraction) -> str:
+    """A terminating decimal where there is one (literals always have one), else a quotient."""
+    denominator = value.denominator
+    twos = fives = 0
+    while denominator % 2 == 0:
+        denominator, twos = denominator // 2, twos + 1
+    while denominator % 5 == 0:
+        denominator, fives = denominator // 5, fives + 1
+    if denominator != 1:
+        return str(value)
+    places = max(twos, fives)
+    if places == 0:
+        return str(value.numerator)
+    digits = str(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
+    return ("-" if value < 0 else "") + digits[:-places] + "." + digits[-places:]

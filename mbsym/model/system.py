@@ -1,0 +1,340 @@
+"""What a description means: a system of bodies joined in a tree, as frozen dataclasses of parsed expressions.
+
+Conventions (all of mbsym follows them; the reports state them):
+
+* Direction cosines are passive, v^k = R^jk v^j.  Axes {a1, a2, a3} with angles {x1, x2, x3} mean
+  R^jk = C_a3(x3) C_a2(x2) C_a1(x1); the new axes are the rows of R.  Axis number 0 means "no rotation here".
+* Body k hangs on body j at its connection point O_k, r^j_Ok in the axes of body j; the mass centre is r^k_Ck in its
+  own axes.  Body "0" is the inertial frame.
+* An inertia tensor is the symmetric matrix J of T = w.J w / 2, so its products carry the minus sign (J13 = -int x z dm).
+* L = T + U with the force function U = -potential energy.
+
+Spans point back into the description; they take no part in equality, so two spellings of one system compare equal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from mbsym.expressions.angles import linear_form
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import Expression
+
+Vector = tuple[Expression, Expression, Expression]
+Tensor = tuple[Vector, Vector, Vector]
+
+#: The name of the inertial frame.
+INERTIAL = "0"
+
+
+def velocity_name(coordinate: str) -> str:
+    """``theta_dot``: the name under which a description may use a generalised velocity."""
+    return coordinate + "_dot"
+
+
+def acceleration_name(coordinate: str) -> str:
+    return coordinate + "_ddot"
+
+
+def _span() -> Span | None:
+    return field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A constant.  ``sign`` is one of real, positive, nonnegative, negative, nonpositive, nonzero."""
+
+    name: str
+    sign: str = "real"
+    value: Expression | None = None
+    meaning: str = ""
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Prescribed:
+    """An angle or length that is a known function of time: ``name' = rate`` (a constant), ``name(0) = initial``."""
+
+    name: str
+    rate: Expression
+    initial: Expression | None = None
+    meaning: str = ""
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """Rotation axis numbers (1, 2, 3; 0 for none) and the angle about each, in the order of turning."""
+
+    axes: tuple[int, ...] = ()
+    angles: tuple[Expression, ...] = ()
+
+    def turns(self) -> Iterator[tuple[int, Expression]]:
+        """(axis, angle) for each turn that there is."""
+        return ((axis, angle) for axis, angle in zip(self.axes, self.angles, strict=True) if axis)
+
+
+@dataclass(frozen=True, slots=True)
+class Inertia:
+    """A tensor about the connection point (``about = "joint"``) or about the ``"mass centre"``."""
+
+    about: str
+    tensor: Tensor
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """One body (or massless frame) and its joint to the body it is attached to.
+
+    ``relative_velocity`` is V^j_Ok as the description gives it (it must equal the derivative of the radius vector),
+    or None where it is left to be derived.  ``coordinates`` are the generalised coordinates that this joint
+    introduces, in the order in which they count.
+    """
+
+    name: str
+    attached_to: str
+    rotation: Rotation
+    connection_point: Vector
+    relative_velocity: Vector | None
+    mass_centre: Vector
+    mass: Expression
+    inertia: Inertia | None
+    coordinates: tuple[str, ...]
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A point of a body, in the axes of that body; body "0" is the inertial frame."""
+
+    body: str
+    position: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class NewtonianGravity:
+    """Approximate Newtonian field of a distant centre, expanded to ``order`` 2 about the origin of a frame.
+
+    ``constant`` is nu = G M; ``centre`` the frame whose origin attracts (the inertial one); ``about`` the frame
+    whose origin O1 is the point of expansion.
+    """
+
+    constant: Expression
+    centre: str
+    about: str
+    order: int = 2
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class UniformGravity:
+    """``acceleration`` is the vector g in inertial axes, for example (0, -g, 0)."""
+
+    acceleration: Vector
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class CoordinateSpring:
+    """Linear or torsional: potential stiffness (coordinate - rest)^2 / 2."""
+
+    coordinate: str
+    stiffness: Expression
+    rest: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class PointSpring:
+    """Between two points: potential stiffness (distance - length)^2 / 2."""
+
+    first: Point
+    second: Point
+    stiffness: Expression
+    length: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class CoordinateDamper:
+    """Rayleigh function coefficient coordinate'^2 / 2."""
+
+    coordinate: str
+    coefficient: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class PointDamper:
+    """Rayleigh function coefficient |V_first - V_second|^2 / 2 (an isotropic dashpot between two points)."""
+
+    first: Point
+    second: Point
+    coefficient: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class ForceFunction:
+    """A free force function U(q, t), added to L; a ``potential`` in the description is stored as U = -potential.
+
+    ``spelled`` remembers which of the two the description used ("force function" or "potential") and is only for
+    writing it back; ``expression`` is what stands in the file.
+    """
+
+    expression: Expression
+    spelled: str = "force function"
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Rayleigh:
+    """A free dissipation function R(q, q'); its generalised forces are -dR/dq'."""
+
+    expression: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class GeneralizedForce:
+    """Q for some coordinates, as expressions in coordinates, velocities, parameters and t."""
+
+    components: tuple[tuple[str, Expression], ...]
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class PointForce:
+    """A force on a point of a body, with components in the axes of ``axes`` (the body itself: a follower force)."""
+
+    point: Point
+    components: Vector
+    axes: str
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Torque:
+    """A torque on a body, with components in the axes of ``axes``; ``reaction_on`` feels the opposite one."""
+
+    body: str
+    components: Vector
+    axes: str
+    reaction_on: str | None = None
+    span: Span | None = _span()
+
+
+Load = (
+    NewtonianGravity
+    | UniformGravity
+    | CoordinateSpring
+    | PointSpring
+    | CoordinateDamper
+    | PointDamper
+    | ForceFunction
+    | Rayleigh
+    | GeneralizedForce
+    | PointForce
+    | Torque
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """``name = value`` between constants; used from problem 4 on (problems 1 to 3 keep the declared names)."""
+
+    name: str
+    value: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """``left relation right`` with relation one of < <= > >= !=, between parameters and notation."""
+
+    left: Expression
+    relation: str
+    right: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class MotionEntry:
+    """The unperturbed motion of one coordinate: value + rate * t."""
+
+    coordinate: str
+    value: Expression
+    rate: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class Notation:
+    """A user's own symbol for a group of parameters: ``alpha = (c - b)/a``.  Later ones may use earlier ones."""
+
+    name: str
+    value: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class InitialValue:
+    """The initial state of one coordinate, for simulation."""
+
+    coordinate: str
+    position: Expression | None = None
+    velocity: Expression | None = None
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A whole description.  ``time_scale`` (a rate) makes time dimensionless: tau = time_scale * t, problems 5 and 6."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    bodies: tuple[Body, ...]
+    description: str = ""
+    prescribed: tuple[Prescribed, ...] = ()
+    loads: tuple[Load, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    assumptions: tuple[Assumption, ...] = ()
+    motion: tuple[MotionEntry, ...] = ()
+    notation: tuple[Notation, ...] = ()
+    time_scale: Expression | None = None
+    initial: tuple[InitialValue, ...] = ()
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The generalised coordinates q, body by body: the order of every vector and matrix."""
+        return tuple(name for body in self.bodies for name in body.coordinates)
+
+    @property
+    def velocities(self) -> tuple[str, ...]:
+        return tuple(velocity_name(name) for name in self.coordinates)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        return tuple(parameter.name for parameter in self.parameters)
+
+    def body(self, name: str) -> Body:
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise KeyError(name)
+
+    def path(self, name: str) -> tuple[str, ...]:
+        """From the inertial frame to a body: ("0", ..., name)."""
+        path = [name]
+        while path[-1] != INERTIAL:
+            path.append(self.body(path[-1]).attached_to)
+        return tuple(reversed(path))
+
+
+def rational(value: Expression | None) -> Fraction | None:
+    """The exact number that an expression without names is made of, or None."""
+    form = None if value is None else linear_form(value)
+    return form.constant if form is not None and form.is_constant else None
