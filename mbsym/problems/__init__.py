@@ -1,0 +1,1 @@
+"""One file, one problem: a pure function from typed inputs to one frozen result."""

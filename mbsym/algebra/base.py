@@ -1,0 +1,198 @@
+"""What the mechanics asks of a scalar, and vectors over any such scalar.
+
+The recursions in ``mbsym.mechanics`` are written once.  An ``Algebra`` supplies what they need beyond ``+ - *``:
+numbers, sine and cosine of an angle, reciprocals, roots, and a normal form.  The algebras are
+
+=============  ===============================================  =========================================
+``Ring``       polynomials modulo sin^2 + cos^2 = 1             closed formulas, exact zero test
+``Jet``        second-order Taylor polynomials over the ring    the quadratised Lagrangian
+``Program``    nodes of a straight-line program                 compact code
+``Rationals``  ``fmpq``                                         exact agreement at rational states
+``Balls``      ``arb``                                          rigorous enclosures where roots are not rational
+=============  ===============================================  =========================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+
+#: A scalar of some algebra: anything with + - * among its own kind.
+Scalar = Any
+Vector = tuple[Scalar, Scalar, Scalar]
+
+
+class NoClosedForm(Exception):
+    """A formula outgrew the budget, or has no representation in this algebra; the message says which and why."""
+
+
+class NotRational(Exception):
+    """A value at a rational state is irrational (a root, an exponential): compare with balls instead."""
+
+
+class SingularPoint(Exception):
+    """A formula divides by zero at the point where it is asked for."""
+
+
+class Algebra:
+    """Operations on scalars beyond ``+``, ``-`` and ``*``; subclasses define those marked abstract."""
+
+    zero: Scalar
+    one: Scalar
+
+    def number(self, value: Fraction | int) -> Scalar:
+        raise NotImplementedError
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Scalar, Scalar]:
+        """sin and cos of a linear form in named angles."""
+        raise NotImplementedError
+
+    def sin_cos_of(self, argument: Scalar) -> tuple[Scalar, Scalar]:
+        """sin and cos of an argument that is no linear form in angles."""
+        raise NotImplementedError
+
+    def reciprocal(self, x: Scalar) -> Scalar:
+        raise NotImplementedError
+
+    def square_root(self, x: Scalar) -> Scalar:
+        raise NotImplementedError
+
+    def function(self, name: str, x: Scalar) -> Scalar:
+        """exp, log, atan, sinh, cosh or tanh."""
+        raise NotImplementedError
+
+    def times(self, a: Scalar, b: Scalar) -> Scalar:
+        return a * b
+
+    def reduce(self, x: Scalar) -> Scalar:
+        """The normal form; algebras without relations return x."""
+        return x
+
+    def vanishes(self, x: Scalar) -> bool:
+        """Whether x is zero as it stands, so that work with it can be left out."""
+        return bool(x == 0)
+
+    # --- derived --------------------------------------------------------------------------------------------------
+
+    def power(self, base: Scalar, exponent: int) -> Scalar:
+        """base**exponent by repeated squaring; a negative exponent takes the reciprocal first."""
+        if exponent < 0:
+            base, exponent = self.reciprocal(base), -exponent
+        result, square = self.one, base
+        while exponent:
+            if exponent & 1:
+                result = self.reduce(self.times(result, square))
+            exponent >>= 1
+            if exponent:
+                square = self.reduce(self.times(square, square))
+        return result
+
+    def add(self, u: Vector, v: Vector) -> Vector:
+        return (u[0] + v[0], u[1] + v[1], u[2] + v[2])
+
+    def subtract(self, u: Vector, v: Vector) -> Vector:
+        return (u[0] - v[0], u[1] - v[1], u[2] - v[2])
+
+    def scale(self, factor: Scalar, v: Vector) -> Vector:
+        return (self.times(factor, v[0]), self.times(factor, v[1]), self.times(factor, v[2]))
+
+    def dot(self, u: Sequence[Scalar], v: Sequence[Scalar]) -> Scalar:
+        total = self.zero
+        for a, b in zip(u, v, strict=True):
+            if not (self.vanishes(a) or self.vanishes(b)):
+                total = total + self.times(a, b)
+        return self.reduce(total)
+
+    def cross(self, u: Vector, v: Vector) -> Vector:
+        return (
+            self.dot((u[1], -u[2]), (v[2], v[1])),
+            self.dot((u[2], -u[0]), (v[0], v[2])),
+            self.dot((u[0], -u[1]), (v[1], v[0])),
+        )
+
+    def apply(self, matrix: Sequence[Sequence[Scalar]], v: Vector) -> Vector:
+        return (self.dot(matrix[0], v), self.dot(matrix[1], v), self.dot(matrix[2], v))
+
+    @property
+    def zero_vector(self) -> Vector:
+        return (self.zero, self.zero, self.zero)
+
+
+class Lowering:
+    """Gives expressions values in an algebra: names through the environment, numbers exactly.
+
+    ``environment`` maps every name that may occur (parameters, coordinates, velocities, accelerations, prescribed
+    quantities, ``t``, ``pi``) to a scalar.  Values are remembered, so a subexpression is lowered once.
+    """
+
+    def __init__(self, algebra: Algebra, environment: Mapping[str, Scalar]) -> None:
+        self.algebra = algebra
+        self.environment = environment
+        self._known: dict[Expression, Scalar] = {}
+
+    def vector(self, components: Sequence[Expression]) -> Vector:
+        return (self(components[0]), self(components[1]), self(components[2]))
+
+    def __call__(self, expression: Expression) -> Scalar:
+        """The value of the expression.
+
+        Raises SingularPoint for a division by zero, NoClosedForm or NotRational as the algebra does.
+        """
+        known = self._known.get(expression)
+        if known is None:
+            known = self._known[expression] = self.algebra.reduce(self._value(expression))
+        return known
+
+    def angle(self, expression: Expression) -> tuple[Scalar, Scalar]:
+        """(sin, cos) of an expression."""
+        form = linear_form(expression)
+        if form is not None and not form.constant:
+            return self.algebra.sin_cos(form)
+        return self.algebra.sin_cos_of(self(expression))
+
+    def _value(self, expression: Expression) -> Scalar:
+        algebra = self.algebra
+        match expression:
+            case Number(value):
+                return algebra.number(value)
+            case Name(name):
+                return self.environment[name]
+            case Negative(operand):
+                return -self(operand)
+            case Operation("+", left, right):
+                return self(left) + self(right)
+            case Operation("-", left, right):
+                return self(left) - self(right)
+            case Operation("*", left, right):
+                return algebra.times(self(left), self(right))
+            case Operation("/", left, right):
+                return algebra.times(self(left), algebra.reciprocal(self(right)))
+            case Operation("**", base, exponent):
+                return self._power(base, exponent)
+            case Call("sqrt", argument):
+                return algebra.square_root(self(argument))
+            case Call("sin", argument):
+                return self.angle(argument)[0]
+            case Call("cos", argument):
+                return self.angle(argument)[1]
+            case Call("tan", argument):
+                sine, cosine = self.angle(argument)
+                return algebra.times(sine, algebra.reciprocal(cosine))
+            case Call(function, argument):
+                return algebra.function(function, self(argument))
+        raise TypeError(f"not an expression: {expression!r}")
+
+    def _power(self, base: Expression, exponent: Expression) -> Scalar:
+        form = linear_form(exponent)
+        if form is None or not form.is_constant:
+            raise NoClosedForm("a power whose exponent is not a number")
+        value = form.constant
+        if value.denominator == 1:
+            return self.algebra.power(self(base), value.numerator)
+        if value.denominator == 2:
+            return self.algebra.power(self.algebra.square_root(self(base)), value.numerator)
+        raise NoClosedForm(f"the power {value}: only whole and half exponents are supported")

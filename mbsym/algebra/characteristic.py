@@ -1,0 +1,261 @@
+"""The characteristic polynomial det(lambda^2 M + lambda C + K) and the polynomials that decide about its roots.
+
+A polynomial in lambda (or in mu = lambda^2) is a tuple of coefficients from low to high powers; a coefficient is an
+``fmpq_mpoly`` in the parameters, all of one context.  Matrices are tuples of rows.
+
+All determinants here are sums of products (minors of the first rows, each computed once), without division: with
+symbolic, mostly sparse entries that is faster than elimination, whose intermediate entries swell.  The work is
+counted beforehand, and ``TooLargeError`` is raised instead of running for minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
+Coefficients = tuple[Polynomial, ...]
+Matrix = Sequence[Sequence[Polynomial]]
+
+#: Products of terms that one determinant may cost (some seconds).
+BUDGET = 30_000_000
+
+
+class TooLargeError(Exception):
+    """A formula that is not written out, because it would be too long to compute or to read."""
+
+
+def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ...]:
+    """The determinants of the upper left 1x1, 2x2, ..., n x n blocks.  Raises ValueError unless square, n >= 1."""
+    n = len(matrix)
+    if n == 0 or any(len(row) != n for row in matrix):
+        raise ValueError("a square matrix with at least one row is needed")
+    zero = matrix[0][0] * 0
+    # minors[columns] = minor of the rows so far with this set of columns (a bit mask); zeros are left out.
+    minors: dict[int, Polynomial] = {0: zero + 1}
+    result, spent = [], 0
+    for size, row in enumerate(matrix, start=1):
+        expanded: dict[int, Polynomial] = {}
+        for columns, minor in minors.items():
+            for j, entry in enumerate(row):
+                bit = 1 << j
+                if columns & bit or entry == 0:
+                    continue
+                spent += len(minor) * len(entry)
+                if spent > budget:
+                    raise TooLargeError(f"a determinant of order {n} with too many terms")
+                # Expansion along the last row: the sign counts the chosen columns to the right of j.
+                term = minor * entry if (columns >> j).bit_count() % 2 == 0 else -(minor * entry)
+                expanded[columns | bit] = expanded.get(columns | bit, zero) + term
+        minors = {columns: minor for columns, minor in expanded.items() if minor != 0}
+        result.append(minors.get((1 << size) - 1, zero))
+    return tuple(result)
+
+
+def determinant(matrix: Matrix, budget: int = BUDGET) -> Polynomial:
+    """det of a square matrix, without division."""
+    return leading_minors(matrix, budget)[-1]
+
+
+def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
+    """det(lambda^2 M + lambda C + K), 2n + 1 coefficients from low to high (zeros included)."""
+    n = len(m)
+    if n == 0 or any(len(rows) != n or any(len(row) != n for row in rows) for rows in (m, c, k)):
+        raise ValueError("M, C and K must be square matrices of one size")
+    lam = _Variable(m[0][0].context())
+    return lam.coefficients(determinant(_pencil(lam, m, c, k)), 2 * n)
+
+
+def is_semisimple(m: Matrix, c: Matrix, k: Matrix, factor: Coefficients, multiplicity: int) -> bool:
+    """Whether the roots of an irreducible ``factor`` of det(lambda^2 M + lambda C + K) have no Jordan blocks.
+
+    Exact, for all parameters with distinct simple factors: factor^multiplicity divides the determinant, and the last
+    invariant factor of the pencil, det / gcd(first minors), has it only once if and only if factor^(multiplicity-1)
+    divides that gcd.
+    """
+    n = len(m)
+    if multiplicity == 1:
+        return True
+    if n == 1:
+        return False
+    lam = _Variable(m[0][0].context())
+    pencil = _pencil(lam, m, c, k)
+    needed = lam.assemble(factor) ** (multiplicity - 1)
+    for i in range(n):
+        for j in range(n):
+            rows = [[entry for col, entry in enumerate(row) if col != j] for at, row in enumerate(pencil) if at != i]
+            if divmod(determinant(rows), needed)[1] != 0:
+                return False
+    return True
+
+
+def _pencil(lam: _Variable, m: Matrix, c: Matrix, k: Matrix) -> list[list[Polynomial]]:
+    n = range(len(m))
+    return [[lam.assemble((k[i][j], c[i][j], m[i][j])) for j in n] for i in n]
+
+
+def primitive(coefficients: Sequence[Polynomial]) -> tuple[Coefficients, Polynomial]:
+    """(primitive part, removed factor): coefficients = removed * primitive part.
+
+    The primitive part has coprime coefficients, with integers of greatest common divisor 1; the removed factor has a
+    positive leading coefficient.  Raises ValueError for the zero polynomial.
+    """
+    common = coefficients[0] * 0
+    for coefficient in coefficients:
+        common = common.gcd(coefficient)
+    if common == 0:
+        raise ValueError("the polynomial is zero")
+    quotients = [coefficient / common for coefficient in coefficients]
+    numbers = [number for quotient in quotients for number in quotient.coeffs()]
+    content = _rational_content(numbers)
+    return tuple(quotient / content for quotient in quotients), common * content
+
+
+def factor_in_lambda(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, list[tuple[Coefficients, int]]]:
+    """(factor free of lambda, [(irreducible factor, multiplicity), ...]) over the rationals with the parameters.
+
+    The product is the given polynomial.  Factors are sorted by degree, then by their text: the order is stable.
+    """
+    lam = _Variable(coefficients[0].context())
+    unit, powers = lam.assemble(coefficients).factor()
+    rest = coefficients[0] * 0 + unit
+    factors = []
+    for factor, multiplicity in powers:
+        degree = lam.degree(factor)
+        cs = lam.coefficients(factor, degree)
+        if degree == 0:
+            rest *= cs[0] ** multiplicity
+        else:
+            factors.append((cs, int(multiplicity)))
+    factors.sort(key=lambda item: (len(item[0]), [str(c) for c in item[0]]))
+    return rest, factors
+
+
+def trimmed(coefficients: Sequence[Polynomial]) -> Coefficients:
+    """Without vanishing leading coefficients (at least one coefficient stays)."""
+    end = len(coefficients)
+    while end > 1 and coefficients[end - 1] == 0:
+        end -= 1
+    return tuple(coefficients[:end])
+
+
+def discriminant(coefficients: Sequence[Polynomial]) -> Polynomial:
+    """a_n^(2n-2) prod (x_i - x_j)^2 over i < j; 1 for degree 1.  Raises ValueError for a constant."""
+    return subdiscriminants(coefficients)[-1]
+
+
+def subdiscriminants(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ...]:
+    """D_1, ..., D_n with D_k = a_n^(2k-2) * sum over k-subsets of the roots of prod (x_i - x_j)^2.
+
+    Over the reals all roots are real and simple if and only if all D_k > 0 (D_1 = n always is); D_n is the
+    discriminant.  The D_k are, up to a_n^2, the lower right minors of the Bezoutian of p and p', which equals
+    V^T V up to a triangular congruence (V: the Vandermonde matrix of the roots).
+    """
+    p = trimmed(coefficients)
+    n = len(p) - 1
+    if n < 1:
+        raise ValueError("a polynomial of degree 1 at least is needed")
+    derivative = tuple(p[i] * i for i in range(1, n + 1))
+    bezoutian = _bezoutian(p, (*derivative, p[0] * 0))
+    reverse = [row[::-1] for row in bezoutian[::-1]]
+    square = p[n] * p[n]
+    return tuple(minor / square for minor in leading_minors(reverse))
+
+
+def resultant(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polynomial:
+    """Vanishes exactly where two polynomials in lambda have a common root (or both leading coefficients vanish)."""
+    lam = _Variable(left[0].context())
+    value = lam.assemble(left).resultant(lam.assemble(right), lam.name)
+    return lam.coefficients(value, 0)[0]
+
+
+def hurwitz_minors(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ...]:
+    """Delta_1, ..., Delta_n of a_n lambda^n + ... + a_0: leading minors of H_ij = a_(n - 2j + i), i, j = 1..n."""
+    p = trimmed(coefficients)
+    n = len(p) - 1
+    if n < 1:
+        raise ValueError("a polynomial of degree 1 at least is needed")
+    zero = p[0] * 0
+
+    def entry(i: int, j: int) -> Polynomial:
+        index = n - 2 * j + i
+        return p[index] if 0 <= index <= n else zero
+
+    return leading_minors([[entry(i, j) for j in range(1, n + 1)] for i in range(1, n + 1)])
+
+
+def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Polynomial], ...]:
+    """(label, polynomial): all roots have Re < 0 if and only if all of them are > 0, given a_n > 0.
+
+    Lienard and Chipart: every coefficient, and of the Hurwitz minors only Delta_(n-1), Delta_(n-3), ... (from
+    Delta_2 on; Delta_1 is a coefficient).  Labels: ``a0`` ... ``an``, ``Hurwitz minor k``.
+    """
+    p = trimmed(coefficients)
+    n = len(p) - 1
+    result = [(f"a{i}", p[i]) for i in range(n, -1, -1)]
+    if n >= 3:
+        # Delta_1 .. Delta_(n-1) do not involve the last row and column, so they come from a smaller matrix.
+        minors = _hurwitz_below(p)
+        result += [(f"Hurwitz minor {k}", minors[k - 1]) for k in range(n - 1, 1, -2)]
+    return tuple(result)
+
+
+def _hurwitz_below(p: Coefficients) -> tuple[Polynomial, ...]:
+    n, zero = len(p) - 1, p[0] * 0
+    size = range(1, n)
+    return leading_minors(
+        [[p[n - 2 * j + i] if 0 <= n - 2 * j + i <= n else zero for j in size] for i in size],
+    )
+
+
+def _bezoutian(p: Coefficients, q: Coefficients) -> list[list[Polynomial]]:
+    """B with (p(x) q(y) - p(y) q(x))/(x - y) = sum B_ij x^i y^j; p and q of equal length n + 1, B is n x n."""
+    n = len(p) - 1
+    zero = p[0] * 0
+    b = [[zero] * n for _ in range(n)]
+    for i in range(n):
+        for j in range(i, n):
+            # B_ij = (p_(j+1) q_i - p_i q_(j+1)) + B_(i-1)(j+1)
+            entry = p[j + 1] * q[i] - p[i] * q[j + 1]
+            if i > 0 and j + 1 < n:
+                entry += b[i - 1][j + 1]
+            b[i][j] = b[j][i] = entry
+    return b
+
+
+def _rational_content(numbers: Sequence[Any]) -> Any:
+    """The positive rational c for which numbers / c are integers without a common divisor."""
+    numerator, denominator = 0, 1
+    for number in numbers:
+        numerator = number.p.gcd(numerator) if numerator else abs(number.p)
+        denominator = number.q * denominator / number.q.gcd(denominator) if denominator != 1 else number.q
+    return (numbers[0] * 0 + numerator) / denominator
+
+
+class _Variable:
+    """One generator more than a context has: the way between lists of coefficients and polynomials in lambda."""
+
+    def __init__(self, context: Any) -> None:
+        names = context.names()
+        self.name = "lambda"
+        while self.name in names:
+            self.name += "_"
+        self.small = context
+        self.large = context.append_gens(self.name)
+        self.index = context.nvars()
+
+    def assemble(self, coefficients: Sequence[Polynomial]) -> Polynomial:
+        terms = {}
+        for power, coefficient in enumerate(coefficients):
+            for exponents, number in coefficient.to_dict().items():
+                terms[(*exponents, power)] = number
+        return self.large.from_dict(terms)
+
+    def degree(self, p: Polynomial) -> int:
+        return int(p.degrees()[self.index]) if p != 0 else 0
+
+    def coefficients(self, p: Polynomial, degree: int) -> Coefficients:
+        tables: list[dict[tuple[int, ...], Any]] = [{} for _ in range(degree + 1)]
+        for exponents, number in p.terms():
+            tables[exponents[self.index]][exponents[:-1]] = number
+        return tuple(self.small.from_dict(table) for table in tables)

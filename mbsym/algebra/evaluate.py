@@ -1,0 +1,64 @@
+"""Carries a polynomial of the ring into any other algebra: generators one by one, then sums of products."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.expressions.angles import LinearForm
+
+
+class Carrier:
+    """Evaluates ring polynomials in ``algebra``; ``environment`` gives the declared names' values there."""
+
+    def __init__(self, ring: Ring, algebra: Algebra, environment: Mapping[str, Scalar]) -> None:
+        self.ring = ring
+        self.algebra = algebra
+        self.environment = environment
+        self._known: dict[int, Scalar] = {}
+        self._powers: dict[tuple[int, int], Scalar] = {}
+
+    def __call__(self, x: Polynomial) -> Scalar:
+        """sum of coefficient * product of powers of generators."""
+        algebra = self.algebra
+        total = algebra.zero
+        for monomial, coefficient in x.terms():
+            term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))
+            for index, exponent in enumerate(monomial):
+                if exponent:
+                    term = algebra.times(term, self._power(index, int(exponent)))
+            total = total + term
+        return algebra.reduce(total)
+
+    def _power(self, index: int, exponent: int) -> Scalar:
+        key = (index, exponent)
+        if key not in self._powers:
+            self._powers[key] = self.algebra.power(self._generator(index), exponent)
+        return self._powers[key]
+
+    def _generator(self, index: int) -> Scalar:
+        if index not in self._known:
+            self._known[index] = self._value(self.ring.generators[index])
+        return self._known[index]
+
+    def _value(self, g: Generator) -> Any:
+        match g.kind:
+            case "sine" | "cosine" if g.argument is None:
+                form = LinearForm(((g.name, Fraction(1, g.denominator)),))
+                return self.algebra.sin_cos(form)[0 if g.kind == "sine" else 1]
+            case "reciprocal":
+                return self.algebra.reciprocal(self(g.argument))
+            case "root":
+                return self.algebra.square_root(self(g.argument))
+            case "function":
+                return self.algebra.function(g.name, self(g.argument))
+            case "velocity":
+                return self.environment[g.name + "_dot"]
+            case "acceleration":
+                return self.environment[g.name + "_ddot"]
+            case "sine" | "cosine":
+                return self.algebra.sin_cos_of(self(g.argument))[0 if g.kind == "sine" else 1]
+        return self.environment[g.name]

@@ -1,0 +1,160 @@
+"""Second-order Taylor polynomials over the ring: "quadratisation" without ever forming the nonlinear equations.
+
+A jet is p0 + sum p_i x_i + sum_{i<=j} p_ij x_i x_j in small deviations x_i, everything of third order dropped.  Running
+the kinetic energy and force function over jets expands the Lagrangian about the unperturbed motion while it is being
+built, so a system whose closed equations are out of reach can still be linearised (Banshchikov & Vetrov, Problem 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from mbsym.algebra.base import Algebra, NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import Expression
+
+First = dict[int, Polynomial]
+Second = dict[tuple[int, int], Polynomial]
+
+
+class Jet:
+    """``value`` + ``first`` + ``second``; coefficients are ring polynomials, absent ones are zero."""
+
+    __slots__ = ("first", "second", "value")
+
+    def __init__(self, value: Polynomial, first: First | None = None, second: Second | None = None) -> None:
+        self.value = value
+        self.first: First = first or {}
+        self.second: Second = second or {}
+
+    def __add__(self, other: Jet) -> Jet:
+        return Jet(self.value + other.value, _sum(self.first, other.first), _sum(self.second, other.second))
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, {k: -v for k, v in self.first.items()}, {k: -v for k, v in self.second.items()})
+
+    def __sub__(self, other: Jet) -> Jet:
+        return self + (-other)
+
+    def __mul__(self, other: Jet) -> Jet:
+        first: First = {}
+        _accumulate(first, self.first, other.value)
+        _accumulate(first, other.first, self.value)
+        second: Second = {}
+        _accumulate(second, self.second, other.value)
+        _accumulate(second, other.second, self.value)
+        for i, a in self.first.items():
+            for j, b in other.first.items():
+                key = (i, j) if i <= j else (j, i)
+                second[key] = second[key] + a * b if key in second else a * b
+        return Jet(self.value * other.value, first, second)
+
+
+def _sum(a: dict[Any, Polynomial], b: dict[Any, Polynomial]) -> dict[Any, Polynomial]:
+    total = dict(a)
+    for key, value in b.items():
+        total[key] = total[key] + value if key in total else value
+    return total
+
+
+def _accumulate(into: dict[Any, Polynomial], terms: dict[Any, Polynomial], factor: Polynomial) -> None:
+    if not factor.is_zero():
+        for key, value in terms.items():
+            into[key] = into[key] + value * factor if key in into else value * factor
+
+
+class Jets(Algebra):
+    """Jets over a ring.
+
+    ``motion`` gives each coordinate's unperturbed value as an expression in parameters; a coordinate that is not in it
+    (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i.
+    """
+
+    def __init__(self, ring: Ring, motion: Mapping[str, Expression], deviations: Mapping[str, int]) -> None:
+        self.ring = ring
+        self.motion = motion
+        self.deviations = deviations
+        self.zero, self.one = Jet(ring.zero), Jet(ring.one)
+
+    def number(self, value: Fraction | int) -> Jet:
+        return Jet(self.ring.number(value))
+
+    def deviation(self, index: int, base: Polynomial) -> Jet:
+        """base + x_index."""
+        return Jet(base, {index: self.ring.one})
+
+    def vanishes(self, x: Jet) -> bool:
+        return not x.first and not x.second and bool(x.value.is_zero())
+
+    def reduce(self, x: Jet) -> Jet:
+        reduce = self.ring.reduce
+        first = {k: r for k, v in x.first.items() if not (r := reduce(v)).is_zero()}
+        second = {k: r for k, v in x.second.items() if not (r := reduce(v)).is_zero()}
+        return Jet(reduce(x.value), first, second)
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Jet, Jet]:
+        base = LinearForm(turns=angle.turns)
+        first: First = {}
+        for name, coefficient in angle.coefficients:
+            at_rest = self.motion.get(name)
+            form = LinearForm(((name, coefficient),))
+            if at_rest is not None:
+                value = linear_form(at_rest)
+                if value is None or value.constant:
+                    raise NoClosedForm(f"sin and cos of the unperturbed {name}, which is no linear form in angles")
+                form = value.scaled(coefficient)
+            base = base + form
+            if name in self.deviations:
+                first[self.deviations[name]] = self.ring.number(coefficient)
+        return self._turned(*self.ring.sin_cos(base), Jet(self.ring.zero, first))
+
+    def sin_cos_of(self, argument: Jet) -> tuple[Jet, Jet]:
+        return self._turned(*self.ring.sin_cos_of(argument.value), _small(argument))
+
+    def _turned(self, sine: Polynomial, cosine: Polynomial, u: Jet) -> tuple[Jet, Jet]:
+        """sin(a + u) and cos(a + u) for small u: the small parts of sin u and cos u are u and -u^2/2."""
+        half_square = u * u * self.number(Fraction(1, 2))
+        s, c = Jet(sine), Jet(cosine)
+        small_cosine = self.one - half_square
+        return self.reduce(s * small_cosine + c * u), self.reduce(c * small_cosine - s * u)
+
+    def _series(self, x: Jet, value: Polynomial, slope: Polynomial, half_curvature: Polynomial) -> Jet:
+        """f(a) + f'(a) u + f''(a)/2 u^2."""
+        u = _small(x)
+        return self.reduce(Jet(value) + Jet(slope) * u + Jet(half_curvature) * (u * u))
+
+    def reciprocal(self, x: Jet) -> Jet:
+        inverse = self.ring.reciprocal(x.value)
+        return self._series(x, inverse, -(inverse**2), inverse**3)
+
+    def square_root(self, x: Jet) -> Jet:
+        if not x.first and not x.second:
+            return Jet(self.ring.square_root(x.value))
+        root = self.ring.square_root(x.value)
+        inverse = self.ring.reciprocal(root)
+        half = self.ring.number(Fraction(1, 2))
+        eighth = self.ring.number(Fraction(-1, 8))
+        return self._series(x, root, half * inverse, eighth * inverse**3)
+
+    def function(self, name: str, x: Jet) -> Jet:
+        ring = self.ring
+        half = ring.number(Fraction(1, 2))
+        if name in ("sinh", "cosh", "tanh"):
+            up, down = self.function("exp", x), self.function("exp", -x)
+            sinh, cosh = (up - down) * Jet(half), (up + down) * Jet(half)
+            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(sinh * self.reciprocal(cosh))
+        value = ring.function(name, x.value)
+        if name == "exp":
+            return self._series(x, value, value, value * half)
+        if name == "log":
+            inverse = ring.reciprocal(x.value)
+            return self._series(x, value, inverse, -half * inverse**2)
+        inverse = ring.reciprocal(ring.one + x.value**2)
+        return self._series(x, value, inverse, -x.value * inverse**2)
+
+
+def _small(x: Jet) -> Jet:
+    return Jet(x.value * 0, x.first, x.second)

@@ -1,0 +1,105 @@
+"""Numbers at one state: exact rationals through half-angle tangents, and rigorous balls.
+
+At a point where every angle is given by a rational t through sin = 2t/(1+t^2), cos = (1-t^2)/(1+t^2), everything
+that is polynomial in sines and cosines is a rational number, so two routes must agree exactly, without tolerance.
+A coordinate that also occurs outside sin and cos gets an independent rational value there: the identities that are
+compared are identities of the ring, in which q, sin q and cos q are independent but for sin^2 + cos^2 = 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, fmpq
+
+from mbsym.algebra.base import Algebra, NotRational, Scalar, SingularPoint
+from mbsym.expressions.angles import LinearForm
+
+
+class Rationals(Algebra):
+    """``fmpq`` scalars.  ``half_tangents`` gives t for each angle name; ``denominators`` the d of sin(name / d)."""
+
+    def __init__(self, half_tangents: Mapping[str, fmpq], denominators: Mapping[str, int]) -> None:
+        self.zero, self.one = fmpq(0), fmpq(1)
+        self.denominators = denominators
+        self.basic = {}
+        for name, t in half_tangents.items():
+            bottom = 1 + t * t
+            self.basic[name] = (2 * t / bottom, (1 - t * t) / bottom)
+
+    def number(self, value: Fraction | int) -> fmpq:
+        value = Fraction(value)
+        return fmpq(value.numerator, value.denominator)
+
+    def sin_cos(self, angle: LinearForm) -> tuple[fmpq, fmpq]:
+        sine, cosine = _quarter_turns(angle.turns)
+        for name, coefficient in angle.coefficients:
+            s, c = self.basic[name]
+            n = coefficient * self.denominators[name]
+            for _ in range(abs(int(n))):
+                sign = 1 if n > 0 else -1
+                sine, cosine = sine * c + sign * cosine * s, cosine * c - sign * sine * s
+        return sine, cosine
+
+    def sin_cos_of(self, argument: Scalar) -> tuple[Scalar, Scalar]:
+        raise NotRational("an angle that is no linear form")
+
+    def reciprocal(self, x: fmpq) -> fmpq:
+        if x == 0:
+            raise SingularPoint("division by zero")
+        return 1 / x
+
+    def square_root(self, x: fmpq) -> fmpq:
+        if x < 0:
+            raise NotRational("the square root of a negative number")
+        top, bottom = x.p.isqrt(), x.q.isqrt()
+        if top * top != x.p or bottom * bottom != x.q:
+            raise NotRational("an irrational square root")
+        return fmpq(top, bottom)
+
+    def function(self, name: str, x: Scalar) -> Scalar:
+        raise NotRational(f"{name} of a rational number")
+
+
+def _quarter_turns(turns: Fraction) -> tuple[fmpq, fmpq]:
+    quarter = turns * 2
+    if quarter.denominator != 1:
+        raise NotRational("sin and cos of a fraction of pi")
+    sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[int(quarter) % 4]
+    return fmpq(sine), fmpq(cosine)
+
+
+class Balls(Algebra):
+    """``arb`` scalars: rigorous enclosures at the working precision; ``angles`` gives each angle's value."""
+
+    def __init__(self, angles: Mapping[str, arb]) -> None:
+        self.zero, self.one = arb(0), arb(1)
+        self.values = angles
+
+    def number(self, value: Fraction | int) -> arb:
+        value = Fraction(value)
+        return arb(fmpq(value.numerator, value.denominator))
+
+    def vanishes(self, x: arb) -> bool:
+        return bool(x.is_zero())
+
+    def sin_cos(self, angle: LinearForm) -> tuple[arb, arb]:
+        total = arb.pi() * self.number(angle.turns)
+        for name, coefficient in angle.coefficients:
+            total += self.number(coefficient) * self.values[name]
+        sine: Any = total.sin()
+        return sine, total.cos()
+
+    def sin_cos_of(self, argument: Scalar) -> tuple[Scalar, Scalar]:
+        return argument.sin(), argument.cos()
+
+    def reciprocal(self, x: arb) -> arb:
+        return 1 / x
+
+    def square_root(self, x: arb) -> arb:
+        return x.sqrt()
+
+    def function(self, name: str, x: Scalar) -> Scalar:
+        return getattr(x, name)()

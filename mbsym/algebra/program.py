@@ -1,0 +1,285 @@
+"""Straight-line programs: hash-consed nodes, folded constants, and liveness from the requested outputs backwards.
+
+Closed formulas grow exponentially with the number of joints, the program grows linearly or quadratically; numbers
+therefore always come from here.  A node is an operation on earlier nodes; equal nodes are one node.  Signs are moved
+outwards (``a*(-b)`` is ``-(a*b)``) so that more nodes turn out equal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isqrt
+from typing import Any
+
+from mbsym.algebra.base import Algebra, SingularPoint
+from mbsym.expressions.angles import LinearForm
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One value of a program: ``number`` in the program's list of instructions."""
+
+    program: Program
+    number: int
+
+    def __add__(self, other: Node) -> Node:
+        return self.program.plus(self, other)
+
+    def __sub__(self, other: Node) -> Node:
+        return self.program.plus(self, -other)
+
+    def __mul__(self, other: Node) -> Node:
+        return self.program.product(self, other)
+
+    def __neg__(self) -> Node:
+        return self.program.minus(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """``operation`` is input, constant, add, subtract, multiply, negative, divide or a function's name.
+
+    ``operands`` are numbers of earlier instructions; ``payload`` is an input's name or a constant's value.
+    """
+
+    operation: str
+    operands: tuple[int, ...] = ()
+    payload: str | Fraction | None = None
+
+
+class Program(Algebra):
+    """An algebra whose scalars record what is done with them."""
+
+    def __init__(self) -> None:
+        self.instructions: list[Instruction] = []
+        self._known: dict[Instruction, Node] = {}
+        self.zero = self.number(0)
+        self.one = self.number(1)
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    # --- building ----------------------------------------------------------------------------------------------------
+
+    def _node(self, operation: str, operands: tuple[int, ...] = (), payload: str | Fraction | None = None) -> Node:
+        instruction = Instruction(operation, operands, payload)
+        known = self._known.get(instruction)
+        if known is None:
+            known = self._known[instruction] = Node(self, len(self.instructions))
+            self.instructions.append(instruction)
+        return known
+
+    def number(self, value: Fraction | int) -> Node:
+        return self._node("constant", (), Fraction(value))
+
+    def input(self, name: str) -> Node:
+        return self._node("input", (), name)
+
+    def _constant(self, node: Node) -> Fraction | None:
+        payload = self.instructions[node.number].payload
+        return payload if isinstance(payload, Fraction) else None
+
+    def _negated(self, node: Node) -> Node | None:
+        """a where node is -a."""
+        instruction = self.instructions[node.number]
+        return Node(self, instruction.operands[0]) if instruction.operation == "negative" else None
+
+    def vanishes(self, x: Node) -> bool:
+        return x.number == self.zero.number
+
+    def minus(self, a: Node) -> Node:
+        value = self._constant(a)
+        if value is not None:
+            return self.number(-value)
+        inner = self._negated(a)
+        if inner is not None:
+            return inner
+        instruction = self.instructions[a.number]
+        if instruction.operation == "subtract":
+            return self._node("subtract", instruction.operands[::-1])
+        return self._node("negative", (a.number,))
+
+    def plus(self, a: Node, b: Node) -> Node:
+        if self.vanishes(a):
+            return b
+        if self.vanishes(b):
+            return a
+        x, y = self._constant(a), self._constant(b)
+        if x is not None and y is not None:
+            return self.number(x + y)
+        minus_a, minus_b = self._negated(a), self._negated(b)
+        if minus_a is not None and minus_b is not None:
+            return self.minus(self.plus(minus_a, minus_b))
+        if minus_b is not None:
+            return self.zero if minus_b == a else self._node("subtract", (a.number, minus_b.number))
+        if minus_a is not None:
+            return self.zero if minus_a == b else self._node("subtract", (b.number, minus_a.number))
+        first, second = sorted((a.number, b.number))
+        return self._node("add", (first, second))
+
+    def product(self, a: Node, b: Node) -> Node:
+        x, y = self._constant(a), self._constant(b)
+        if x is not None and y is not None:
+            return self.number(x * y)
+        value, other = (x, b) if x is not None else (y, a)
+        if value is not None:
+            if value in (0, 1, -1):
+                return {0: self.zero, 1: other}[abs(value)] if value >= 0 else self.minus(other)
+            if value < 0:
+                return self.minus(self.product(self.number(-value), other))
+        minus_a, minus_b = self._negated(a), self._negated(b)
+        if minus_a is not None or minus_b is not None:
+            inner = self.product(a if minus_a is None else minus_a, b if minus_b is None else minus_b)
+            return self.minus(inner) if (minus_a is None) != (minus_b is None) else inner
+        first, second = sorted((a.number, b.number))
+        return self._node("multiply", (first, second))
+
+    def divide(self, a: Node, b: Node) -> Node:
+        y = self._constant(b)
+        if y == 0:
+            raise SingularPoint("division by zero")
+        if y is not None:
+            return self.product(a, self.number(1 / y))
+        if self.vanishes(a):
+            return a
+        return self._node("divide", (a.number, b.number))
+
+    def times(self, a: Node, b: Node) -> Node:
+        """a*b; a product with a reciprocal is one division."""
+        for x, y in ((a, b), (b, a)):
+            instruction = self.instructions[y.number]
+            if instruction.operation == "divide" and instruction.operands[0] == self.one.number:
+                return self.divide(x, Node(self, instruction.operands[1]))
+        return self.product(a, b)
+
+    def reciprocal(self, x: Node) -> Node:
+        return self.divide(self.one, x)
+
+    def square_root(self, x: Node) -> Node:
+        value = self._constant(x)
+        if value is not None and value >= 0:
+            top, bottom = _root(value.numerator), _root(value.denominator)
+            if top is not None and bottom is not None:
+                return self.number(Fraction(top, bottom))
+        return self._node("sqrt", (x.number,))
+
+    def function(self, name: str, x: Node) -> Node:
+        return self._node(name, (x.number,))
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Node, Node]:
+        turns = angle.turns % 2
+        if not angle.coefficients and turns.denominator in (1, 2):
+            s, c = ((0, 1), (1, 0), (0, -1), (-1, 0))[int(turns * 2)]
+            return self.number(s), self.number(c)
+        total = self.zero
+        for name, coefficient in angle.coefficients:
+            total = total + self.number(coefficient) * self.input(name)
+        if turns:
+            total = total + self.number(turns) * self.input("pi")
+        inner = self._negated(total)
+        if inner is not None:
+            return -self._node("sin", (inner.number,)), self._node("cos", (inner.number,))
+        return self._node("sin", (total.number,)), self._node("cos", (total.number,))
+
+    def sin_cos_of(self, argument: Node) -> tuple[Node, Node]:
+        return self._node("sin", (argument.number,)), self._node("cos", (argument.number,))
+
+    # --- using -------------------------------------------------------------------------------------------------------
+
+    def live(self, outputs: Iterable[Node]) -> list[int]:
+        """The numbers of the instructions that the outputs need, in order."""
+        needed: set[int] = set()
+        pending = [node.number for node in outputs]
+        while pending:
+            number = pending.pop()
+            if number not in needed:
+                needed.add(number)
+                pending.extend(self.instructions[number].operands)
+        return sorted(needed)
+
+    def operations(self, outputs: Iterable[Node]) -> int:
+        """How many arithmetic operations the outputs cost."""
+        free = ("input", "constant")
+        return sum(self.instructions[number].operation not in free for number in self.live(outputs))
+
+    def evaluate(self, outputs: Sequence[Node], inputs: Mapping[str, Any], algebra: Algebra) -> list[Any]:
+        """The outputs over any algebra whose scalars divide through ``algebra.reciprocal``.
+
+        Sines and cosines of inputs are looked up through ``algebra.sin_cos`` of their linear form, so that exact
+        rational states stay exact.
+        """
+        values: dict[int, Any] = {}
+        for number in self.live(outputs):
+            values[number] = self._apply(self.instructions[number], number, values, inputs, algebra)
+        return [values[node.number] for node in outputs]
+
+    def _apply(
+        self,
+        instruction: Instruction,
+        number: int,
+        values: dict[int, Any],
+        inputs: Mapping[str, Any],
+        algebra: Algebra,
+    ) -> Any:
+        match instruction.operation:
+            case "constant":
+                assert isinstance(instruction.payload, Fraction)
+                return algebra.number(instruction.payload)
+            case "input":
+                return inputs[str(instruction.payload)]
+            case "sin" | "cos" as which:
+                angle = self._angle(instruction.operands[0])
+                argument = values[instruction.operands[0]]
+                pair = algebra.sin_cos(angle) if angle is not None else algebra.sin_cos_of(argument)
+                return pair[0 if which == "sin" else 1]
+        arguments = [values[operand] for operand in instruction.operands]
+        match instruction.operation, arguments:
+            case "add", [a, b]:
+                return a + b
+            case "subtract", [a, b]:
+                return a - b
+            case "multiply", [a, b]:
+                return a * b
+            case "negative", [a]:
+                return -a
+            case "divide", [a, b]:
+                return a * algebra.reciprocal(b)
+            case "sqrt", [a]:
+                return algebra.square_root(a)
+            case name, [a]:
+                return algebra.function(name, a)
+        raise ValueError(f"no such operation: {instruction.operation}")
+
+    def _angle(self, number: int) -> LinearForm | None:
+        """The linear form in inputs that an instruction computes, or None."""
+        instruction = self.instructions[number]
+        match instruction.operation:
+            case "input" if instruction.payload == "pi":
+                return LinearForm(turns=Fraction(1))
+            case "input":
+                return LinearForm(((str(instruction.payload), Fraction(1)),))
+            case "negative":
+                inner = self._angle(instruction.operands[0])
+                return None if inner is None else inner.scaled(Fraction(-1))
+            case "add" | "subtract":
+                a, b = (self._angle(operand) for operand in instruction.operands)
+                if a is None or b is None:
+                    return None
+                return a + b.scaled(Fraction(1 if instruction.operation == "add" else -1))
+            case "multiply":
+                for first, second in (instruction.operands, instruction.operands[::-1]):
+                    factor = self.instructions[first].payload
+                    form = self._angle(second)
+                    if isinstance(factor, Fraction) and form is not None:
+                        return form.scaled(factor)
+        return None
+
+
+def _root(n: int) -> int | None:
+    root = isqrt(n)
+    return root if root * root == n else None

@@ -1,0 +1,493 @@
+"""The sign of a polynomial under the assumptions about its parameters, always with a proof.
+
+A sign is a set of possibilities, a subset of {-1, 0, 1}; the words are names of such sets::
+
+    positive {1}   nonnegative {0, 1}   nonzero {-1, 1}   nonpositive {-1, 0}   negative {-1}   unknown {-1, 0, 1}
+
+Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric.
+So an answer may be weaker than the truth (``unknown``), never wrong.  The evidence, from cheap to dear:
+
+* **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
+* **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
+* **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A;
+* **bounds**: a < x, x < b or both are used up by x = a + u, x = b - u, x = (a + b u)/(1 + u) with u > 0, and the
+  question is asked again for the numerator.
+
+``condition(p)`` reduces a requirement p > 0 with the same means: factors of known sign are dropped and even powers
+turn into side conditions f != 0.
+
+Polynomials are ``fmpq_mpoly`` of python-flint over the rationals in the generators of one context.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+from flint import fmpq
+
+Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
+SignSet = frozenset[int]
+
+SIGN_SETS: dict[str, SignSet] = {
+    "positive": frozenset({1}),
+    "nonnegative": frozenset({0, 1}),
+    "negative": frozenset({-1}),
+    "nonpositive": frozenset({-1, 0}),
+    "zero": frozenset({0}),
+    "nonzero": frozenset({-1, 1}),
+    "real": frozenset({-1, 0, 1}),
+}
+SIGN_WORDS: dict[SignSet, str] = {signs: word for word, signs in SIGN_SETS.items()} | {
+    SIGN_SETS["real"]: "unknown",
+}
+RELATIONS: dict[str, SignSet] = {
+    ">": SIGN_SETS["positive"],
+    ">=": SIGN_SETS["nonnegative"],
+    "!=": SIGN_SETS["nonzero"],
+}
+
+ANY, ZERO, POSITIVE = SIGN_SETS["real"], SIGN_SETS["zero"], SIGN_SETS["positive"]
+
+#: Polynomials with more terms are judged by their terms alone: the dearer evidence would cost more than it gives.
+MOST_TERMS = 120
+#: ... and with more terms than this they are not even factored.
+MOST_FACTORED = 4000
+#: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
+MOST_STEPS, MOST_STEPS_CHANGED = 60, 8
+
+
+def _sign(number: Any) -> int:
+    return (number > 0) - (number < 0)
+
+
+@cache
+def _product(left: SignSet, right: SignSet) -> SignSet:
+    return frozenset(a * b for a in left for b in right)
+
+
+@cache
+def _sum(left: SignSet, right: SignSet) -> SignSet:
+    return frozenset(s for a in left for b in right for s in ((a or b,) if a * b >= 0 else (-1, 0, 1)))
+
+
+def _power(base: SignSet, exponent: int) -> SignSet:
+    return frozenset(s**exponent for s in base)
+
+
+class ContradictionError(ValueError):
+    """The assumptions exclude every value of the parameters (or the evidence is in conflict)."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What is left of a requirement after everything known has been used.
+
+    * ``always`` and ``never``: decided; ``polynomial`` is 1 or -1.
+    * ``inequality``: ``polynomial`` > 0, the product of ``factors`` (irreducible, primitive, integer coefficients),
+      and each of ``nonzero`` != 0.
+    * ``nonzero``: only the side conditions are left; ``polynomial`` is 1.
+    * ``unwritten``: too large to be written out (made by those who found it so); open.
+    """
+
+    kind: str
+    polynomial: Polynomial
+    factors: tuple[Polynomial, ...] = ()
+    nonzero: tuple[Polynomial, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Change:
+    """x = (numerator)/(denominator) in terms of a new positive or nonnegative generator that takes the place of x."""
+
+    generator: int
+    target: Signs
+    substitute: Callable[[Polynomial], Polynomial]
+    ends: tuple[Any, ...]  # values of x that the change leaves out and that the assumptions allow
+
+
+@dataclass(frozen=True)
+class Signs:
+    """What is known: a sign word per generator of ``context``, and ``assumptions`` (polynomial, relation to 0).
+
+    Words: positive, nonnegative, negative, nonpositive, nonzero, real.  Relations: ``>``, ``>=``, ``!=``.
+    Raises ``ValueError`` for anything else, ``ContradictionError`` (a ValueError) when no parameters are possible as
+    far as that is noticed.
+    """
+
+    context: Any
+    words: tuple[str, ...]
+    assumptions: tuple[tuple[Polynomial, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.words) != self.context.nvars():
+            raise ValueError(f"{self.context.nvars()} generators, but {len(self.words)} sign words")
+        for word in self.words:
+            if word not in SIGN_SETS:
+                raise ValueError(f"no such sign: {word!r}; known are {', '.join(SIGN_SETS)}")
+        for _, relation in self.assumptions:
+            if relation not in RELATIONS:
+                raise ValueError(f"no such relation: {relation!r}; known are {', '.join(RELATIONS)}")
+
+    # -- questions ----------------------------------------------------------------------------------------------
+
+    def sign(self, p: Polynomial) -> str:
+        """``positive``, ``negative``, ``zero``, ``nonnegative``, ``nonpositive``, ``nonzero`` or ``unknown``."""
+        return SIGN_WORDS[self._possible(p, -1)]
+
+    def condition(self, p: Polynomial) -> Condition:
+        """The requirement p > 0, reduced."""
+        if p == 0:
+            return self._decided(False)
+        unit, powers = _factored(p)
+        direction = _sign(unit)
+        kept: list[Polynomial] = []
+        nonzero: list[Polynomial] = []
+        for factor, exponent in powers:
+            signs = self._possible(factor, -1)
+            odd = exponent % 2 == 1
+            if -1 not in signs or 1 not in signs:  # the sign is known, but the factor may vanish
+                direction *= -1 if odd and -1 in signs else 1
+                if 0 in signs:
+                    nonzero.append(_normal(factor)[0])
+            elif not odd:
+                if 0 in signs:
+                    nonzero.append(_normal(factor)[0])
+            else:
+                normal, flip = _normal(factor)
+                direction *= flip
+                kept.append(normal)
+        if not kept:
+            return self._decided(direction > 0, tuple(nonzero))
+        if direction < 0:
+            kept[-1] = -kept[-1]
+        product = self.context.constant(1)
+        for factor in kept:
+            product *= factor
+        overall = self._possible(product, -1)
+        if 1 not in overall:
+            return self._decided(False)
+        if overall == POSITIVE:
+            return self._decided(True, tuple(nonzero))
+        return Condition("inequality", product, tuple(kept), tuple(nonzero))
+
+    def nonzero_condition(self, p: Polynomial) -> Condition:
+        """The requirement p != 0, reduced to the factors that may vanish."""
+        if p == 0:
+            return self._decided(False)
+        factors = tuple(_normal(f)[0] for f, _ in _factored(p)[1] if 0 in self._possible(f, -1))
+        return self._decided(True, factors)
+
+    def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
+        """The same knowledge with further assumptions."""
+        return Signs(self.context, self.words, (*self.assumptions, *more))
+
+    def _decided(self, answer: bool, nonzero: tuple[Polynomial, ...] = ()) -> Condition:
+        one = self.context.constant(1)
+        if not answer:
+            return Condition("never", -one)
+        return Condition("nonzero" if nonzero else "always", one, (), nonzero)
+
+    # -- evidence -----------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _generator_signs(self) -> tuple[SignSet, ...]:
+        return tuple(SIGN_SETS[word] for word in self.words)
+
+    @cached_property
+    def _known(self) -> tuple[tuple[Polynomial, SignSet], ...]:
+        """The assumptions with factors of known constant sign divided out; numbers are checked and dropped."""
+        known = []
+        for polynomial, relation in self.assumptions:
+            allowed = RELATIONS[relation]
+            if polynomial.is_constant():
+                if _sign(polynomial.leading_coefficient() if polynomial != 0 else 0) not in allowed:
+                    raise ContradictionError(f"the assumption {polynomial} {relation} 0 is false")
+                continue
+            unit, powers = _factored(polynomial)
+            rest, direction = self.context.constant(1), _sign(unit)
+            for factor, exponent in powers:
+                signs = _power(self._by_terms(factor), exponent)
+                if signs in (SIGN_SETS["positive"], SIGN_SETS["negative"]):
+                    direction *= min(signs)
+                else:
+                    rest *= factor**exponent
+            if not rest.is_constant():
+                known.append((rest, _product(allowed, frozenset({direction}))))
+        return tuple(known)
+
+    def _possible(self, p: Polynomial, after: int) -> SignSet:
+        """The possible signs of p; changes of variables only for generators beyond ``after``."""
+        if p == 0:
+            return ZERO
+        unit, powers = _factored(p)
+        result = frozenset({_sign(unit)})
+        for factor, exponent in powers:
+            result = _product(result, _power(self._irreducible(factor, after), exponent))
+        if len(result) > 1 and len(powers) > 1:
+            result &= self._by_assumptions(p, after)
+        return self._consistent(result)
+
+    def _irreducible(self, p: Polynomial, after: int) -> SignSet:
+        result = self._by_terms(p)
+        if len(result) == 1 or len(p) > MOST_TERMS:
+            return result
+        result &= self._by_assumptions(p, after)
+        if len(result) > 1:
+            result &= self._by_square(p)
+        for change in self._changes:
+            if len(result) == 1:
+                break
+            if change.generator > after and p.degrees()[change.generator]:
+                result &= self._by_change(p, change)
+        return self._consistent(result)
+
+    @staticmethod
+    def _consistent(result: SignSet) -> SignSet:
+        if not result:
+            raise ContradictionError("the assumptions about the parameters contradict each other")
+        return result
+
+    @cached_property
+    def _monomials(self) -> dict[tuple[int, ...], SignSet]:
+        return {}
+
+    def _monomial(self, exponents: tuple[int, ...]) -> SignSet:
+        result = self._monomials.get(exponents)
+        if result is None:
+            result = POSITIVE
+            for signs, exponent in zip(self._generator_signs, exponents, strict=True):
+                if exponent:
+                    result = _product(result, _power(signs, exponent))
+            self._monomials[exponents] = result
+        return result
+
+    def _term(self, exponents: tuple[int, ...], coefficient: Any) -> SignSet:
+        return _product(self._monomial(exponents), frozenset({_sign(coefficient)}))
+
+    def _by_terms(self, p: Polynomial) -> SignSet:
+        result = ZERO
+        for exponents, coefficient in p.terms():
+            result = _sum(result, self._term(exponents, coefficient))
+            if result == ANY:
+                break
+        return result
+
+    def _by_assumptions(self, p: Polynomial, after: int) -> SignSet:
+        """p = sum c m a + rest: look for a combination that shows p >= 0 (or > 0), and one that shows p <= 0."""
+        if not self._known or len(p) > MOST_TERMS:
+            return ANY
+        result = ANY
+        for polynomial, allowed in self._known:  # equality up to a number, the only use of "!= 0"
+            ratio = p.leading_coefficient() / polynomial.leading_coefficient()
+            if p == polynomial * ratio:
+                result &= _product(allowed, frozenset({_sign(ratio)}))
+        for target in (1, -1):
+            if len(result) > 1:
+                steps = iter(range(MOST_STEPS if after < 0 else MOST_STEPS_CHANGED))
+                result &= self._combination(p, target, 3 if after < 0 else 2, steps)
+        return result
+
+    def _combination(self, p: Polynomial, target: int, depth: int, steps: Iterator[int]) -> SignSet:
+        """The signs of p by a combination all of whose parts are >= 0 (target 1) or <= 0 (-1); ANY when none is found.
+
+        Every term that may have the wrong sign must be taken up by some assumption, so it is enough to look at one.
+        """
+        wanted = frozenset({0, target})
+        wrong = next((term for term in p.terms() if not self._term(*term) <= wanted), None)
+        if wrong is None:
+            return self._by_terms(p)
+        if depth == 0:
+            return ANY
+        for polynomial, allowed in self._known:
+            for exponents, coefficient in polynomial.terms():
+                quotient = tuple(a - b for a, b in zip(wrong[0], exponents, strict=True))
+                if min(quotient) < 0:
+                    continue
+                ratio = wrong[1] / coefficient
+                part = _product(_product(self._monomial(quotient), frozenset({_sign(ratio)})), allowed)
+                if not part <= wanted:
+                    continue
+                if next(steps, None) is None:
+                    return ANY  # out of steps
+                rest = p - polynomial * self.context.from_dict({quotient: ratio})
+                found = self._combination(rest, target, depth - 1, steps)
+                if found != ANY:
+                    return _sum(part, found)
+        return ANY
+
+    def _by_square(self, p: Polynomial) -> SignSet:
+        """A x^2 + B x + C: negative discriminant means the sign of A, a nonpositive one with A > 0 means >= 0."""
+        for generator, degree in enumerate(p.degrees()):
+            if degree != 2:
+                continue
+            c, b, a = coefficients_in(p, generator)
+            discriminant = self._plain(b * b - 4 * a * c)
+            leading = self._plain(a)
+            if discriminant == frozenset({-1}):
+                return leading - ZERO or ANY
+            if 1 not in discriminant and len(leading) == 1 and 0 not in leading:
+                return leading | ZERO
+        return ANY
+
+    def _plain(self, p: Polynomial) -> SignSet:
+        """Signs by factors and terms only."""
+        if p == 0:
+            return ZERO
+        unit, powers = _factored(p)
+        result = frozenset({_sign(unit)})
+        for factor, exponent in powers:
+            result = _product(result, _power(self._by_terms(factor), exponent))
+        return result
+
+    # -- changes of variables -----------------------------------------------------------------------------------
+
+    def _by_change(self, p: Polynomial, change: _Change) -> SignSet:
+        transformed = change.substitute(p)
+        if len(transformed) > MOST_TERMS:
+            return ANY
+        result = change.target._possible(transformed, change.generator)
+        for end in change.ends:
+            if result == ANY:
+                break
+            result |= self._possible(_at(p, change.generator, end), change.generator)
+        return result
+
+    @cached_property
+    def _changes(self) -> tuple[_Change, ...]:
+        changes = (self._change(generator) for generator in range(self.context.nvars()))
+        return tuple(change for change in changes if change is not None)
+
+    def _change(self, generator: int) -> _Change | None:
+        """The change of variables that uses up the bounds of one generator; None when its sign word says it all."""
+        lower, upper = self._bounds(generator)
+        if lower is None and upper is None:
+            return None
+        if upper is None and lower is not None and lower[0] == 0:
+            return None
+        if lower is None and upper is not None and upper[0] == 0:
+            return None
+        u, one = self.context.gen(generator), self.context.constant(1)
+        ends: tuple[Any, ...] = ()
+        word = "positive"
+        if lower is not None and upper is not None:
+            if lower[0] > upper[0] or (lower[0] == upper[0] and (lower[1] or upper[1])):
+                raise ContradictionError(f"no value is left for {self.context.names()[generator]}")
+            numerator, denominator = lower[0] + upper[0] * u, 1 + u
+            ends = tuple(value for value, strict in (lower, upper) if not strict)
+        elif lower is not None:
+            numerator, denominator = lower[0] + u, one
+            word = "positive" if lower[1] else "nonnegative"
+        elif upper is not None:
+            numerator, denominator = upper[0] - u, one
+            word = "positive" if upper[1] else "nonnegative"
+
+        def substitute(p: Polynomial) -> Polynomial:
+            coefficients = coefficients_in(p, generator)
+            powers = [one]
+            for _ in coefficients[1:]:
+                powers.append(powers[-1] * denominator)
+            result = coefficients[-1]
+            for coefficient, power in zip(reversed(coefficients[:-1]), powers[1:], strict=True):
+                result = result * numerator + coefficient * power
+            return result
+
+        words = (*self.words[:generator], word, *self.words[generator + 1 :])
+        assumptions = tuple(
+            (substitute(polynomial), relation)
+            for polynomial, relation in self.assumptions
+            if not _is_bound(polynomial, generator, relation)
+        )
+        return _Change(generator, Signs(self.context, words, assumptions), substitute, ends)
+
+    def _bounds(self, generator: int) -> tuple[tuple[Any, bool] | None, tuple[Any, bool] | None]:
+        """The best numeric bounds (value, strict) of a generator from below and from above."""
+        signs = self._generator_signs[generator]
+        below, above = [], []
+        if -1 not in signs:
+            below.append((fmpq(0), 0 not in signs))
+        if 1 not in signs:
+            above.append((fmpq(0), 0 not in signs))
+        for polynomial, relation in self.assumptions:
+            if _is_bound(polynomial, generator, relation):
+                constant, slope = (c.leading_coefficient() if c != 0 else fmpq(0) for c in _ends(polynomial, generator))
+                (below if slope > 0 else above).append((-constant / slope, relation == ">"))
+        return max(below, default=None), min(above, key=lambda bound: (bound[0], not bound[1]), default=None)
+
+
+def conditions(requirements: Iterable[Condition]) -> tuple[Condition, ...]:
+    """A list of requirements that must all hold, without the decided-true, the repeated and the implied ones.
+
+    A product is implied when each of its factors is required to be positive by itself; a side condition f != 0, when
+    f > 0 or f < 0 is required.  One ``never`` makes the whole list ``never``.
+    """
+    kept: list[Condition] = []
+    for requirement in requirements:
+        if requirement.kind == "never":
+            return (requirement,)
+        if requirement.kind != "always" and not any(_same(requirement, other) for other in kept):
+            kept.append(requirement)
+    single = [c.polynomial for c in kept if len(c.factors) == 1]
+    result: list[Condition] = []
+    for requirement in kept:
+        factors = requirement.factors
+        if len(factors) > 1 and all(any(f == s for s in single) for f in factors):
+            factors = ()
+        nonzero = tuple(
+            f for f in requirement.nonzero if not any(f in (g, -g) for c in kept for g in c.factors if c.factors)
+        )
+        if not factors and not nonzero:
+            continue
+        if (factors, nonzero) == (requirement.factors, requirement.nonzero):
+            result.append(requirement)
+        elif factors:
+            result.append(Condition("inequality", requirement.polynomial, factors, nonzero))
+        else:
+            result.append(Condition("nonzero", requirement.polynomial * 0 + 1, (), nonzero))
+    return tuple(c for i, c in enumerate(result) if not any(_same(c, other) for other in result[:i]))
+
+
+def coefficients_in(p: Polynomial, generator: int) -> list[Polynomial]:
+    """The coefficients of p as a polynomial in one generator, from low to high, in the same context."""
+    table: list[dict[tuple[int, ...], Any]] = [{} for _ in range(p.degrees()[generator] + 1)] if p != 0 else [{}]
+    for exponents, coefficient in p.terms():
+        rest = (*exponents[:generator], 0, *exponents[generator + 1 :])
+        table[exponents[generator]][rest] = coefficient
+    return [p.context().from_dict(entries) for entries in table]
+
+
+def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
+    """(unit, [(factor, exponent), ...]); a very long polynomial counts as one factor."""
+    if len(p) > MOST_FACTORED:
+        return fmpq(1), [(p, 1)]
+    unit, powers = p.factor()
+    return unit, powers
+
+
+def _same(left: Condition, right: Condition) -> bool:
+    return left.polynomial == right.polynomial and left.nonzero == right.nonzero
+
+
+def _at(p: Polynomial, generator: int, value: Any) -> Polynomial:
+    result = p * 0
+    for coefficient in reversed(coefficients_in(p, generator)):
+        result = result * value + coefficient
+    return result
+
+
+def _normal(factor: Polynomial) -> tuple[Polynomial, int]:
+    """The factor or its negative, whichever has more positive terms (then: a positive leading one), and the sign."""
+    balance = sum(_sign(c) for c in factor.coeffs()) or _sign(factor.leading_coefficient())
+    return (factor, 1) if balance > 0 else (-factor, -1)
+
+
+def _is_bound(polynomial: Polynomial, generator: int, relation: str) -> bool:
+    degrees = polynomial.degrees() if polynomial != 0 else ()
+    return relation != "!=" and sum(degrees) == 1 and degrees[generator] == 1
+
+
+def _ends(polynomial: Polynomial, generator: int) -> tuple[Polynomial, Polynomial]:
+    constant, slope = coefficients_in(polynomial, generator)
+    return constant, slope

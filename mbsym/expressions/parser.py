@@ -1,0 +1,377 @@
+"""Text to expression tree: a whitelist grammar with bounds, never Python's own evaluator.
+
+    sum      = product (("+" | "-") product)*
+    product  = signed (("*" | "/") signed)*
+    signed   = ("-" | "+") signed | power
+    power    = atom ["**" signed]            (the exponent must come out as one rational number)
+    atom     = number | name | function "(" sum ")" | "(" sum ")"
+
+Numbers are exact: ``0.1`` is 1/10 and ``1e-3`` is 1/1000.  What is too long, too deep or too big is complained about
+before any work is spent on it, so that ``9**9**9**9`` costs nothing; whatever evaluates the tree later can rely on the
+bounds below.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+
+from mbsym.expressions.angles import linear_form
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation
+
+#: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
+MAX_LENGTH = 20_000
+MAX_NODES = 2_000
+MAX_DEPTH = 150
+MAX_NESTING = 50
+
+#: A literal has at most so many digits before and after the point (``1e-60`` is the smallest).
+MAX_DIGITS = 60
+
+#: Numerator and denominator of an exponent.
+MAX_EXPONENT = 64
+
+#: Bound of the size of any number that evaluating the tree can produce, counted as in :func:`_weight`.
+MAX_WEIGHT = 5_000
+
+SpanOf = Callable[[int, int], Span]
+
+_TOKEN = re.compile(
+    r"(?P<blank>\s+)"
+    r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+(?![A-Za-z0-9_.]))?)"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+    r"|(?P<operator>\*\*|[-+*/()^,])",
+)
+
+_LOOKALIKES = {
+    "−": "write - for minus",
+    "–": "write - for minus",
+    "—": "write - for minus",
+    "×": "write * for a product",
+    "·": "write * for a product",
+    "⋅": "write * for a product",
+    "∗": "write * for a product",
+    "÷": "write / for a quotient",
+    "∕": "write / for a quotient",
+    "²": "write **2",
+    "³": "write **3",
+    "√": "write sqrt(...)",
+    "π": "write pi",
+    "'": "a velocity is written theta_dot",
+    "[": "only round parentheses group",
+    "]": "only round parentheses group",
+    "{": "only round parentheses group",
+    "}": "only round parentheses group",
+}
+
+_FOREIGN_FUNCTIONS = {"arctan": "atan", "ln": "log", "tg": "tan", "sh": "sinh", "ch": "cosh", "th": "tanh"}
+
+_BINDING = {"+": 10, "-": 10, "*": 20, "/": 20}
+_BINDING_SIGN = 30
+
+
+@dataclass(frozen=True, slots=True)
+class _Token:
+    kind: str  # "number", "name", "operator", "end"
+    text: str
+    start: int
+    end: int
+
+
+class _Refused(Exception):
+    """Internal: this expression is given up; the complaint is already recorded."""
+
+
+def parse_expression(text: str, complaints: Complaints, span_of: SpanOf) -> Expression | None:
+    """The tree of an expression, or None with at least one complaint.
+
+    ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
+    names a place allows is the reader's business.
+    """
+    errors_before = len(complaints.errors)
+    try:
+        if len(text) > MAX_LENGTH:
+            complaints.error("too-long", f"an expression has at most {MAX_LENGTH} characters", span_of(0, 1))
+            raise _Refused
+        parser = _Parser(_tokens(text, complaints, span_of), complaints, span_of)
+        tree = parser.whole()
+    except _Refused:
+        return None
+    return tree if len(complaints.errors) == errors_before else None
+
+
+def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
+    """All tokens with an end mark; foreign characters are complained about, all of them."""
+    tokens: list[_Token] = []
+    position, clean = 0, True
+    while position < len(text):
+        match = _TOKEN.match(text, position)
+        if match is None:
+            clean = False
+            position = _complain_of_character(text, position, complaints, span_of)
+            continue
+        if match.lastgroup != "blank":
+            tokens.append(_Token(match.lastgroup or "", match.group(), match.start(), match.end()))
+        position = match.end()
+    if not clean:
+        raise _Refused
+    return [*tokens, _Token("end", "", len(text), len(text))]
+
+
+def _complain_of_character(text: str, position: int, complaints: Complaints, span_of: SpanOf) -> int:
+    """Complain of one foreign character, or of a whole run of foreign letters; the position after it."""
+    character, end = text[position], position + 1
+    while character.isalpha() and end < len(text) and text[end].isalpha() and not text[end].isascii():
+        end += 1
+    shown = text[position:end]
+    hint = _LOOKALIKES.get(character)
+    if hint is None and character.isalpha():
+        hint = f"names are Latin letters, digits and _: write {_latin_name(character)}"
+    complaints.error(
+        "bad-character", f"the character {ascii_safe(shown)} has no meaning here", span_of(position, end), hint
+    )
+    return end
+
+
+def ascii_safe(text: str) -> str:
+    """A quoted piece of the file for a message, shortened, with unprintable characters escaped."""
+    short = text if len(text) <= 60 else text[:57] + "..."
+    return "'" + "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short) + "'"
+
+
+def _latin_name(character: str) -> str:
+    """``theta`` for the Greek letter, ``a`` for a lookalike of a."""
+    name = unicodedata.name(character, "")
+    word = name.rsplit("LETTER ", 1)[-1].split(" ")[0]
+    if not word:
+        return "the name in Latin letters"
+    return word.capitalize() if "CAPITAL" in name and len(word) > 1 else word if "CAPITAL" in name else word.lower()
+
+
+class _Parser:
+    """Precedence climbing over a list of tokens."""
+
+    def __init__(self, tokens: list[_Token], complaints: Complaints, span_of: SpanOf) -> None:
+        self.tokens = tokens
+        self.position = 0
+        self.nodes = 0
+        self.nesting = 0
+        self.sizes: dict[int, tuple[int, int]] = {}  # of each node by identity: depth and weight
+        self.kept: list[Expression] = []  # keeps identities from being used again
+        self.complaints = complaints
+        self.span_of = span_of
+
+    def whole(self) -> Expression:
+        if self.next.kind == "end":
+            raise self.refusal("bad-expression", "an expression is missing", self.next)
+        tree = self.sum(0)
+        if self.next.kind != "end":
+            raise self.trailing(self.next)
+        return tree
+
+    @property
+    def next(self) -> _Token:
+        return self.tokens[self.position]
+
+    def advance(self) -> _Token:
+        token = self.tokens[self.position]
+        self.position += 1
+        return token
+
+    def sum(self, binding: int) -> Expression:
+        """An operand and every following operator that binds more tightly than ``binding``."""
+        start = self.next.start
+        left = self.signed()
+        while (own := _BINDING.get(self.next.text, 0)) > binding:
+            operator = self.advance()
+            right = self.sum(own)
+            if operator.text == "/" and _is_zero(right):
+                self.complain("division-by-zero", "division by zero", operator.start, self.last_end)
+            left = self.grown(Operation(operator.text, left, right, self.span_of(start, self.last_end)), left, right)
+        return left
+
+    @property
+    def last_end(self) -> int:
+        return self.tokens[self.position - 1].end
+
+    def signed(self) -> Expression:
+        """Signs bind less tightly than powers: -x**2 is -(x**2)."""
+        signs = []
+        while self.next.text in ("-", "+"):
+            signs.append(self.advance())
+        operand = self.power()
+        for sign in reversed(signs):
+            if sign.text == "-":
+                operand = self.grown(Negative(operand, self.span_of(sign.start, self.last_end)), operand)
+        return operand
+
+    def power(self) -> Expression:
+        start = self.next.start
+        base = self.atom()
+        if self.next.text == "^":
+            raise self.refusal("bad-expression", "'^' is not an operator", self.next, "write ** for a power")
+        if self.next.text != "**":
+            return base
+        self.advance()
+        exponent = self.exponent()
+        if _is_zero(base) and exponent.value <= 0:
+            self.complain("division-by-zero", "zero has no such power", start, self.last_end)
+        return self.grown(Operation("**", base, exponent, self.span_of(start, self.last_end)), base)
+
+    def exponent(self) -> Number:
+        """One rational number: ``x**(1/2)`` is folded here, symbols are refused."""
+        start = self.next.start
+        self.nest(self.next)
+        tree = self.signed()
+        self.nesting -= 1
+        end = self.last_end
+        form = linear_form(tree)
+        if form is None or not form.is_constant:
+            self.complain("bad-exponent", "an exponent must be a rational number", start, end)
+            return Number(Fraction(1))
+        value = form.constant
+        if abs(value.numerator) > MAX_EXPONENT or value.denominator > MAX_EXPONENT:
+            self.complain("bad-exponent", f"an exponent is at most {MAX_EXPONENT} in size", start, end)
+            raise _Refused
+        return Number(value, self.span_of(start, end))
+
+    def atom(self) -> Expression:
+        token = self.advance() if self.next.kind != "end" else self.next
+        if token.kind == "number":
+            return self.grown(Number(self.literal(token), self.span_of(token.start, token.end)))
+        if token.kind == "name" and self.next.text == "(":
+            return self.call(token)
+        if token.kind == "name":
+            return self.name(token)
+        if token.text == "(":
+            return self.inside(token)
+        if token.kind == "end":
+            raise self.refusal("bad-expression", "the expression ends too early", token)
+        if token.text == "^":
+            raise self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
+        raise self.refusal("bad-expression", f"unexpected {ascii_safe(token.text)}", token)
+
+    def name(self, token: _Token) -> Expression:
+        if token.text in FUNCTIONS:
+            raise self.refusal("bad-expression", f"{token.text} needs an argument", token, f"write {token.text}(...)")
+        return self.grown(Name(token.text, self.span_of(token.start, token.end)))
+
+    def call(self, token: _Token) -> Expression:
+        known = token.text in FUNCTIONS
+        if not known:
+            self.complain(
+                "unknown-function",
+                f"unknown function {ascii_safe(token.text)}",
+                token.start,
+                token.end,
+                _function_hint(token.text),
+            )
+        argument = self.inside(self.advance())
+        return self.grown(Call(token.text, argument, self.span_of(token.start, self.last_end)), argument)
+
+    def inside(self, opening: _Token) -> Expression:
+        """What stands between an opening parenthesis, already read, and its closing one."""
+        self.nest(opening)
+        tree = self.sum(0)
+        self.nesting -= 1
+        if self.next.text == ")":
+            self.advance()
+            return tree
+        if self.next.text == ",":
+            raise self.refusal("bad-expression", "one argument only", self.next)
+        if self.next.kind == "end":
+            raise self.refusal("bad-expression", "this parenthesis is never closed", opening)
+        raise self.trailing(self.next)
+
+    def nest(self, token: _Token) -> None:
+        self.nesting += 1
+        if self.nesting > MAX_NESTING:
+            raise self.refusal("too-deep", f"parentheses nest at most {MAX_NESTING} deep", token)
+
+    def literal(self, token: _Token) -> Fraction:
+        """The exact value of a decimal literal, after a look at its size."""
+        mantissa, _, exponent = token.text.lower().partition("e")
+        whole, _, decimals = mantissa.partition(".")
+        shift = int(exponent) if 0 < len(exponent) <= 4 else 0
+        whole, decimals = whole.lstrip("0"), decimals.rstrip("0")
+        if len(exponent) > 4 or len(whole) + shift > MAX_DIGITS or len(decimals) - shift > MAX_DIGITS:
+            raise self.refusal(
+                "bad-number", f"a number has at most {MAX_DIGITS} digits before and after the point", token
+            )
+        digits = Fraction(int((whole + decimals) or "0"), 10 ** len(decimals))
+        return digits * Fraction(10) ** shift
+
+    def grown(self, node: Expression, *operands: Expression) -> Expression:
+        """The node, after counting it: the tree stays within its bounds."""
+        self.nodes += 1
+        sizes = [self.sizes[id(operand)] for operand in operands]
+        depth = 1 + max((size[0] for size in sizes), default=0)
+        weight = _weight(node, [size[1] for size in sizes])
+        self.sizes[id(node)] = depth, weight
+        self.kept.append(node)
+        if self.nodes > MAX_NODES:
+            raise self.refusal(
+                "too-long", f"an expression has at most {MAX_NODES} parts", self.tokens[self.position - 1]
+            )
+        if depth > MAX_DEPTH:
+            raise self.refusal(
+                "too-deep",
+                f"an expression nests at most {MAX_DEPTH} operations deep",
+                self.tokens[self.position - 1],
+                "group long sums with parentheses",
+            )
+        if weight > MAX_WEIGHT:
+            raise self.refusal(
+                "too-long", "these powers multiply up to numbers beyond all bounds", self.tokens[self.position - 1]
+            )
+        return node
+
+    def complain(self, code: str, message: str, start: int, end: int, hint: str | None = None) -> None:
+        self.complaints.error(code, message, self.span_of(start, max(end, start + 1)), hint)
+
+    def refusal(self, code: str, message: str, token: _Token, hint: str | None = None) -> _Refused:
+        self.complain(code, message, token.start, token.end, hint)
+        return _Refused()
+
+    def trailing(self, token: _Token) -> _Refused:
+        """Something stands where an operator should: most often a forgotten product sign."""
+        previous = self.tokens[self.position - 1] if self.position else token
+        hint = None
+        if token.text == "^":
+            return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
+        if token.kind in ("name", "number") or token.text == "(":
+            hint = f"write {previous.text}*{token.text} for a product"
+        if token.text == ")":
+            return self.refusal("bad-expression", "this parenthesis was never opened", token)
+        return self.refusal("bad-expression", f"an operator is missing before {ascii_safe(token.text)}", token, hint)
+
+
+def _function_hint(name: str) -> str:
+    if name in _FOREIGN_FUNCTIONS:
+        return f"write {_FOREIGN_FUNCTIONS[name]}"
+    close = get_close_matches(name.lower()[:40], FUNCTIONS, n=1)
+    if close:
+        return f"did you mean '{close[0]}'?"
+    if len(name) <= 3:
+        return f"write {name}*(...) for a product; the functions are {', '.join(FUNCTIONS)}"
+    return f"the functions are {', '.join(FUNCTIONS)}"
+
+
+def _is_zero(tree: Expression) -> bool:
+    form = linear_form(tree)
+    return form is not None and form.is_constant and not form.constant
+
+
+def _weight(node: Expression, operands: list[int]) -> int:
+    """How long the exact value can become at a point of small rational numbers: names and short numbers count 1."""
+    match node:
+        case Number(value):
+            return 1 + value.numerator.bit_length() // 16 + value.denominator.bit_length() // 16
+        case Operation("**", _, Number(exponent)):
+            return operands[0] * max(1, abs(exponent.numerator))
+    return max(1, sum(operands))

@@ -1,0 +1,130 @@
+"""Results that a person can look at: formulas and matrices of the exact ring.
+
+They hold ring polynomials in normal form and print themselves; they do not compute.  Equality is decided in the ring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mbsym.algebra.ring import Polynomial, Ring
+
+
+@dataclass(frozen=True, eq=False)
+class Formula:
+    """One scalar result."""
+
+    ring: Ring
+    polynomial: Polynomial
+
+    def __str__(self) -> str:
+        from mbsym.formulas.python import python_text
+
+        return python_text(self.ring, self.polynomial)
+
+    def latex(self) -> str:
+        from mbsym.formulas.latex import latex_text
+
+        return latex_text(self.ring, self.polynomial)
+
+    def wolfram(self) -> str:
+        from mbsym.formulas.wolfram import wolfram_text
+
+        return wolfram_text(self.ring, self.polynomial)
+
+    def to_sympy(self) -> Any:
+        """A SymPy expression in plain symbols: ``theta``, ``theta_dot``, ``Jx``."""
+        from mbsym.formulas.exchange import to_sympy
+
+        return to_sympy(self.ring, self.polynomial)
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex()}$"
+
+    def __repr__(self) -> str:
+        return f"Formula({self})" if self.terms <= 40 else f"Formula(<{self.terms} terms>)"
+
+    @property
+    def terms(self) -> int:
+        """The length of the expanded normal form."""
+        return len(self.polynomial)
+
+    @property
+    def is_zero(self) -> bool:
+        return bool(self.polynomial.is_zero())
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the difference is proved zero in the ring.  Formulas of different systems are never equal."""
+        if isinstance(other, int):
+            other = Formula(self.ring, self.ring.number(other))
+        if not isinstance(other, Formula) or other.ring is not self.ring:
+            return NotImplemented
+        return self.ring.is_zero(self.polynomial - other.polynomial) is True
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """A rectangular array of formulas; indexed ``matrix[i, j]`` from zero."""
+
+    rows: tuple[tuple[Formula, ...], ...]
+
+    @classmethod
+    def of(cls, ring: Ring, rows: Sequence[Sequence[Polynomial]]) -> Matrix:
+        return cls(tuple(tuple(Formula(ring, x) for x in row) for row in rows))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return len(self.rows), len(self.rows[0]) if self.rows else 0
+
+    def __getitem__(self, place: tuple[int, int]) -> Formula:
+        return self.rows[place[0]][place[1]]
+
+    def __iter__(self) -> Iterator[tuple[Formula, ...]]:
+        return iter(self.rows)
+
+    @property
+    def polynomials(self) -> tuple[tuple[Polynomial, ...], ...]:
+        return tuple(tuple(x.polynomial for x in row) for row in self.rows)
+
+    @property
+    def is_zero(self) -> bool:
+        return all(x.is_zero for row in self.rows for x in row)
+
+    @property
+    def terms(self) -> int:
+        return sum(x.terms for row in self.rows for x in row)
+
+    def to_sympy(self) -> Any:
+        from sympy import Matrix as SymPyMatrix
+
+        return SymPyMatrix([[x.to_sympy() for x in row] for row in self.rows])
+
+    def latex(self) -> str:
+        body = " \\\\ ".join(" & ".join(x.latex() for x in row) for row in self.rows)
+        return f"\\begin{{pmatrix}} {body} \\end{{pmatrix}}"
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex()}$"
+
+    def __str__(self) -> str:
+        return "[" + ", ".join("[" + ", ".join(map(str, row)) + "]" for row in self.rows) + "]"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Matrix):
+            return NotImplemented
+        return self.shape == other.shape and all(
+            a == b for mine, theirs in zip(self.rows, other.rows, strict=True) for a, b in zip(mine, theirs, strict=True)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+Column = tuple[Formula, ...]
+
+
+def column(ring: Ring, entries: Sequence[Polynomial]) -> Column:
+    return tuple(Formula(ring, x) for x in entries)

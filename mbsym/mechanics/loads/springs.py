@@ -1,0 +1,123 @@
+"""Springs and dampers, on coordinates and between points."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from mbsym.algebra.base import Scalar, Vector
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.interface import Action, Kind, force_at
+from mbsym.model.system import (
+    INERTIAL,
+    CoordinateDamper,
+    CoordinateSpring,
+    Point,
+    PointDamper,
+    PointSpring,
+    velocity_name,
+)
+
+
+def _stretch(load: CoordinateSpring, scene: Scene) -> Scalar:
+    return scene.environment[load.coordinate] - scene.lower(load.rest)
+
+
+def _spring_force_function(load: CoordinateSpring, scene: Scene) -> Scalar:
+    """U = -stiffness (q - rest)^2 / 2."""
+    stretch = _stretch(load, scene)
+    square = scene.algebra.times(stretch, stretch)
+    half = scene.algebra.number(Fraction(-1, 2))
+    return scene.algebra.times(half, scene.algebra.times(scene.lower(load.stiffness), square))
+
+
+def _spring_action(load: CoordinateSpring, scene: Scene) -> Action:
+    """Q = -stiffness (q - rest)."""
+    pull = scene.algebra.times(scene.lower(load.stiffness), _stretch(load, scene))
+    return Action(generalized={load.coordinate: -pull})
+
+
+SPRING = Kind(_spring_action, _spring_force_function)
+
+
+def _damper_action(load: CoordinateDamper, scene: Scene) -> Action:
+    """Q = -coefficient q'."""
+    rate = scene.environment[velocity_name(load.coordinate)]
+    return Action(generalized={load.coordinate: -scene.algebra.times(scene.lower(load.coefficient), rate)})
+
+
+DAMPER = Kind(_damper_action)
+
+
+class _Pair:
+    """Two points seen from their nearest common ancestor, where what lies below it drops out."""
+
+    def __init__(self, first: Point, second: Point, scene: Scene) -> None:
+        self.scene = scene
+        self.ends = (first, second)
+        self.frame = scene.common_ancestor(first.body, second.body)
+        self.points = tuple(scene.lower.vector(end.position) for end in self.ends)
+        reach = [scene.position(end.body, point, self.frame) for end, point in zip(self.ends, self.points, strict=True)]
+        self.span = scene.algebra.subtract(reach[1], reach[0])
+
+    def action(self, pull: Vector) -> Action:
+        """``pull`` (in the frame's axes) on the first point and its opposite on the second."""
+        opposite = self.scene.algebra.scale(self.scene.algebra.number(-1), pull)
+        wrenches = []
+        for end, point, force in zip(self.ends, self.points, (pull, opposite), strict=True):
+            if end.body != INERTIAL:
+                local = self.scene.to_axes(force, self.frame, end.body)
+                wrenches.append(force_at(self.scene, end.body, point, local))
+        return Action(tuple(wrenches))
+
+
+def _point_spring_force_function(load: PointSpring, scene: Scene) -> Scalar:
+    """U = -stiffness (d^2 - 2 d length + length^2) / 2; without a natural length no root is taken."""
+    algebra = scene.algebra
+    span = _Pair(load.first, load.second, scene).span
+    square = algebra.dot(span, span)
+    length = scene.lower(load.length)
+    energy = square
+    if not algebra.vanishes(length):
+        twice = algebra.times(algebra.number(2), algebra.times(algebra.square_root(square), length))
+        energy = square - twice + algebra.times(length, length)
+    half = algebra.number(Fraction(-1, 2))
+    return algebra.reduce(algebra.times(half, algebra.times(scene.lower(load.stiffness), energy)))
+
+
+def _point_spring_action(load: PointSpring, scene: Scene) -> Action:
+    """stiffness (1 - length/d) (r_second - r_first) on the first point."""
+    algebra = scene.algebra
+    pair = _Pair(load.first, load.second, scene)
+    length = scene.lower(load.length)
+    factor = scene.lower(load.stiffness)
+    if not algebra.vanishes(length):
+        distance = algebra.square_root(algebra.dot(pair.span, pair.span))
+        strain = algebra.one - algebra.times(length, algebra.reciprocal(distance))
+        factor = algebra.times(factor, strain)
+    return pair.action(algebra.scale(algebra.reduce(factor), pair.span))
+
+
+POINT_SPRING = Kind(_point_spring_action, _point_spring_force_function)
+
+
+def point_velocity(scene: Scene, body: str, point: Vector) -> Vector:
+    """V_O + omega x r, in the body's axes; zero for a point of the inertial frame."""
+    if body == INERTIAL:
+        return scene.algebra.zero_vector
+    motion = scene.motions[body]
+    return scene.algebra.add(motion.velocity_origin, scene.algebra.cross(motion.angular_velocity, point))
+
+
+def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
+    """coefficient (V_second - V_first) on the first point."""
+    algebra = scene.algebra
+    pair = _Pair(load.first, load.second, scene)
+    speeds = [
+        scene.to_axes(point_velocity(scene, end.body, point), end.body, pair.frame)
+        for end, point in zip(pair.ends, pair.points, strict=True)
+    ]
+    closing = algebra.subtract(speeds[1], speeds[0])
+    return pair.action(algebra.scale(scene.lower(load.coefficient), closing))
+
+
+POINT_DAMPER = Kind(_point_damper_action)

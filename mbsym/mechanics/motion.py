@@ -1,0 +1,63 @@
+"""The unperturbed motion and the relations between parameters, as substitutions in the ring.
+
+The motion is q = value + rate t.  A coordinate at rest is replaced by its value everywhere; one that turns at a
+constant rate keeps its own generator, and has to drop out (otherwise the motion, or the linearisation about it, is
+not steady).
+"""
+
+from __future__ import annotations
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import ZERO, Expression, divide, number
+from mbsym.mechanics.kinematics import Scene
+from mbsym.model.system import System
+
+
+def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
+    """(value, rate) for every coordinate; zero where the description names none."""
+    given = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
+    return {name: given.get(name, (ZERO, ZERO)) for name in system.coordinates}
+
+
+def turning(scene: Scene) -> tuple[str, ...]:
+    """The coordinates whose unperturbed rate is not zero."""
+    rates = {name: scene.lower(rate) for name, (_, rate) in motion_values(scene.system).items()}
+    return tuple(name for name, rate in rates.items() if not rate.is_zero())
+
+
+def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
+    """Generator indices and their values on the unperturbed motion (scene over the ring)."""
+    ring: Ring = scene.ring
+    images: dict[int, Polynomial] = {}
+    for name, (value, rate) in motion_values(scene.system).items():
+        speed = scene.lower(rate)
+        if velocities:
+            images[ring.index("velocity", name)] = speed
+            images[ring.index("acceleration", name)] = ring.zero
+        if not speed.is_zero():
+            continue
+        images[ring.index("coordinate", name)] = scene.lower(value)
+        if name in ring.angles:
+            basic = divide(value, number(ring.angles[name]))
+            sine, cosine = scene.lower.angle(basic)
+            images[ring.index("sine", name)] = sine
+            images[ring.index("cosine", name)] = cosine
+    return images
+
+
+def relations(scene: Scene) -> dict[int, Polynomial]:
+    """Generator indices of dependent parameters and their values in independent ones."""
+    ring: Ring = scene.ring
+    images: dict[int, Polynomial] = {}
+    for relation in scene.system.relations:
+        value = ring.substitute(scene.lower(relation.value), images)
+        index = ring.index("parameter", relation.name)
+        images = {k: ring.substitute(image, {index: value}) for k, image in images.items()}
+        images[index] = value
+    return images
+
+
+def unsteady(scene: Scene, x: Polynomial) -> tuple[str, ...]:
+    """The quantities that still vary with time in x: turning coordinates, prescribed quantities, t."""
+    moving = [*scene.system.coordinates, *(item.name for item in scene.system.prescribed), "t"]
+    return tuple(name for name in moving if scene.ring.depends_on(x, name))

@@ -1,0 +1,136 @@
+"""The names a system's formulas are made of, and the ring and environments they give rise to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.program import Program
+from mbsym.algebra.ring import TERM_BUDGET, Ring
+from mbsym.expressions.angles import linear_form
+from mbsym.expressions.tree import (
+    ZERO,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    add,
+    differentiate,
+    multiply,
+    names,
+    walk,
+)
+from mbsym.model.system import System, acceleration_name, velocity_name
+
+_NODES = (Number, Name, Negative, Operation, Call)
+
+
+def expressions(part: Any) -> Iterator[Expression]:
+    """Every expression held by a system or a part of it."""
+    if isinstance(part, _NODES):
+        yield part
+    elif isinstance(part, tuple):
+        for item in part:
+            yield from expressions(item)
+    elif is_dataclass(part):
+        for field in fields(part):
+            if field.name != "span":
+                yield from expressions(getattr(part, field.name))
+
+
+def time_derivative(expression: Expression, system: System) -> Expression:
+    """d/dt: sum over q of (d/dq) q' + (d/dq') q'', over prescribed quantities of (d/dx) rate, and d/dt itself."""
+    total: Expression = ZERO
+    present = names(expression)
+    rates: dict[str, Expression] = {"t": Number(Fraction(1))}
+    rates |= {item.name: item.rate for item in system.prescribed}
+    rates |= {name: Name(velocity_name(name)) for name in system.coordinates}
+    rates |= {velocity_name(name): Name(acceleration_name(name)) for name in system.coordinates}
+    for name in sorted(present & rates.keys()):
+        total = add(total, multiply(differentiate(expression, name), rates[name]))
+    return total
+
+
+def angle_denominators(system: System) -> dict[str, int]:
+    """The names under sin and cos anywhere, each with the common denominator of its coefficients there.
+
+    A coordinate's unperturbed value takes the coordinate's place, so its names count with the same coefficients.
+    """
+    found: dict[str, int] = {}
+    at_rest = {entry.coordinate: entry.value for entry in system.motion}
+
+    def note(argument: Expression) -> None:
+        form = linear_form(argument)
+        if form is None or form.constant:
+            return
+        for name, coefficient in form.coefficients:
+            found[name] = lcm(found.get(name, 1), coefficient.denominator)
+            if name in at_rest:
+                inner = linear_form(at_rest[name])
+                for other, factor in inner.coefficients if inner is not None else ():
+                    found[other] = lcm(found.get(other, 1), (factor * coefficient).denominator)
+
+    for body in system.bodies:
+        for _, angle in body.rotation.turns():
+            note(angle)
+    for expression in expressions(system):
+        for node in walk(expression):
+            if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
+                note(node.argument)
+    declared = [*system.coordinates, *(item.name for item in system.prescribed), *system.parameter_names, "t"]
+    return {name: found[name] for name in declared if name in found}
+
+
+def ring_of(system: System, terms: int = TERM_BUDGET) -> Ring:
+    """The exact ring of a system, with the user's notation among its parameters."""
+    adjunctions = 12 + 4 * len(system.loads)
+    for expression in expressions(system):
+        for node in walk(expression):
+            if isinstance(node, Call) or (isinstance(node, Operation) and node.operator in ("/", "**")):
+                adjunctions += 2
+    return Ring(
+        system.coordinates,
+        [item.name for item in system.prescribed],
+        [*system.parameter_names, *(item.name for item in system.notation)],
+        angle_denominators(system),
+        positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
+        spare=min(adjunctions, 64),
+        terms=terms,
+    )
+
+
+def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
+    """Every name as its generator."""
+    environment = {name: ring.generator("parameter", name) for name in system.parameter_names}
+    environment |= {item.name: ring.generator("parameter", item.name) for item in system.notation}
+    environment |= {item.name: ring.generator("prescribed", item.name) for item in system.prescribed}
+    for name in system.coordinates:
+        environment[name] = ring.generator("coordinate", name)
+        environment[velocity_name(name)] = ring.generator("velocity", name)
+        environment[acceleration_name(name)] = ring.generator("acceleration", name)
+    environment["t"] = ring.generator("time", "t")
+    environment["pi"] = ring.generator("parameter", "pi")
+    return environment
+
+
+def program_environment(system: System, program: Program) -> dict[str, Scalar]:
+    """Every name as an input of a straight-line program."""
+    names_ = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi"]
+    for name in system.coordinates:
+        names_ += [name, velocity_name(name), acceleration_name(name)]
+    return {name: program.input(name) for name in names_}
+
+
+def with_velocities(environment: Mapping[str, Scalar], system: System, algebra: Algebra, moving: str = "") -> dict:
+    """The environment with all velocities and accelerations zero, save the acceleration of one coordinate."""
+    changed = dict(environment)
+    for name in system.coordinates:
+        changed[velocity_name(name)] = algebra.zero
+        changed[acceleration_name(name)] = algebra.one if name == moving else algebra.zero
+    return changed

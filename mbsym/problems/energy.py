@@ -1,0 +1,61 @@
+"""Problem 2: kinetic energy and force function.
+
+    T(q, q') = 1/2 sum A_ij(q) q'_i q'_j + sum A_i(q) q'_i + A_0(q),      L = T + U
+
+with U the force function (U = -potential energy) of all loads that have one.  A coordinate, or a prescribed angle, is
+cyclic if L does not contain it (its velocity may occur).
+
+Source: Banshchikov & Vetrov, eq. (1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Column, Formula, Matrix, column
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import force_function
+
+
+@dataclass(frozen=True)
+class Energy:
+    """``A2`` is n x n and symmetric, ``A1`` has n entries; ``cyclic`` lists coordinates and prescribed quantities."""
+
+    kinetic_energy: Formula
+    A2: Matrix
+    A1: Column
+    A0: Formula
+    force_function: Formula
+    cyclic: tuple[str, ...]
+
+
+def energy(scene: Scene) -> Energy:
+    """T, split by powers of the velocities, and U (scene over the ring).
+
+    Raises NoClosedForm when T outgrows the budget of terms.
+    """
+    ring = scene.ring
+    names = scene.system.coordinates
+    kinetic = kinetic_energy(scene)
+    potential = force_function(scene)
+    at_rest = {ring.index("velocity", name): ring.zero for name in names}
+    momenta = [ring.velocity_derivative(kinetic, name) for name in names]
+    quadratic = [[ring.velocity_derivative(p, name) for name in names] for p in momenta]
+    linear = [ring.substitute(p, at_rest) for p in momenta]
+    constant = ring.substitute(kinetic, at_rest)
+    return Energy(
+        kinetic_energy=Formula(ring, kinetic),
+        A2=Matrix.of(ring, quadratic),
+        A1=column(ring, linear),
+        A0=Formula(ring, constant),
+        force_function=Formula(ring, potential),
+        cyclic=_cyclic(scene, ring, kinetic, potential),
+    )
+
+
+def _cyclic(scene: Scene, ring: Ring, kinetic: Polynomial, potential: Polynomial) -> tuple[str, ...]:
+    names = [*scene.system.coordinates, *(item.name for item in scene.system.prescribed)]
+    lagrangian = ring.reduce(kinetic + potential)
+    return tuple(name for name in names if not ring.depends_on(lagrangian, name))

@@ -1,0 +1,56 @@
+"""Problem 3: nonlinear Lagrange equations of the second kind.
+
+    d/dt (dT/dq'_i) - dT/dq_i = dU/dq_i + Q_i,      that is      M(q) q'' = f(q, q', t)
+
+    f_i = dT/dq_i + dU/dq_i + Q_i - sum_j q'_j d(dT/dq'_i)/dq_j - sum_x rate_x d(dT/dq'_i)/dx - d(dT/dq'_i)/dt
+
+where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
+
+Source: Banshchikov & Vetrov, Problem 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Column, Matrix, column
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.energy import Energy
+
+
+@dataclass(frozen=True)
+class Equations:
+    """M (n x n), f (n) and the part Q (n) of f that comes from loads without a force function."""
+
+    mass_matrix: Matrix
+    forcing: Column
+    generalized_force: Column
+
+
+def equations(scene: Scene, energy: Energy) -> Equations:
+    """Lagrange's equations as M q'' = f (scene over the ring)."""
+    ring, names = scene.ring, scene.system.coordinates
+    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
+    applied = generalized_forces(scene)
+    forcing = []
+    for name in names:
+        momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
+        slope = ring.derivative(lagrangian, name)
+        forcing.append(ring.reduce(slope + applied[name] - convective_rate(scene, ring, momentum)))
+    return Equations(
+        mass_matrix=energy.A2,
+        forcing=column(ring, forcing),
+        generalized_force=column(ring, [applied[name] for name in names]),
+    )
+
+
+def convective_rate(scene: Scene, ring: Ring, x: Polynomial) -> Polynomial:
+    """dx/dt at q'' = 0: sum_j q'_j dx/dq_j + sum over prescribed of rate dx/d(prescribed) + dx/dt."""
+    total = ring.derivative(x, "t")
+    for name in scene.system.coordinates:
+        total = total + ring.times(ring.generator("velocity", name), ring.derivative(x, name))
+    for item in scene.system.prescribed:
+        total = total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
+    return ring.reduce(total)

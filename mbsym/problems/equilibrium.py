@@ -1,0 +1,127 @@
+"""Problem 4: does the given unperturbed motion satisfy the equations of motion?
+
+The motion q = q0 + rate t is substituted into  M(q) q'' = f(q, q', t).  Either every residual f_i vanishes identically,
+or the conditions under which the motion exists are returned: polynomials in the parameters that must vanish, factors
+that cannot vanish dropped.  A condition that a parameter enters linearly is solved for it, and problems 5 and 6 go on
+with the solution.
+
+Source: Banshchikov & Vetrov, Problem 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import Signs
+from mbsym.formulas.formula import Column, Formula, column
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import motion_values, relations, unperturbed, unsteady
+from mbsym.model.system import System
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """``satisfied``: identically, for all parameter values (relations used).
+
+    ``residuals`` are f_i on the motion; ``conditions`` must vanish for the motion to exist; ``solved`` are the
+    (parameter, value) pairs that are carried forward; ``impossible`` lists conditions that can never hold;
+    ``unsteady`` the quantities through which a residual still varies with time.
+    """
+
+    satisfied: bool
+    residuals: Column
+    conditions: tuple[Formula, ...] = ()
+    solved: tuple[tuple[str, Formula], ...] = ()
+    impossible: tuple[Formula, ...] = ()
+    unsteady: tuple[str, ...] = ()
+
+
+def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> Equilibrium:
+    """Conditions for the motion, from the residuals f_i at q'' = 0 (scene over the ring).
+
+    ``residuals`` may be the forcing of the nonlinear equations or values already on the motion.
+    """
+    ring = scene.ring
+    at = unperturbed(scene) | relations(scene)
+    values = [ring.substitute(x, at) for x in residuals]
+    varying = tuple(dict.fromkeys(name for x in values for name in unsteady(scene, x)))
+    pending = [condition for x in values if (condition := essential(scene, x, signs)) is not None]
+    conditions: list[Polynomial] = []
+    impossible: list[Polynomial] = []
+    solved: dict[int, Polynomial] = {}
+    while pending:
+        condition = min(pending, key=len)
+        pending.remove(condition)
+        if condition.is_constant() or signs.sign(condition) in ("positive", "negative", "nonzero"):
+            impossible.append(condition)
+            continue
+        conditions.append(condition)
+        solution = _solve(scene, condition, signs)
+        if solution is not None:
+            index, value = solution
+            solved = {k: ring.substitute(image, {index: value}) for k, image in solved.items()} | {index: value}
+            pending = [ring.substitute(other, {index: value}) for other in pending]
+        reduced = [essential(scene, other, signs) for other in pending]
+        pending = [
+            other
+            for other in reduced
+            if other is not None and not any(divmod(other, known)[1].is_zero() for known in conditions)
+        ]
+    return Equilibrium(
+        satisfied=not conditions and not impossible,
+        residuals=column(ring, values),
+        conditions=column(ring, conditions + impossible),
+        solved=tuple((ring.generators[k].name, Formula(ring, value)) for k, value in solved.items()),
+        impossible=column(ring, impossible),
+        unsteady=varying,
+    )
+
+
+def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
+    """The square-free part of x's numerator, factors that cannot vanish dropped; None if x is zero."""
+    ring = scene.ring
+    numerator, _ = ring.fraction(x)
+    if numerator.is_zero():
+        return None
+    kept = ring.one
+    for factor, _ in numerator.factor()[1]:
+        if signs.sign(factor) not in ("positive", "negative", "nonzero"):
+            kept = kept * factor
+    return numerator if kept.is_constant() else ring.reduce(kept)
+
+
+def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Polynomial] | None:
+    """(generator, value) for a parameter that enters linearly with a coefficient that cannot vanish."""
+    ring = scene.ring
+    hidden = {
+        index
+        for k, g in enumerate(ring.generators)
+        if g.argument is not None and condition.degrees()[k] > 0
+        for index, degree in enumerate(g.argument.degrees())
+        if degree > 0
+    }
+    options = []
+    for order, name in enumerate(_preferred(scene.system)):
+        index = ring.index("parameter", name)
+        if condition.degrees()[index] != 1 or index in hidden or name in ring.angles:
+            continue
+        slope = condition.derivative(index)
+        if signs.sign(slope) in ("positive", "negative", "nonzero"):
+            options.append((len(slope), order, index, slope))
+    if not options:
+        return None
+    _, _, index, slope = min(options, key=lambda option: option[:2])
+    rest = condition - slope * ring.context.gen(index)
+    return index, ring.reduce(-rest * ring.reciprocal(slope))
+
+
+def _preferred(system: System) -> list[str]:
+    """Parameters that the motion itself names come first: r0 is solved for before m or g is."""
+    from mbsym.expressions.tree import names
+
+    of_motion: set[str] = set()
+    for value, rate in motion_values(system).values():
+        of_motion |= names(value) | names(rate)
+    return sorted(system.parameter_names, key=lambda name: name not in of_motion)

@@ -1,0 +1,78 @@
+"""What a description tells about signs: declared signs, assumptions, and the signs of the user's own symbols.
+
+Conditions are stated in the user's notation where they can be, so its symbols get signs too, by proof from their
+definitions; what cannot be proved stays "real" until an assumption says more.
+"""
+
+from __future__ import annotations
+
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import Signs
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
+
+_FLIPPED = {"<": ">", "<=": ">="}
+
+
+def signs(scene: Scene) -> Signs:
+    """Signs of all generators of the ring, and the assumptions as polynomials compared with zero."""
+    ring = scene.ring
+    declared = {parameter.name: parameter.sign for parameter in scene.system.parameters} | {"pi": "positive"}
+    words = [declared.get(g.name, "real") if g.kind == "parameter" else "real" for g in ring.generators]
+    for index, g in enumerate(ring.generators):
+        if g.kind == "root":
+            words[index] = "positive" if g.argument.is_constant() else "nonnegative"
+    known = _with_reciprocals(scene, Signs(ring.context, tuple(words)))
+    words = list(known.words)
+    dependent = relations(scene)
+    for item in scene.system.notation:
+        definition = ring.substitute(definition_in_parameters(scene, item.name), dependent)
+        words = list(_with_reciprocals(scene, Signs(ring.context, tuple(words))).words)
+        word = Signs(ring.context, tuple(words)).sign(definition)
+        if word not in ("unknown", "zero"):
+            words[ring.index("parameter", item.name)] = word
+    plain = Signs(ring.context, tuple(words))
+    return _with_reciprocals(scene, Signs(ring.context, tuple(words), _assumptions(scene, plain)))
+
+
+def _with_reciprocals(scene: Scene, known: Signs) -> Signs:
+    """1/p has the sign of p."""
+    words = list(known.words)
+    for index, g in enumerate(scene.ring.generators):
+        if g.kind == "reciprocal" and words[index] == "real":
+            word = known.sign(g.argument)
+            words[index] = {"nonnegative": "positive", "nonpositive": "negative"}.get(word, word)
+            if words[index] in ("unknown", "zero"):
+                words[index] = "nonzero"
+    return Signs(known.context, tuple(words), known.assumptions)
+
+
+def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ...]:
+    """left - right > 0 and the like, denominators of known sign cleared."""
+    found = []
+    for item in scene.system.assumptions:
+        left, right = scene.lower(item.left), scene.lower(item.right)
+        if item.relation in _FLIPPED:
+            left, right = right, left
+        numerator, denominators = scene.ring.fraction(left - right)
+        relation = _FLIPPED.get(item.relation, item.relation)
+        for factor, exponent in denominators:
+            word = plain.sign(factor)
+            if word == "negative" and exponent % 2:
+                numerator = -numerator
+            elif word != "positive" and exponent % 2:
+                numerator = numerator * factor
+        found.append((numerator, relation))
+    return tuple(found)
+
+
+def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
+    """A symbol of the user's notation, earlier symbols replaced by what they stand for."""
+    ring = scene.ring
+    images: dict[int, Polynomial] = {}
+    for item in scene.system.notation:
+        value = ring.substitute(scene.lower(item.value), images)
+        if item.name == name:
+            return value
+        images[ring.index("parameter", item.name)] = value
+    raise KeyError(name)

@@ -1,0 +1,222 @@
+"""Problem 5: equations of perturbed motion in the first approximation,
+
+    M x'' + (D + G) x' + (K + N) x = 0
+
+with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory).  Two routes:
+
+1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq;
+2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
+   with L2 = x'.M x'/2 + x'.B x - x.P x/2 the equations are M x'' + (B - B^T) x' + P x = (linear part of Q).
+
+Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
+tau = w t: M stays, D and G are divided by w, K and N by w^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from mbsym.algebra.base import NoClosedForm
+from mbsym.algebra.elimination import Definition, combination
+from mbsym.algebra.jet import Jet, Jets
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula, Matrix
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed, unsteady
+from mbsym.mechanics.newton_euler import applied_forces
+from mbsym.model.system import acceleration_name, velocity_name
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+
+Rows = list[list[Polynomial]]
+
+
+@dataclass(frozen=True)
+class Subsystem:
+    """A set of coordinates that move by themselves; matrices in dimensionless time and the user's notation."""
+
+    coordinates: tuple[str, ...]
+    M: Matrix
+    D: Matrix
+    G: Matrix
+    K: Matrix
+    N: Matrix
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """Matrices n x n in physical time and declared parameters; ``subsystems`` as a paper prints them.
+
+    ``time_scale`` is w of tau = w t, or None.  ``route`` names the way the matrices were obtained.
+    """
+
+    coordinates: tuple[str, ...]
+    M: Matrix
+    D: Matrix
+    G: Matrix
+    K: Matrix
+    N: Matrix
+    time_scale: Formula | None
+    subsystems: tuple[Subsystem, ...]
+    route: str
+
+    @property
+    def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
+        return self.M, self.D, self.G, self.K, self.N
+
+
+class TimePeriodic(NoClosedForm):
+    """The first approximation has coefficients that vary with time."""
+
+
+def by_quadratisation(scene: Scene, equilibrium: Equilibrium | None) -> Linearisation:
+    """Route 2: never forms the nonlinear equations.  Raises TimePeriodic, NoClosedForm or SingularPoint."""
+    ring, names = scene.ring, scene.system.coordinates
+    n = len(names)
+    expanded = quadratised(scene)
+    lagrangian = kinetic_energy(expanded) + force_function(expanded)
+    mass = [[_second(ring, lagrangian, n + i, n + j) for j in range(n)] for i in range(n)]
+    mixed = [[_second(ring, lagrangian, n + i, j) for j in range(n)] for i in range(n)]
+    velocity = [[mixed[i][j] - mixed[j][i] for j in range(n)] for i in range(n)]
+    position = [[-_second(ring, lagrangian, i, j) for j in range(n)] for i in range(n)]
+    for i, force in enumerate(applied_forces(expanded).values()):
+        for j in range(n):
+            position[i][j] = position[i][j] - force.first.get(j, ring.zero)
+            velocity[i][j] = velocity[i][j] - force.first.get(n + j, ring.zero)
+    return _assemble(scene, equilibrium, mass, velocity, position, "quadratised Lagrangian")
+
+
+def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
+    """Route 1: differentiates the nonlinear equations on the unperturbed motion."""
+    ring, names = scene.ring, scene.system.coordinates
+    at = unperturbed(scene)
+    mass = [[ring.substitute(x, at) for x in row] for row in equations.mass_matrix.polynomials]
+    forcing = [x.polynomial for x in equations.forcing]
+    velocity = [[-ring.substitute(ring.velocity_derivative(f, name), at) for name in names] for f in forcing]
+    position = [[-ring.substitute(ring.derivative(f, name), at) for name in names] for f in forcing]
+    return _assemble(scene, equilibrium, mass, velocity, position, "linearised equations")
+
+
+def quadratised(scene: Scene) -> Scene:
+    """The system over second-order jets about the unperturbed motion.
+
+    Deviations are numbered: x_i is i, x'_i is n + i.
+    """
+    ring, system = scene.ring, scene.system
+    names, values = system.coordinates, motion_values(system)
+    spinning = set(turning(scene))
+    at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
+    jets = Jets(ring, at_rest, {name: i for i, name in enumerate(names)})
+    environment = {name: Jet(value) for name, value in scene.environment.items()}
+    for i, name in enumerate(names):
+        value, rate = values[name]
+        base = scene.environment[name] if name in spinning else scene.lower(value)
+        environment[name] = jets.deviation(i, base)
+        environment[velocity_name(name)] = jets.deviation(len(names) + i, scene.lower(rate))
+        environment[acceleration_name(name)] = jets.zero
+    return Scene(system, jets, environment, ring)
+
+
+def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
+    """d^2/dx_i dx_j."""
+    value = x.second.get((min(i, j), max(i, j)), ring.zero)
+    return value * 2 if i == j else value
+
+
+def _assemble(
+    scene: Scene, equilibrium: Equilibrium | None, mass: Rows, velocity: Rows, position: Rows, route: str
+) -> Linearisation:
+    """Relations and conditions of existence used, then the split into symmetric and skew parts."""
+    ring = scene.ring
+    images = relations(scene)
+    if equilibrium is not None:
+        images |= {ring.index("parameter", name): value.polynomial for name, value in equilibrium.solved}
+    parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in (mass, velocity, position)]
+    varying = dict.fromkeys(name for rows in parts for row in rows for x in row for name in unsteady(scene, x))
+    if varying:
+        raise TimePeriodic(
+            f"the first approximation has coefficients that vary with {', '.join(varying)}; "
+            "choose coordinates in which the unperturbed motion is steady"
+        )
+    scale = None
+    if scene.system.time_scale is not None:
+        scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
+    result = Linearisation(
+        coordinates=scene.system.coordinates,
+        M=Matrix.of(ring, parts[0]),
+        D=Matrix.of(ring, _symmetric(ring, parts[1])),
+        G=Matrix.of(ring, _skew(ring, parts[1])),
+        K=Matrix.of(ring, _symmetric(ring, parts[2])),
+        N=Matrix.of(ring, _skew(ring, parts[2])),
+        time_scale=scale,
+        subsystems=(),
+        route=route,
+    )
+    return replace(result, subsystems=_subsystems(scene, result))
+
+
+def _symmetric(ring: Ring, rows: Rows) -> Rows:
+    half = ring.number(Fraction(1, 2))
+    return [[half * (rows[i][j] + rows[j][i]) for j in range(len(rows))] for i in range(len(rows))]
+
+
+def _skew(ring: Ring, rows: Rows) -> Rows:
+    half = ring.number(Fraction(1, 2))
+    return [[half * (rows[i][j] - rows[j][i]) for j in range(len(rows))] for i in range(len(rows))]
+
+
+# --- subsystems ---
+
+
+def components(matrices: Sequence[Matrix]) -> list[list[int]]:
+    """Connected components of the indices, coupled where any matrix has an entry that is not zero."""
+    n = matrices[0].shape[0]
+    label = list(range(n))
+    for i in range(n):
+        for j in range(n):
+            if any(not matrix[i, j].is_zero for matrix in matrices):
+                old, new = max(label[i], label[j]), min(label[i], label[j])
+                label = [new if x == old else x for x in label]
+    return [[i for i in range(n) if label[i] == first] for first in sorted(set(label))]
+
+
+def _subsystems(scene: Scene, whole: Linearisation) -> tuple[Subsystem, ...]:
+    return tuple(_subsystem(scene, whole, indices) for indices in components(whole.matrices))
+
+
+def _subsystem(scene: Scene, whole: Linearisation, indices: list[int]) -> Subsystem:
+    ring = scene.ring
+    inverse = ring.one if whole.time_scale is None else ring.reciprocal(whole.time_scale.polynomial)
+    factors = (ring.one, inverse, inverse, inverse**2, inverse**2)
+    symbols = first_symbols(scene)
+    cut = []
+    for matrix, factor in zip(whole.matrices, factors, strict=True):
+        rows = [[ring.reduce(matrix[i, j].polynomial * factor) for j in indices] for i in indices]
+        cut.append(Matrix.of(ring, [[in_notation(ring, x, symbols) for x in row] for row in rows]))
+    return Subsystem(tuple(whole.coordinates[i] for i in indices), *cut)
+
+
+def first_symbols(scene: Scene) -> list[Definition]:
+    """The user's symbols that stand directly for parameters, with relations used: a, b, c, d, f of the paper."""
+    ring, images = scene.ring, relations(scene)
+    own = {ring.index("parameter", item.name) for item in scene.system.notation}
+    expanded: dict[int, Polynomial] = {}
+    found: list[Definition] = []
+    for item in scene.system.notation:
+        value = scene.lower(item.value)
+        index = ring.index("parameter", item.name)
+        direct = any(degree > 0 and k not in own for k, degree in enumerate(value.degrees()) if k >= ring.spare)
+        expanded[index] = ring.substitute(value, expanded | images)
+        if direct and not any(d > 0 for d in expanded[index].degrees()[: ring.spare]):
+            found.append((index, expanded[index]))
+    return found
+
+
+def in_notation(ring: Ring, x: Polynomial, symbols: Sequence[Definition]) -> Polynomial:
+    """x in the user's symbols where it is a combination of them, else as it was."""
+    rewritten = combination(ring, x, symbols) if symbols else None
+    return x if rewritten is None else rewritten

@@ -1,0 +1,727 @@
+"""Problem 6, the kernel: stability of M q'' + (D + G) q' + (K + N) q = 0, in symbols and at exact parameter values.
+
+M, D, K symmetric, G, N skew.  The roots of det(lambda^2 M + lambda (D + G) + K + N) decide as far as the first
+approximation goes; the theorems below go further.  Nothing is claimed on a border.
+
+* D = N = 0 (the determinant is even): roots in mu = lambda^2 real, negative and simple, by the signs of the
+  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability.
+* K > 0 besides: stable, by Lagrange-Dirichlet (G = 0) or Routh (G != 0), if the nonlinear system has its energy
+  integral.  Without K > 0 the motion is **gyroscopically stabilised only**: any complete dissipation destroys it
+  (Kelvin-Chetaev), and the nonlinear system is not decided.  det K < 0: unstable (Kelvin-Chetaev).
+* D > 0, N = 0: asymptotically stable if K > 0, unstable if K is not and det K != 0 (Kelvin-Chetaev).
+* Otherwise all Re lambda < 0 by Lienard-Chipart: asymptotically stable; one Re lambda > 0: unstable, both by
+  Lyapunov's first method.
+
+M is taken to be positive definite, as a mass matrix is.  Rows may be scaled, by one positive factor per row through
+all five matrices: neither the roots nor the signs of leading minors change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra.characteristic import (
+    Coefficients,
+    Matrix,
+    Polynomial,
+    TooLargeError,
+    characteristic_polynomial,
+    determinant,
+    factor_in_lambda,
+    is_semisimple,
+    leading_minors,
+    lienard_chipart,
+    primitive,
+    resultant,
+    subdiscriminants,
+)
+from mbsym.algebra.roots import RootCount, count_roots, rational
+from mbsym.algebra.signs import Condition, Signs, conditions
+
+Numbers = Any  # a flint.fmpq_mat
+
+ASYMPTOTIC = "asymptotically stable"
+STABLE = "stable"
+GYROSCOPIC = "gyroscopically stabilised only"
+CRITICAL = "stable in first approximation only, critical"
+UNSTABLE = "unstable"
+UNDECIDED = "undecided"
+#: With cyclic coordinates nothing better can hold: they drift.
+STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates drift"
+ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable with respect to the other variables; the cyclic coordinates drift"
+
+LAGRANGE = "Lagrange-Dirichlet"
+ROUTH = "Routh"
+KELVIN_CHETAEV = "Kelvin-Chetaev"
+LYAPUNOV = "Lyapunov's first method"
+
+EVEN_METHOD = "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
+HURWITZ_METHOD = "all roots to the left of the imaginary axis: Lienard-Chipart"
+NO_METHOD = "none"
+UNWRITTEN = "not written out"
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """One subsystem: n x n matrices M, D, G, K, N of polynomials in the parameters.
+
+    ``conservative``: the nonlinear system has the (generalised) energy integral, apart from the dissipative forces.
+    ``cyclic``: indices of coordinates that do not occur in the nonlinear equations (only their velocities do); their
+    rows and columns in K and N must vanish.  ``ValueError`` for wrong shapes and for a pattern of zeros that no
+    (row-scaled) symmetric or skew matrix has.
+    """
+
+    M: Matrix
+    D: Matrix
+    G: Matrix
+    K: Matrix
+    N: Matrix
+    conservative: bool = False
+    cyclic: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.M)
+        for name, matrix in zip("MDGKN", self.matrices, strict=True):
+            if n == 0 or len(matrix) != n or any(len(row) != n for row in matrix):
+                raise ValueError(f"{name} is not a {n} x {n} matrix")
+            for i in range(n):
+                if name in "GN" and matrix[i][i] != 0:
+                    raise ValueError(f"{name} is not skew: element {i + 1}, {i + 1} is not 0")
+                if any((matrix[i][j] == 0) != (matrix[j][i] == 0) for j in range(i)):
+                    raise ValueError(f"{name} is not {'skew' if name in 'GN' else 'symmetric'}")
+        for i in self.cyclic:
+            if any(matrix[i][j] != 0 for matrix in (self.K, self.N) for j in range(n)):
+                raise ValueError(f"coordinate {i + 1} is not cyclic: it occurs in K or N")
+
+    @property
+    def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
+        return self.M, self.D, self.G, self.K, self.N
+
+    @property
+    def size(self) -> int:
+        return len(self.M)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One of the words above, the theorem it rests on (empty when none does), and what it means here."""
+
+    word: str
+    theorem: str = ""
+    explanation: str = ""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """``polynomial`` ``relation`` 0, as it arises (``label``: v4, discriminant, ...) and reduced by what is known.
+
+    ``by_mass``: it holds because the kinetic energy is positive definite.
+    """
+
+    label: str
+    polynomial: Polynomial
+    condition: Condition
+    relation: str = ">"
+    by_mass: bool = False
+
+    @property
+    def always(self) -> bool:
+        return self.by_mass or self.condition.kind == "always"
+
+    @property
+    def never(self) -> bool:
+        return not self.by_mass and self.condition.kind == "never"
+
+
+@dataclass(frozen=True)
+class Case:
+    """If all of ``all_of`` and, unless it is empty, at least one of ``any_of`` hold, then ``verdict``.
+
+    Cases are read in order, like an if-elif chain: a later one presumes that the earlier ones do not apply.
+    """
+
+    all_of: tuple[Requirement, ...]
+    any_of: tuple[Requirement, ...]
+    verdict: Verdict
+
+    @property
+    def always(self) -> bool:
+        return all(r.always for r in self.all_of) and (not self.any_of or any(r.always for r in self.any_of))
+
+    @property
+    def never(self) -> bool:
+        return any(r.never for r in self.all_of) or (bool(self.any_of) and all(r.never for r in self.any_of))
+
+
+@dataclass(frozen=True)
+class Definiteness:
+    """Sylvester: a symmetric matrix is positive definite iff all leading ``minors`` are > 0.
+
+    ``word``: positive definite, not positive definite, undecided.
+    """
+
+    word: str
+    requirements: tuple[Requirement, ...]
+
+    @property
+    def minors(self) -> tuple[Polynomial, ...]:
+        return tuple(r.polynomial for r in self.requirements)
+
+
+@dataclass(frozen=True)
+class Factor:
+    """An irreducible factor of the characteristic polynomial: coefficients from low to high, and multiplicity."""
+
+    coefficients: Coefficients
+    multiplicity: int
+
+
+@dataclass(frozen=True)
+class PointVerdict:
+    """The exact result at rational parameter values.  ``roots`` is None where M is singular."""
+
+    verdict: Verdict
+    characteristic: tuple[Any, ...]
+    roots: RootCount | None
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Everything about one subsystem.
+
+    characteristic = removed * lambda^zero_power * polynomial, ``removed`` known to be positive.  ``factors`` of
+    ``polynomial`` are in ``variable``: lambda^2 where only even powers occur, else lambda.
+    """
+
+    kind: str
+    characteristic: Coefficients
+    removed: Polynomial
+    zero_power: int
+    polynomial: Coefficients
+    variable: str
+    factors: tuple[Factor, ...]
+    method: str
+    requirements: tuple[Requirement, ...]
+    mass: Definiteness
+    stiffness: Definiteness
+    dissipation: Definiteness | None
+    cases: tuple[Case, ...]
+    verdict: Verdict
+    remarks: tuple[str, ...] = ()
+    at_point: PointVerdict | None = None
+    reduced: Stability | None = None  # with cyclic coordinates ignored after Routh
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What remains of ``requirements``, each once."""
+        return conditions(r.condition for r in self.requirements)
+
+
+# -- in symbols ---------------------------------------------------------------------------------------------------
+
+
+def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | None = None) -> Stability:
+    """Characteristic polynomial, conditions, cases and verdict; with ``point`` also the exact verdict there.
+
+    Without proof by ``signs`` the verdict is ``undecided`` and ``cases`` say what it depends on.
+    """
+    mass = definiteness(system.M, signs, "M")
+    # A mass matrix is positive definite, so its minors may be used to judge everything else.
+    known = signs.assuming((r.polynomial, ">") for r in mass.requirements if not r.polynomial.is_constant())
+    raw = characteristic_polynomial(system.M, _add(system.D, system.G), _add(system.K, system.N))
+    start = Stability(
+        kind=kind_of(system),
+        characteristic=raw,
+        removed=raw[-1] * 0 + 1,
+        zero_power=0,
+        polynomial=raw,
+        variable="lambda",
+        factors=(),
+        method=NO_METHOD,
+        requirements=(),
+        mass=mass,
+        stiffness=definiteness(system.K, known, "K"),
+        dissipation=None if _is_zero(system.D) else definiteness(system.D, known, "D"),
+        cases=(),
+        verdict=Verdict(UNDECIDED, "", "The mass matrix is singular, so the order of the equations is lower."),
+        at_point=None if point is None else verdict_at(system, point),
+    )
+    if raw[-1] == 0:
+        return start
+    zero_power = next(i for i, c in enumerate(raw) if c != 0)
+    polynomial, removed = _without_known_factor(raw[zero_power:], known)
+    even = all(c == 0 for c in polynomial[1::2])
+    factors = _factors(polynomial[::2] if even else polynomial)
+    requirements, remarks = _requirements(system, factors, even, signs, known)
+    if mass.word != "positive definite":
+        remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
+    if zero_power:
+        remarks.append(f"lambda^{zero_power} splits off: {zero_power} zero roots.")
+    found = replace(
+        start,
+        removed=removed,
+        zero_power=zero_power,
+        polynomial=polynomial,
+        variable="lambda^2" if even else "lambda",
+        factors=factors,
+        method=EVEN_METHOD if even else HURWITZ_METHOD,
+        requirements=requirements,
+        remarks=tuple(remarks),
+    )
+    if zero_power:
+        cases, reduced = _cases_with_zero_roots(system, found, known)
+    else:
+        cases, reduced = _cases(system, found, known), None
+    return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases))
+
+
+def kind_of(system: LinearSystem) -> str:
+    """Words for the acting forces: conservative, gyroscopic conservative, dissipative, circulatory, ..."""
+    damped, gyroscopic = not _is_zero(system.D), not _is_zero(system.G)
+    words = ["gyroscopic"] if gyroscopic else []
+    if damped:
+        words.append("dissipative")
+    if not _is_zero(system.N):
+        words.append("circulatory")
+    elif not damped:
+        words.append("conservative")
+    return " ".join(words)
+
+
+def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
+    """Sylvester's criterion, each leading minor reduced by ``signs``."""
+    minors = leading_minors(matrix)
+    requirements = tuple(
+        Requirement(f"minor {i} of {name}", minor, signs.condition(minor)) for i, minor in enumerate(minors, start=1)
+    )
+    if all(r.always for r in requirements):
+        word = "positive definite"
+    elif any(r.never for r in requirements):
+        word = "not positive definite"
+    else:
+        word = UNDECIDED
+    return Definiteness(word, requirements)
+
+
+def combine(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict for a system that splits into subsystems: no better than its worst part.
+
+    Unlike parts whose union no single theorem covers (one stable, one asymptotically) are ``critical``.
+    """
+    parts = tuple(verdicts)
+    if not parts:
+        raise ValueError("no subsystem, no verdict")
+    for word in (UNSTABLE, UNDECIDED, CRITICAL):
+        found = [v for v in parts if v.word == word]
+        if found:
+            return found[0]
+    words = {v.word for v in parts}
+    theorems = ", ".join(sorted({v.theorem for v in parts if v.theorem}))
+    if len(words) == 1:
+        return replace(parts[0], theorem=theorems)
+    dissipating = words & {ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC}
+    if words <= {ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC}:
+        return Verdict(ASYMPTOTIC_BUT_CYCLIC, theorems, "A part of the coordinates is cyclic.")
+    if not dissipating and GYROSCOPIC in words:
+        return replace(next(v for v in parts if v.word == GYROSCOPIC), theorem=theorems)
+    if not dissipating:
+        return Verdict(STABLE_BUT_CYCLIC, theorems, "A part of the coordinates is cyclic.")
+    return Verdict(CRITICAL, theorems, "Some parts are asymptotically stable, others not; no theorem covers both.")
+
+
+def _requirements(
+    system: LinearSystem, factors: tuple[Factor, ...], even: bool, signs: Signs, known: Signs
+) -> tuple[tuple[Requirement, ...], list[str]]:
+    """The conditions on the factors of the characteristic polynomial, and remarks on what they leave open."""
+    requirements: list[Requirement] = []
+    remarks: list[str] = []
+    for index, factor in enumerate(factors, start=1):
+        suffix = f" of factor {index}" if len(factors) > 1 else ""
+        p = factor.coefficients
+        lead, word = p[-1], known.sign(p[-1])
+        if word == "negative":
+            p = tuple(-c for c in p)
+        alone = len(factors) == 1 and factor.multiplicity == 1
+        if alone:
+            # det M > 0 is the leading coefficient, up to a positive factor.
+            requirements.append(Requirement(_power_name(even, len(p) - 1), p[-1], signs.condition(p[-1]), by_mass=True))
+        elif word not in ("positive", "negative"):
+            p = tuple(lead * c for c in p)
+        try:
+            wanted = _even_wanted(p) if even else lienard_chipart(p)[1:]
+        except TooLargeError as error:
+            remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
+            requirements.append(Requirement(UNWRITTEN, p[0], Condition("unwritten", signs.context.constant(1))))
+            continue
+        requirements += [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
+    if even and not _is_potential(system):
+        requirements += _simple(system, factors, known, remarks)
+    elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
+        remarks.append(
+            "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: "
+            "K > 0 is necessary and sufficient, a vanishing discriminant (equal frequencies) does no harm."
+        )
+    return tuple(requirements), remarks
+
+
+def _power_name(even: bool, i: int) -> str:
+    return f"v{2 * i}" if even else f"a{i}"
+
+
+def _even_wanted(p: Coefficients) -> list[tuple[str, Polynomial]]:
+    n = len(p) - 1
+    wanted = [(f"v{2 * i}", p[i]) for i in range(n - 1, -1, -1)]
+    if n >= 2:
+        table = subdiscriminants(p)
+        # Up to degree 3 the discriminant alone makes the roots real.
+        first = 2 if n >= 4 else n
+        wanted += [(f"subdiscriminant {k}" if k < n else "discriminant", table[k - 1]) for k in range(first, n + 1)]
+    return wanted
+
+
+def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, remarks: list[str]) -> list[Requirement]:
+    """No common roots of different factors; a factor that occurs several times must be semisimple."""
+    requirements = []
+    for i, left in enumerate(factors):
+        for j in range(i + 1, len(factors)):
+            value = resultant(left.coefficients, factors[j].coefficients)
+            requirements.append(_differs(f"resultant of factors {i + 1} and {j + 1}", value, known))
+        if left.multiplicity > 1:
+            in_lambda = tuple(c for v in left.coefficients for c in (v, v * 0))[:-1]
+            c, k = _add(system.D, system.G), _add(system.K, system.N)
+            if is_semisimple(system.M, c, k, in_lambda, left.multiplicity):
+                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with simple elementary divisors.")
+            else:
+                requirements.append(_differs(f"multiplicity of factor {i + 1}", left.coefficients[0] * 0, known))
+                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with Jordan blocks: never simple.")
+    return requirements
+
+
+def _cases(system: LinearSystem, found: Stability, known: Signs) -> tuple[Case, ...]:
+    stiff, wanted = found.stiffness.requirements, found.requirements
+    reversed_ = _reversed(wanted, known)
+    unstable = Case((), reversed_, Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part."))
+    if not _is_zero(system.N) or found.dissipation is not None:
+        if found.variable == "lambda^2":
+            why = "All roots are imaginary and simple; the forces are not potential."
+            return Case(wanted, (), _critical(why)), unstable
+        if found.dissipation is None:
+            odd = tuple(_differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
+            why = "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
+            return (Case((), odd, Verdict(UNSTABLE, LYAPUNOV, why)),)
+        if not _is_zero(system.N) or found.dissipation.word != "positive definite":
+            return Case(wanted, (), _asymptotic()), unstable
+    negative = _reversed(stiff, known)
+    if found.dissipation is not None:
+        nonsingular = _differs("det K", stiff[-1].polynomial, known)
+        complete = Verdict(ASYMPTOTIC, KELVIN_CHETAEV, "K > 0 and complete dissipation.")
+        destroyed = Verdict(UNSTABLE, KELVIN_CHETAEV, "Complete dissipation, and K is not positive definite.")
+        return Case(stiff, (), complete), Case((nonsingular,), negative, destroyed)
+    if _is_potential(system):
+        why = "K is not positive semidefinite: a real positive root lambda."
+        return Case(stiff, (), _conservative(system)), Case((), negative, Verdict(UNSTABLE, LYAPUNOV, why))
+    odd_degree = "det K < 0: an odd degree of instability, which gyroscopic forces cannot remove."
+    return (
+        Case(stiff, (), _conservative(system)),
+        Case(wanted, (), _gyroscopic()),
+        Case((), negative[-1:], Verdict(UNSTABLE, KELVIN_CHETAEV, odd_degree)),
+        unstable,
+    )
+
+
+def _cases_with_zero_roots(
+    system: LinearSystem, found: Stability, known: Signs
+) -> tuple[tuple[Case, ...], Stability | None]:
+    """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
+    unstable = Case(
+        (), _reversed(found.requirements, known), Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part.")
+    )
+    if not system.cyclic:
+        return (unstable,), None
+    if _momenta_are_constant(system):
+        reduced = analyse(ignoring_cyclic(system), known)
+        return tuple(replace(c, verdict=_drifting(c.verdict)) for c in reduced.cases), reduced
+    if found.zero_power == len(system.cyclic) and found.variable == "lambda":
+        return (Case(found.requirements, (), _drifting(_asymptotic())), unstable), None
+    return (unstable,), None
+
+
+def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
+    """Routh's reduction for D = N = 0: cyclic velocities expressed by their constant momenta.
+
+    With c the cyclic and r the other coordinates, M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
+
+        M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
+
+    everything here times det M_cc > 0.  K_R is the second derivative of the effective potential.
+    """
+    if not _momenta_are_constant(system):
+        raise ValueError("Routh's reduction needs cyclic and other coordinates, D = N = 0 and no G between cyclic ones")
+    cyclic = system.cyclic
+    rest = [i for i in range(system.size) if i not in cyclic]
+    block = [[system.M[i][j] for j in cyclic] for i in cyclic]
+    scale, inverse = determinant(block), _adjugate(block)
+
+    def schur(main: Matrix, *pairs: tuple[Matrix, Matrix]) -> Matrix:
+        return tuple(
+            tuple(
+                scale * main[i][j]
+                - sum(
+                    (
+                        left[i][c] * inverse[a][b] * right[d][j]
+                        for left, right in pairs
+                        for a, c in enumerate(cyclic)
+                        for b, d in enumerate(cyclic)
+                    ),
+                    start=scale * 0,
+                )
+                for j in rest
+            )
+            for i in rest
+        )
+
+    m, g = system.M, system.G
+    nothing = tuple(tuple(scale * 0 for _ in rest) for _ in rest)
+    return LinearSystem(
+        schur(m, (m, m)), nothing, schur(g, (m, g), (g, m)), schur(system.K, (g, g)), nothing, system.conservative
+    )
+
+
+def _momenta_are_constant(system: LinearSystem) -> bool:
+    between = any(system.G[i][j] != 0 for i in system.cyclic for j in system.cyclic)
+    return _is_zero(system.D) and _is_zero(system.N) and not between and 0 < len(system.cyclic) < system.size
+
+
+def _first_certain(cases: Sequence[Case]) -> Verdict:
+    """The first case proved to hold while all before it are refuted."""
+    for case in cases:
+        if case.always:
+            return case.verdict
+        if not case.never:
+            return Verdict(UNDECIDED, "", "It depends on the parameters; see the cases.")
+    return Verdict(UNDECIDED, "", "On a border: no theorem of the first approximation decides.")
+
+
+def _reversed(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
+    """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
+    return tuple(
+        Requirement(f"-({r.label})", -r.polynomial, known.condition(-r.polynomial))
+        for r in requirements
+        if r.relation == ">" and not r.by_mass and r.label != UNWRITTEN
+    )
+
+
+def _differs(label: str, p: Polynomial, known: Signs) -> Requirement:
+    return Requirement(label, p, known.nonzero_condition(p), "!=")
+
+
+def _without_known_factor(p: Coefficients, known: Signs) -> tuple[Coefficients, Polynomial]:
+    """p = removed * q, with ``removed`` > 0 proved; common factors of unknown sign stay in q."""
+    q, common = primitive(p)
+    unit, powers = common.factor()
+    removed, kept = common * 0 + abs(unit), common * 0 + (1 if unit > 0 else -1)
+    for factor, multiplicity in powers:
+        power = factor**multiplicity
+        word = known.sign(power)
+        if word == "positive":
+            removed *= power
+        elif word == "negative":
+            removed *= -power
+            kept = -kept
+        else:
+            kept *= power
+    return tuple(c * kept for c in q), removed
+
+
+def _factors(p: Coefficients) -> tuple[Factor, ...]:
+    """Irreducible factors; what is free of lambda and not a number stays with a single simple factor."""
+    found = factor_in_lambda(p)[1]
+    if len(found) == 1 and found[0][1] == 1:
+        return (Factor(p, 1),)
+    return tuple(Factor(coefficients, multiplicity) for coefficients, multiplicity in found)
+
+
+def _asymptotic() -> Verdict:
+    return Verdict(ASYMPTOTIC, LYAPUNOV, "All roots have negative real parts.")
+
+
+def _critical(explanation: str) -> Verdict:
+    return Verdict(CRITICAL, "", explanation + " Terms of higher order decide.")
+
+
+def _conservative(system: LinearSystem) -> Verdict:
+    theorem = LAGRANGE if _is_zero(system.G) else ROUTH
+    if not system.conservative:
+        return _critical("K > 0, but no energy integral of the nonlinear system is known.")
+    return Verdict(STABLE, theorem, "K > 0: the (changed) potential energy has a strict minimum.")
+
+
+def _gyroscopic() -> Verdict:
+    return Verdict(
+        GYROSCOPIC,
+        "",
+        "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
+        "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and the nonlinear "
+        "system is open.",
+    )
+
+
+def _drifting(verdict: Verdict) -> Verdict:
+    words = {STABLE: STABLE_BUT_CYCLIC, ASYMPTOTIC: ASYMPTOTIC_BUT_CYCLIC}
+    return replace(
+        verdict,
+        word=words.get(verdict.word, verdict.word),
+        explanation=(
+            f"{verdict.explanation} This is about the other coordinates and all velocities; a perturbation of the "
+            "cyclic velocities makes the cyclic coordinates drift away."
+        ),
+    )
+
+
+# -- at rational values -------------------------------------------------------------------------------------------
+
+
+def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerdict:
+    """The exact verdict at rational parameter values {index of the generator: value}.
+
+    Half-planes are counted exactly; whether multiple imaginary roots are semisimple is read off the minimal
+    polynomial.  Raises ValueError when a parameter that occurs has no value, or when M, D or K is not symmetric (up
+    to positive factors of the rows).
+    """
+    m, d, g, k, n = (_evaluate(matrix, point) for matrix in system.matrices)
+    if m.det() == 0:
+        return PointVerdict(Verdict(UNDECIDED, "", "The mass matrix is singular."), (), None)
+    a = _first_order(m, d + g, k + n)
+    characteristic = tuple(a.charpoly().coeffs())
+    roots = count_roots(characteristic)
+    if not system.cyclic or roots.right:
+        return PointVerdict(_judge(m, d, g, k, n, system.conservative), characteristic, roots)
+    if roots.left + len(system.cyclic) == 2 * system.size:
+        return PointVerdict(_drifting(_asymptotic()), characteristic, roots)
+    if _momenta_are_constant(system):
+        reduced = verdict_at(ignoring_cyclic(system), point)
+        return PointVerdict(_drifting(reduced.verdict), characteristic, roots)
+    why = "Cyclic coordinates give zero roots, and no theorem decides about the rest."
+    return PointVerdict(Verdict(UNDECIDED, "", why), characteristic, roots)
+
+
+def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> Verdict:
+    a = _first_order(m, d + g, k + n)
+    roots = count_roots(a.charpoly().coeffs())
+    massive, stiff, damped = _is_positive(m), _is_positive(k), _is_positive(d)
+    for matrix in (m, d, k):
+        inertia(matrix)  # raises where it is not symmetric
+    potential, undamped, gyroscopic = _no(n), _no(d), not _no(g)
+    if roots.right:
+        why = f"{roots.right} roots with positive real part."
+        if massive and potential and damped and k.det() != 0:
+            return Verdict(UNSTABLE, KELVIN_CHETAEV, why + " Complete dissipation, and K is not positive definite.")
+        if massive and potential and undamped and gyroscopic and k.det() < 0:
+            return Verdict(UNSTABLE, KELVIN_CHETAEV, why + " det K < 0: an odd degree of instability.")
+        return Verdict(UNSTABLE, LYAPUNOV, why)
+    if roots.left == roots.degree:
+        if massive and potential and damped and stiff:
+            return Verdict(ASYMPTOTIC, KELVIN_CHETAEV, "K > 0 and complete dissipation.")
+        return _asymptotic()
+    if massive and undamped and potential and stiff:
+        if not conservative:
+            return _critical("K > 0, but no energy integral of the nonlinear system is known.")
+        why = "K > 0: the (changed) potential energy has a strict minimum."
+        return Verdict(STABLE, ROUTH if gyroscopic else LAGRANGE, why)
+    blocks = count_roots(a.minpoly().coeffs())
+    if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
+        why = "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, "
+        return Verdict(UNDECIDED, "", why + "the nonlinear system is not decided by them.")
+    if roots.zero:
+        return Verdict(UNDECIDED, "", "A zero root: terms of higher order decide.")
+    if massive and undamped and potential:
+        verdict = _gyroscopic()
+        if roots.imaginary_multiplicity > 1:
+            why = " Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
+            return replace(verdict, explanation=verdict.explanation + why)
+        return verdict
+    return _critical("No root has a positive real part, but some are imaginary.")
+
+
+def inertia(matrix: Numbers) -> tuple[int, int, int]:
+    """(positive, zero, negative) eigenvalues of a symmetric rational matrix, by Descartes' rule, which is exact here.
+
+    Rows may be scaled by positive factors.  Raises ValueError if the eigenvalues are not all real.
+    """
+    cs = matrix.charpoly().coeffs()
+    zero = next(i for i, c in enumerate(cs) if c != 0)
+    positive = _changes_of_sign(cs)
+    negative = _changes_of_sign([-c if i % 2 else c for i, c in enumerate(cs)])
+    if positive + zero + negative != matrix.nrows():
+        raise ValueError("a matrix that should be symmetric is not")
+    return positive, zero, negative
+
+
+def _changes_of_sign(numbers: Sequence[Any]) -> int:
+    signs = [c > 0 for c in numbers if c != 0]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+def _evaluate(matrix: Matrix, point: Mapping[int, Fraction]) -> Numbers:
+    n = len(matrix)
+    context = matrix[0][0].context()
+    values = [rational(point.get(i, 0)) for i in range(context.nvars())]
+    for row in matrix:
+        for entry in row:
+            missing = [i for i, degree in enumerate(entry.degrees()) if degree > 0 and i not in point]
+            if missing:
+                raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
+    return fmpq_mat(n, n, [fmpq(entry(*values)) for row in matrix for entry in row])
+
+
+def _first_order(m: Numbers, c: Numbers, k: Numbers) -> Numbers:
+    """The matrix of (q, q')' = A (q, q')."""
+    n = m.nrows()
+    inverse = m.inv()
+    position, velocity = inverse * k, inverse * c
+    a = fmpq_mat(2 * n, 2 * n)
+    for i in range(n):
+        a[i, n + i] = 1
+        for j in range(n):
+            a[n + i, j] = -position[i, j]
+            a[n + i, n + j] = -velocity[i, j]
+    return a
+
+
+def _is_positive(matrix: Numbers) -> bool:
+    n, rows = matrix.nrows(), matrix.tolist()
+    return all(fmpq_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, n + 1))
+
+
+def _no(matrix: Numbers) -> bool:
+    return all(x == 0 for x in matrix.entries())
+
+
+def _add(left: Matrix, right: Matrix) -> Matrix:
+    return tuple(tuple(a + b for a, b in zip(*rows, strict=True)) for rows in zip(left, right, strict=True))
+
+
+def _is_zero(matrix: Matrix) -> bool:
+    return all(entry == 0 for row in matrix for entry in row)
+
+
+def _is_potential(system: LinearSystem) -> bool:
+    return all(_is_zero(matrix) for matrix in (system.D, system.G, system.N))
+
+
+def _adjugate(block: Matrix) -> Matrix:
+    n = len(block)
+    one = block[0][0] * 0 + 1
+
+    def cofactor(i: int, j: int) -> Polynomial:
+        rows = [[x for col, x in enumerate(row) if col != i] for at, row in enumerate(block) if at != j]
+        value = determinant(rows) if rows else one
+        return -value if (i + j) % 2 else value
+
+    return tuple(tuple(cofactor(i, j) for j in range(n)) for i in range(n))

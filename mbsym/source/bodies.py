@@ -1,0 +1,253 @@
+"""Bodies: names and attachments, rotations, vectors, mass, inertia, coordinates."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import ZERO, Expression, Name, Negative, is_number
+from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
+from mbsym.source.keys import BODY, ROTATION
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence
+from mbsym.source.reading import ZERO_VECTOR, Fields, Reading
+from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, did_you_mean, why_no_name
+
+MAX_BODIES = 100
+MAX_BODY_NAME = 80
+
+_BODY_NAME = re.compile(r"[^\W\d_][\w ./-]*\Z")
+
+
+@dataclass(slots=True)
+class Draft:
+    """A body whose name and coordinates are known and whose expressions are still to be read."""
+
+    number: int
+    name: str
+    name_span: Span
+    fields: Fields
+    coordinates: list[Scalar]
+
+
+def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
+    """The first pass: names of bodies and coordinates, so that expressions may refer to any of them."""
+    if node is None:
+        return []
+    items = reading.items(node, "'bodies'")
+    if len(items) > MAX_BODIES:
+        reading.error("too-large", f"a system has at most {MAX_BODIES} bodies", node.span)
+        return []
+    if not items and isinstance(node, Sequence):
+        reading.error("missing-value", "there are no bodies", node.span)
+    drafts = [_draft(number, item, reading) for number, item in enumerate(items, start=1)]
+    _check_repeated(drafts, reading)
+    for draft in drafts:
+        _declare_listed(draft, reading)
+    for draft in drafts:
+        _declare_inferred(draft, reading)
+    return drafts
+
+
+def _draft(number: int, node: Node, reading: Reading) -> Draft:
+    fields = reading.fields(node, f"body {number}", BODY)
+    given = fields.require("name") if isinstance(node, Mapping) else None
+    scalar = None if given is None else reading.scalar(given, "the name of a body")
+    if scalar is None:
+        return Draft(number, f"body {number}", node.span, fields, [])
+    name = " ".join(scalar.text.split())
+    if not _BODY_NAME.match(name) or len(name) > MAX_BODY_NAME:
+        hint = "letters, digits, blanks and . / _ -, beginning with a letter"
+        reading.error("bad-name", f"a body cannot be called {ascii_safe(name)}", scalar.span, hint)
+    fields.what = f"body {ascii_safe(name)}"
+    return Draft(number, name, scalar.span, fields, [])
+
+
+def _check_repeated(drafts: list[Draft], reading: Reading) -> None:
+    seen: set[str] = set()
+    for draft in drafts:
+        if draft.name in seen:
+            reading.error("repeated-name", f"a second body called {ascii_safe(draft.name)}", draft.name_span)
+        seen.add(draft.name)
+
+
+def _declare_listed(draft: Draft, reading: Reading) -> None:
+    node = draft.fields.get("coordinates")
+    if node is None:
+        return
+    for item in reading.items(node, "'coordinates'"):
+        scalar = reading.scalar(item, "a coordinate")
+        if scalar is not None and reading.scope.declare(scalar.text, "coordinate", scalar.span):
+            draft.coordinates.append(scalar)
+
+
+def _declare_inferred(draft: Draft, reading: Reading) -> None:
+    """Without a list, the undeclared names that stand alone as angles are the coordinates of the joint."""
+    rotation = draft.fields.get("rotation")
+    if draft.fields.get("coordinates") is not None or not isinstance(rotation, Mapping):
+        return
+    for entry in rotation.entries:
+        items = entry.value.items if entry.key.text == "angles" and isinstance(entry.value, Sequence) else ()
+        for item in items:
+            name = _bare_name(item)
+            if name is not None and name not in reading.scope.kinds and why_no_name(name) is None:
+                reading.scope.declare(name, "coordinate", item.span)
+                draft.coordinates.append(Scalar(name, item.span, literal=False))
+
+
+def _bare_name(node: Node) -> str | None:
+    tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
+    return bare_name(tree)
+
+
+def bare_name(angle: Expression | None) -> str | None:
+    """``theta`` for an angle ``theta`` or ``-theta``."""
+    match angle:
+        case Name(name) | Negative(Name(name)):
+            return name
+    return None
+
+
+def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
+    """The second pass: everything about one body."""
+    fields = draft.fields
+    mass = fields.required_expression("mass", Allowed("a mass")) if fields.found else ZERO
+    return Body(
+        name=draft.name,
+        attached_to=_attached_to(draft, drafts, reading),
+        rotation=_rotation(fields.get("rotation"), draft, reading),
+        connection_point=_vector(fields, "connection point", RADIUS) or ZERO_VECTOR,
+        relative_velocity=_vector(fields, "relative velocity", VELOCITY),
+        mass_centre=_vector(fields, "mass centre", Allowed("a mass centre")) or ZERO_VECTOR,
+        mass=mass,
+        inertia=_inertia(fields, reading),
+        coordinates=tuple(scalar.text for scalar in draft.coordinates),
+        span=draft.name_span,
+    )
+
+
+def _vector(fields: Fields, key: str, allowed: Allowed) -> Vector | None:
+    node = fields.get(key)
+    return None if node is None else fields.reading.vector(node, allowed)
+
+
+def _attached_to(draft: Draft, drafts: list[Draft], reading: Reading) -> str:
+    """The name of an earlier body, or the inertial frame; only the first body may leave it unsaid."""
+    node = draft.fields.get("attached to")
+    if node is None:
+        if draft.number > 1 and draft.fields.found:
+            draft.fields.require("attached to", "an earlier body, or 0 for the inertial frame")
+        return INERTIAL
+    name = read_body_name(node, "'attached to'", [other.name for other in drafts], reading)
+    later = {other.name for other in drafts[draft.number - 1 :]}
+    if name is None or name not in later:
+        return name or INERTIAL
+    assert isinstance(node, Scalar)
+    _complain_of_order(draft, name, drafts, node.span, reading)
+    return INERTIAL
+
+
+def _complain_of_order(draft: Draft, name: str, drafts: list[Draft], span: Span, reading: Reading) -> None:
+    parents = {other.name: other.fields.get("attached to") for other in drafts}
+    chain = [draft.name]
+    while name in parents and name not in chain:
+        chain.append(name)
+        parent = parents[name]
+        name = parent.text if isinstance(parent, Scalar) else INERTIAL
+    if name == draft.name:
+        message = "bodies are attached in a circle: " + " -> ".join([*chain[:6], draft.name])
+        reading.error("cyclic-bodies", message, span, "one of them hangs on the inertial frame 0")
+    else:
+        hint = f"put body {ascii_safe(chain[-1] if len(chain) < 2 else chain[1])} before {ascii_safe(draft.name)}"
+        reading.error("body-order", "a body is attached to an earlier body; this one comes later", span, hint)
+
+
+def read_body_name(node: Node, what: str, known: list[str], reading: Reading) -> str | None:
+    """The name of a known body, or "0"."""
+    scalar = reading.scalar(node, what)
+    if scalar is None:
+        return None
+    name = " ".join(scalar.text.split())
+    if name == INERTIAL or name in known:
+        return name
+    hint = did_you_mean(name, known) or f"the bodies are: 0, {', '.join(known[:8])}"
+    reading.error("unknown-body", f"there is no body {ascii_safe(name)}", scalar.span, hint)
+    return None
+
+
+def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
+    """The turns that there are: axes numbered 0 are dropped, so that {3, 0, 0} and {3} are the same rotation."""
+    if node is None:
+        return Rotation()
+    fields = reading.fields(node, f"the rotation of {draft.fields.what}", ROTATION)
+    axes_node, angles_node = fields.require("axes"), fields.require("angles")
+    if axes_node is None or angles_node is None:
+        return Rotation()
+    axes = [_axis(item, reading) for item in reading.items(axes_node, "'axes'")]
+    angle_items = reading.items(angles_node, "'angles'")
+    angles = [reading.expression(item, ANGLE) for item in angle_items]
+    if len(axes) > 3:
+        reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
+    if len(angles) != len(axes):
+        counts = f"{len(axes)} axes, {len(angles)} angles"
+        reading.error("wrong-shape", f"each axis has an angle; here are {counts}", angles_node.span)
+        return Rotation()
+    for axis, angle, item in zip(axes, angles, angle_items, strict=True):
+        if axis == 0 and not is_number(angle, 0):
+            reading.error("bad-axis", "axis 0 means no rotation, so its angle is 0", item.span)
+    turns = [(axis, angle) for axis, angle in zip(axes, angles, strict=True) if axis and not is_number(angle, 0)]
+    return Rotation(tuple(axis for axis, _ in turns), tuple(angle for _, angle in turns))
+
+
+def _axis(node: Node, reading: Reading) -> int:
+    scalar = reading.scalar(node, "a rotation axis")
+    if scalar is None:
+        return 0
+    if scalar.text in ("0", "1", "2", "3"):
+        return int(scalar.text)
+    hint = "for the opposite sense, turn by the negative angle" if scalar.text.startswith("-") else None
+    reading.error("bad-axis", f"rotation axes are 1, 2, 3 or 0, not {ascii_safe(scalar.text)}", scalar.span, hint)
+    return 0
+
+
+def _inertia(fields: Fields, reading: Reading) -> Inertia | None:
+    """The tensor and its point; a tensor of zeros is no inertia at all."""
+    node, about_node = fields.get("inertia"), fields.get("inertia about")
+    about = (
+        None
+        if about_node is None
+        else reading.word(about_node, "'inertia about'", ("joint", "mass centre", "mass center"))
+    )
+    if node is None:
+        if about is not None:
+            fields.require("inertia")
+        return None
+    tensor = _tensor(node, reading)
+    if all(is_number(entry, 0) for row in tensor for entry in row):
+        return None
+    if about_node is None:
+        hint = "'inertia about: joint' (the connection point) or 'inertia about: mass centre'"
+        reading.error("inertia-point", "it is not said about which point", fields.key_span("inertia"), hint)
+    return Inertia("joint" if about == "joint" else "mass centre", tensor, fields.key_span("inertia"))
+
+
+def _tensor(node: Node, reading: Reading) -> Tensor:
+    """Three principal moments, or three rows of a symmetric matrix."""
+    allowed = Allowed("a tensor of inertia")
+    items = reading.triple(node, "an inertia (three principal moments or three rows)")
+    if items is None:
+        return ZERO_VECTOR, ZERO_VECTOR, ZERO_VECTOR
+    if not any(isinstance(item, Sequence) for item in items):
+        first, second, third = reading.vector(node, allowed)
+        return (first, ZERO, ZERO), (ZERO, second, ZERO), (ZERO, ZERO, third)
+    errors = len(reading.complaints.errors)
+    rows = [reading.vector(item, allowed) for item in items]
+    for row in range(3):
+        for column in range(row):
+            below = items[row]
+            if len(reading.complaints.errors) == errors and rows[row][column] != rows[column][row]:
+                assert isinstance(below, Sequence)
+                message = f"a tensor of inertia is symmetric: entries {row + 1},{column + 1} and {column + 1},{row + 1} differ"
+                reading.error("asymmetric-inertia", message, below.items[column].span)
+    return rows[0], rows[1], rows[2]

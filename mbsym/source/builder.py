@@ -1,0 +1,70 @@
+"""The placed tree to a System: the one builder behind both spellings.
+
+Names first (parameters, prescribed motions, coordinates), then everything that uses them, then what only the whole
+can show (:mod:`mbsym.source.checks`).
+"""
+
+from __future__ import annotations
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints
+from mbsym.model.system import System
+from mbsym.source.bodies import draft_bodies, read_body
+from mbsym.source.checks import check_body, check_system
+from mbsym.source.constants import declare_prescribed, read_parameters, read_prescribed, read_values
+from mbsym.source.keys import SYSTEM, VERSION
+from mbsym.source.loads import read_loads
+from mbsym.source.placed import Node
+from mbsym.source.reading import Fields, Reading
+from mbsym.source.scope import Allowed, Scope
+from mbsym.source.settings import read_assumptions, read_initial, read_motion, read_notation, read_relations
+
+
+def build(node: Node, complaints: Complaints) -> System | None:
+    """The system that a placed tree describes, or None if anything in it is wrong."""
+    reading = Reading(complaints, Scope(complaints))
+    fields = reading.fields(node, "a description", SYSTEM)
+    _check_version(fields, reading)
+    if fields.found:
+        for key in ("name", "bodies"):
+            fields.require(key)
+    parameters = read_parameters(fields.get("parameters"), reading)
+    prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
+    drafts = draft_bodies(fields.get("bodies"), reading)
+    prescribed = tuple(read_prescribed(entry, reading) for entry in prescribed_entries)
+    parameters = read_values(fields.get("values"), parameters, reading)
+    relations = read_relations(fields.get("relations"), reading)
+    bodies, sound = [], []
+    for draft in drafts:
+        before = len(complaints.errors)
+        bodies.append(read_body(draft, drafts, reading))
+        sound.append(len(complaints.errors) == before)
+    loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
+    notation = read_notation(fields.get("notation"), reading)
+    system = System(
+        name=fields.text("name"),
+        parameters=tuple(parameters),
+        bodies=tuple(bodies),
+        description=fields.text("description"),
+        prescribed=prescribed,
+        loads=loads,
+        relations=relations,
+        assumptions=read_assumptions(fields.get("assumptions"), reading),
+        motion=read_motion(fields.get("motion"), reading),
+        notation=notation,
+        time_scale=fields.expression("dimensionless time", Allowed("the rate of dimensionless time")),
+        initial=read_initial(fields.get("initial"), reading),
+    )
+    for draft, good in zip(drafts, sound, strict=True):
+        if good:
+            check_body(system, draft, reading)
+    check_system(system, reading)
+    return None if complaints.errors else system
+
+
+def _check_version(fields: Fields, reading: Reading) -> None:
+    node = fields.require("mbsym", "begin the file with 'mbsym: 1'") if fields.found else None
+    scalar = None if node is None else reading.scalar(node, "'mbsym'")
+    if scalar is not None and scalar.text != VERSION:
+        message = f"this is version {ascii_safe(scalar.text)} of the format, and only {VERSION} is known"
+        reading.error("bad-version", message, scalar.span)

@@ -1,0 +1,142 @@
+"""Parameters, prescribed motions and numerical values: the constants that everything else refers to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import ZERO, Expression
+from mbsym.model.system import Parameter, Prescribed, rational
+from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGNS
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
+from mbsym.source.reading import Fields, Reading
+from mbsym.source.scope import NUMBER, Allowed, did_you_mean
+
+
+def read_parameters(node: Node | None, reading: Reading) -> list[Parameter]:
+    """Parameters from a mapping, or from a plain list of names (all of them real)."""
+    if node is None:
+        return []
+    if isinstance(node, Sequence):
+        return _listed(node, reading)
+    parameters = []
+    for entry in reading.entries(node, "'parameters'"):
+        parameter = _parameter(entry, reading)
+        if reading.scope.declare(parameter.name, "parameter", entry.key.span):
+            parameters.append(parameter)
+    return parameters
+
+
+def _listed(node: Sequence, reading: Reading) -> list[Parameter]:
+    parameters = []
+    for item in reading.items(node, "'parameters'"):
+        scalar = reading.scalar(item, "a parameter")
+        if scalar is not None and reading.scope.declare(scalar.text, "parameter", scalar.span):
+            parameters.append(Parameter(scalar.text, span=scalar.span))
+    return parameters
+
+
+def _parameter(entry: Entry, reading: Reading) -> Parameter:
+    """A sign word, a number (which says its own sign), or a mapping."""
+    name, span = entry.key.text, entry.key.span
+    if isinstance(entry.value, Mapping):
+        return _described(name, span, entry.value, reading)
+    scalar = reading.scalar(entry.value, f"the parameter {ascii_safe(name)}")
+    if scalar is None:
+        return Parameter(name, span=span)
+    if scalar.text.lower() in SIGNS:
+        return Parameter(name, scalar.text.lower(), span=span)
+    value = parse_expression(scalar.text, Complaints(), scalar.place)
+    number = rational(value)
+    if number is None:
+        hint = did_you_mean(scalar.text.lower(), SIGNS) or f"write a number or one of: {', '.join(SIGNS)}"
+        message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
+        reading.error("bad-word", message, scalar.span, hint)
+        return Parameter(name, span=span)
+    return Parameter(name, _sign_of(number), value, span=span)
+
+
+def _sign_of(value: Fraction) -> str:
+    return "positive" if value > 0 else "negative" if value < 0 else "real"
+
+
+def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
+    fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **dict.fromkeys(SIGNS, "")})
+    value = fields.expression("value", NUMBER)
+    parameter = Parameter(name, _sign(fields, reading), value, fields.text("meaning"), span)
+    if value is not None:
+        _check_sign(parameter, fields.key_span("value"), reading)
+    return parameter
+
+
+def _sign(fields: Fields, reading: Reading) -> str:
+    """``sign: positive`` or ``positive: true``, once."""
+    given = fields.get("sign")
+    sign = None if given is None else reading.word(given, "a sign", SIGNS)
+    for word in SIGNS:
+        flag = fields.get(word)
+        if flag is None:
+            continue
+        if sign is not None or given is not None:
+            reading.error("conflicting-keys", f"a second sign: '{word}'", fields.key_span(word))
+        elif reading.word(flag, f"'{word}'", ("true",)) is not None:
+            sign = word
+    return sign or "real"
+
+
+def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
+    value = rational(parameter.value)
+    if value is not None and not _agrees(value, parameter.sign):
+        reading.error("sign-contradiction", f"'{parameter.name}' is declared {parameter.sign}, its value is not", span)
+
+
+def _agrees(value: Fraction, sign: str) -> bool:
+    return {
+        "real": True,
+        "positive": value > 0,
+        "nonnegative": value >= 0,
+        "negative": value < 0,
+        "nonpositive": value <= 0,
+        "nonzero": value != 0,
+    }[sign]
+
+
+def read_values(node: Node | None, parameters: list[Parameter], reading: Reading) -> list[Parameter]:
+    """The parameters with the numbers of ``values`` filled in."""
+    if node is None:
+        return parameters
+    by_name = {parameter.name: parameter for parameter in parameters}
+    allowed = Allowed("the key of a value")
+    for entry in reading.entries(node, "'values'"):
+        value = reading.expression(entry.value, NUMBER)
+        if not reading.scope.check_name(entry.key.text, entry.key.span, allowed) or entry.key.text not in by_name:
+            continue
+        parameter = by_name[entry.key.text]
+        if parameter.value is not None and parameter.value != value:
+            message = f"'{parameter.name}' already has another value under 'parameters'"
+            reading.error("conflicting-values", message, entry.key.span)
+            continue
+        by_name[parameter.name] = replace(parameter, value=value)
+        _check_sign(by_name[parameter.name], entry.value.span, reading)
+    return list(by_name.values())
+
+
+def declare_prescribed(node: Node | None, reading: Reading) -> list[Entry]:
+    """The entries of ``prescribed`` whose names are good; their rates are read once all names are known."""
+    if node is None:
+        return []
+    entries = reading.entries(node, "'prescribed'")
+    return [entry for entry in entries if reading.scope.declare(entry.key.text, "prescribed", entry.key.span)]
+
+
+def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
+    """``chi: omega0`` or ``chi: {rate: omega0, initial: 0}``; an initial value of 0 is no initial value."""
+    name, allowed = entry.key.text, Allowed("the rate of a prescribed motion")
+    if isinstance(entry.value, Scalar):
+        return Prescribed(name, reading.expression(entry.value, allowed), span=entry.key.span)
+    fields = reading.fields(entry.value, f"the prescribed motion {ascii_safe(name)}", PRESCRIBED)
+    rate = fields.required_expression("rate", allowed)
+    initial: Expression | None = fields.expression("initial", Allowed("an initial value"))
+    return Prescribed(name, rate, None if initial == ZERO else initial, fields.text("meaning"), entry.key.span)

@@ -1,0 +1,76 @@
+"""Reading a whole description: which spelling it is, and what happens when it cannot be read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from mbsym.expressions.place import Complaint, Complaints
+from mbsym.model.system import System
+from mbsym.source.builder import build
+from mbsym.source.lines import check_characters, normalised
+from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
+from mbsym.source.yaml_reader import read_yaml
+
+MAX_COMPLAINTS = 200
+
+
+@dataclass(slots=True)
+class _BoundedComplaints(Complaints):
+    """Stops the reading of a file in which everything is wrong."""
+
+    def _append(self, complaint: Complaint) -> None:
+        super()._append(complaint)
+        if len(self.items) >= MAX_COMPLAINTS:
+            raise TooManyComplaints
+
+
+def read(text: str, filename: str = "<string>") -> tuple[System | None, Complaints]:
+    """The system that a text describes, or None, with all complaints; warnings may stand beside a system.
+
+    A name ending in ``.txt`` means editor text, any other known ending YAML; otherwise the text itself tells.
+    """
+    text = normalised(text)
+    complaints = _BoundedComplaints()
+    system = None
+    try:
+        if check_characters(text, complaints):
+            node = _placed_tree(text, filename, complaints)
+            system = build(node, complaints) if node is not None and not complaints.errors else None
+    except TooManyComplaints:
+        system = None
+    found = Complaints(complaints.sorted())
+    if len(found.items) >= MAX_COMPLAINTS:
+        found.error("too-many", f"only the first {MAX_COMPLAINTS} complaints are shown")
+    return system, found
+
+
+def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:
+    return read_yaml(text, complaints)
+
+
+def load(path: str | Path) -> tuple[System | None, Complaints, str]:
+    """Read a file: the system or None, the complaints, and the text that they point into."""
+    text, complaint = _file_text(Path(path))
+    if complaint is not None:
+        return None, Complaints([complaint]), text
+    system, complaints = read(text, str(path))
+    return system, complaints, text
+
+
+def _file_text(path: Path) -> tuple[str, Complaint | None]:
+    try:
+        with path.open("rb") as file:
+            data = file.read(4 * MAX_TEXT + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        return "", Complaint("unreadable", f"the file cannot be read: {reason}")
+    if len(data) > 4 * MAX_TEXT:
+        return "", Complaint("too-large", f"a description has at most {MAX_TEXT} characters")
+    if b"\0" in data:
+        return "", Complaint("unreadable", "this is a binary file, not a text")
+    try:
+        return data.decode("utf-8"), None
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        return "", Complaint("not-utf8", f"the file is not UTF-8 text (byte {error.start}, line {line})")

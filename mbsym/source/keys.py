@@ -1,0 +1,134 @@
+"""Every key of a description and what it means: the one table that the reader, its hints and the JSON Schema share."""
+
+from __future__ import annotations
+
+VERSION = "1"
+
+SIGNS = ("real", "positive", "nonnegative", "negative", "nonpositive", "nonzero")
+
+SYSTEM = {
+    "mbsym": "version of this format: 1",
+    "name": "what the system is called in reports",
+    "description": "a sentence or two about it",
+    "parameters": "constants: names with a sign word, a number, or {sign, value, meaning}; or a plain list of names",
+    "prescribed": "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}",
+    "bodies": "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
+    "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
+    "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
+    "assumptions": "inequalities between parameters and notation, such as alpha > -1",
+    "motion": "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest",
+    "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
+    "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
+    "values": "numerical values of parameters: {l: 2}",
+    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}}",
+}
+
+PARAMETER = {
+    "sign": "one of " + ", ".join(SIGNS),
+    "value": "a numerical value, used where numbers are wanted",
+    "meaning": "what it is, for reports",
+}
+
+PRESCRIBED = {
+    "rate": "its constant rate of change",
+    "initial": "its value at t = 0 (0 when left out)",
+    "meaning": "what it is, for reports",
+}
+
+BODY = {
+    "name": "what the body is called, here and in reports",
+    "attached to": "the name of an earlier body, or 0 for the inertial frame",
+    "rotation": "the turns that lead from the axes of the previous body to the axes of this one",
+    "connection point": "radius vector of O_k in the axes of the previous body; [0, 0, 0] when left out",
+    "relative velocity": "derivative of that radius vector; derived when left out, checked when given",
+    "mass centre": "radius vector of the mass centre from O_k in the axes of this body; [0, 0, 0] when left out",
+    "mass": "0 for a massless frame",
+    "inertia about": "joint (the connection point O_k) or mass centre; required with an inertia",
+    "inertia": "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm)",
+    "coordinates": "the coordinates that this joint introduces; when left out, the undeclared names used as angles",
+}
+
+ROTATION = {
+    "axes": "numbers of the rotation axes, one to three of 1, 2, 3 in the order of turning; 0 means no rotation",
+    "angles": "the angle about each axis",
+}
+
+POINT = {
+    "body": "the name of a body, or 0 for the inertial frame",
+    "point": "radius vector in the axes of that body, from its connection point",
+}
+
+LOADS: dict[str, dict[str, str]] = {
+    "newtonian gravity": {
+        "constant": "gravitational parameter nu of the attracting centre",
+        "centre": "the frame whose origin attracts: 0",
+        "about": "the frame whose origin is the point of the orbit about which the field is expanded",
+        "order": "2: order of the expansion",
+    },
+    "uniform gravity": {
+        "vector": "the acceleration in inertial axes, such as [0, -g, 0]",
+        "acceleration": "its size, with direction",
+        "direction": "a unit vector in inertial axes, with acceleration",
+    },
+    "spring": {
+        "coordinate": "the coordinate that it acts on (linear or torsional)",
+        "rest": "the value of the coordinate without force; 0 when left out",
+        "between": "instead of a coordinate: two points {body, point}",
+        "length": "length without force, between two points",
+        "stiffness": "force per displacement",
+    },
+    "damper": {
+        "coordinate": "the coordinate that it acts on",
+        "between": "instead of a coordinate: two points {body, point}",
+        "coefficient": "force per velocity",
+    },
+    "rayleigh": {},
+    "force function": {},
+    "potential": {},
+    "generalized force": {},
+    "force": {
+        "body": "the body that it acts on",
+        "point": "where: radius vector in the axes of the body",
+        "components": "three components",
+        "axes": "in whose axes the components are: a body (the body itself: a follower force) or 0",
+    },
+    "torque": {
+        "body": "the body that it acts on",
+        "components": "three components",
+        "axes": "in whose axes the components are: a body or 0",
+        "reaction on": "the body that feels the opposite torque",
+    },
+}
+
+#: What the kinds of load that hold an expression, or free keys, mean; the others are described by their keys.
+LOAD_MEANINGS = {
+    "newtonian gravity": "approximate Newtonian field of a distant centre, of second order",
+    "uniform gravity": "the same acceleration everywhere",
+    "spring": "on a coordinate or between two points",
+    "damper": "viscous, on a coordinate or between two points",
+    "rayleigh": "a dissipation function R(q, q'); its generalised forces are -dR/dq'",
+    "force function": "a force function U = -potential, added to the Lagrangian",
+    "potential": "a potential energy V, subtracted from the Lagrangian",
+    "generalized force": "{coordinate: expression in coordinates, velocities, parameters and t}",
+    "force": "a force on a point of a body",
+    "torque": "a torque on a body",
+}
+
+MOTION = {
+    "value": "value of the coordinate at t = 0",
+    "rate": "its constant rate; 0 when left out",
+}
+
+INITIAL = {
+    "position": "value of the coordinate",
+    "velocity": "value of its derivative",
+}
+
+#: Other spellings of keys.
+ALIASES = {
+    "mass center": "mass centre",
+    "center": "centre",
+    "generalised force": "generalized force",
+    "inertia at": "inertia about",
+    "dimensionless_time": "dimensionless time",
+}

@@ -1,0 +1,74 @@
+"""The placed tree: what both spellings of a description are read into before anything is understood.
+
+Three node types, each knowing where it stands.  Scalars stay text: ``no``, ``1e-3`` and ``1:30`` are the characters
+that the file holds, and only the builder, which knows what a place wants, gives them a meaning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbsym.expressions.place import Span
+
+#: Bounds on a whole description.
+MAX_TEXT = 256 * 1024
+MAX_DEPTH = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A piece of text.  ``literal`` says that its characters stand in the file one for one, from ``span`` on."""
+
+    text: str
+    span: Span
+    literal: bool = True
+
+    def place(self, start: int, end: int) -> Span:
+        """Where the characters ``start`` to ``end`` of the text stand in the file."""
+        if not self.literal:
+            return self.span
+        return Span(self.span.line, self.span.column + start, max(1, end - start))
+
+    def part(self, start: int, end: int) -> Scalar:
+        """A piece of this scalar, without surrounding blanks, in its own place."""
+        piece = self.text[start:end]
+        start += len(piece) - len(piece.lstrip())
+        stripped = piece.strip()
+        return Scalar(stripped, self.place(start, start + len(stripped)), self.literal)
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    items: tuple[Node, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    key: Scalar
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """Entries in the order of the file; repeated keys are still in it."""
+
+    entries: tuple[Entry, ...]
+    span: Span
+
+
+Node = Scalar | Sequence | Mapping
+
+
+def kind(node: Node) -> str:
+    """What a message calls a node."""
+    match node:
+        case Mapping():
+            return "a mapping"
+        case Sequence():
+            return "a list"
+    return "a value"
+
+
+class TooManyComplaints(Exception):
+    """Internal to :mod:`mbsym.source`: the file is so wrong that reading on would only make noise."""

@@ -1,0 +1,182 @@
+"""What every part of the builder does with a node: demand a shape, read a word, a text, an expression, a vector.
+
+Each reader complains and returns a harmless stand-in (zero, an empty text), so that reading goes on and one run finds
+every mistake; a System is only returned when there was none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import ZERO, Expression
+from mbsym.model.system import Vector
+from mbsym.source import placed
+from mbsym.source.keys import ALIASES
+from mbsym.source.placed import Entry, Node, Scalar, Sequence
+from mbsym.source.scope import Allowed, Scope, did_you_mean
+
+MAX_ENTRIES = 500
+MAX_FREE_TEXT = 4_000
+
+ZERO_VECTOR: Vector = (ZERO, ZERO, ZERO)
+
+
+@dataclass(slots=True)
+class Reading:
+    """The complaints and the declared names of one description."""
+
+    complaints: Complaints
+    scope: Scope
+
+    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
+        self.complaints.error(code, message, span, hint)
+
+    def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
+        self.error("wrong-shape", f"{what} must be {wanted}, not {placed.kind(node)}", node.span, hint)
+
+    def scalar(self, node: Node, what: str) -> Scalar | None:
+        if not isinstance(node, Scalar):
+            self.shape_error(node, what, "a single value")
+            return None
+        if not node.text.strip():
+            self.error("missing-value", f"{what} has no value", node.span)
+            return None
+        return node
+
+    def free_text(self, node: Node, what: str) -> str:
+        """Text for people: blanks and line ends are runs of one blank."""
+        scalar = self.scalar(node, what)
+        text = " ".join(scalar.text.split()) if scalar else ""
+        if len(text) > MAX_FREE_TEXT:
+            self.error("too-long", f"{what} has at most {MAX_FREE_TEXT} characters", node.span)
+        return text
+
+    def word(self, node: Node, what: str, choices: Iterable[str]) -> str | None:
+        """One of a few words."""
+        scalar = self.scalar(node, what)
+        if scalar is None:
+            return None
+        known = list(choices)
+        word = " ".join(scalar.text.lower().split())
+        if word in known:
+            return word
+        hint = did_you_mean(word, known) or f"one of: {', '.join(known)}"
+        self.error("bad-word", f"{what} cannot be {ascii_safe(scalar.text)}", scalar.span, hint)
+        return None
+
+    def expression(self, node: Node, allowed: Allowed) -> Expression:
+        """A parsed expression whose names are all allowed here; zero where something is wrong."""
+        scalar = self.scalar(node, allowed.what)
+        tree = None if scalar is None else parse_expression(scalar.text, self.complaints, scalar.place)
+        if tree is None:
+            return ZERO
+        self.scope.check(tree, allowed)
+        return tree
+
+    def vector(self, node: Node, allowed: Allowed) -> Vector:
+        items = self.triple(node, allowed.what)
+        if items is None:
+            return ZERO_VECTOR
+        return (
+            self.expression(items[0], allowed),
+            self.expression(items[1], allowed),
+            self.expression(items[2], allowed),
+        )
+
+    def triple(self, node: Node, what: str) -> tuple[Node, ...] | None:
+        """The three items of a list of three."""
+        if not isinstance(node, Sequence):
+            self.shape_error(node, what, "a list of three", "write [0, 0, 0]")
+            return None
+        if len(node.items) != 3:
+            self.error("wrong-shape", f"{what} has three components, not {len(node.items)}", node.span)
+            return None
+        return node.items
+
+    def entries(self, node: Node, what: str) -> Iterator[Entry]:
+        """The entries of a mapping, each key once."""
+        if not isinstance(node, placed.Mapping):
+            if isinstance(node, Scalar) and not node.text.strip():
+                self.error("missing-value", f"{what} is empty", node.span, "leave the key out")
+            else:
+                self.shape_error(node, what, "a mapping (key: value)")
+            return
+        if len(node.entries) > MAX_ENTRIES:
+            self.error("too-large", f"{what} has at most {MAX_ENTRIES} entries", node.span)
+            return
+        seen: set[str] = set()
+        for entry in node.entries:
+            key = ALIASES.get(entry.key.text, entry.key.text)
+            if key in seen:
+                self.error("repeated-key", f"{ascii_safe(entry.key.text)} is given twice", entry.key.span)
+            else:
+                seen.add(key)
+                yield entry
+
+    def items(self, node: Node, what: str) -> tuple[Node, ...]:
+        if not isinstance(node, Sequence):
+            self.shape_error(node, what, "a list")
+            return ()
+        if len(node.items) > MAX_ENTRIES:
+            self.error("too-large", f"{what} has at most {MAX_ENTRIES} items", node.span)
+            return ()
+        return node.items
+
+    def fields(self, node: Node, what: str, known: Mapping[str, str]) -> Fields:
+        """A mapping with a fixed set of keys; unknown ones are complained about."""
+        found: dict[str, Entry] = {}
+        for entry in self.entries(node, what):
+            key = ALIASES.get(entry.key.text, entry.key.text)
+            if key in known:
+                found[key] = entry
+            else:
+                hint = did_you_mean(entry.key.text, known) or f"the keys are: {', '.join(known)}"
+                message = f"unknown key {ascii_safe(entry.key.text)} in {what}"
+                self.error("unknown-key", message, entry.key.span, hint)
+        return Fields(self, what, found, node.span)
+
+
+@dataclass(slots=True)
+class Fields:
+    """The known keys of a mapping and their values."""
+
+    reading: Reading
+    what: str
+    found: dict[str, Entry]
+    span: Span
+
+    def get(self, key: str) -> Node | None:
+        entry = self.found.get(key)
+        return None if entry is None else entry.value
+
+    def require(self, key: str, hint: str | None = None) -> Node | None:
+        """The value of a key that must be there."""
+        node = self.get(key)
+        if node is None:
+            self.reading.error("missing-key", f"{self.what} has no {ascii_safe(key)}", self.span, hint)
+        return node
+
+    def key_span(self, key: str) -> Span:
+        return self.found[key].key.span
+
+    def text(self, key: str) -> str:
+        node = self.get(key)
+        return "" if node is None else self.reading.free_text(node, f"'{key}'")
+
+    def expression(self, key: str, allowed: Allowed) -> Expression | None:
+        node = self.get(key)
+        return None if node is None else self.reading.expression(node, allowed)
+
+    def required_expression(self, key: str, allowed: Allowed) -> Expression:
+        node = self.require(key)
+        return ZERO if node is None else self.reading.expression(node, allowed)
+
+    def exclude(self, key: str, others: Iterable[str]) -> None:
+        """Complain about keys that make no sense beside another one."""
+        for other in others:
+            if other in self.found:
+                message = f"{ascii_safe(other)} does not go with {ascii_safe(key)}"
+                self.reading.error("conflicting-keys", message, self.key_span(other))

@@ -1,0 +1,62 @@
+"""A complaint as text: where, what, the line with the piece underlined, a hint."""
+
+from __future__ import annotations
+
+from mbsym.expressions.place import Complaint, Span
+from mbsym.source.lines import normalised
+
+_WIDTH = 120
+_ELLIPSIS = "..."
+
+
+def render(complaint: Complaint, text: str, filename: str) -> str:
+    """One complaint for a terminal or a log; ``text`` is the text of the file it is about.
+
+    Control characters of the file are shown escaped, and of a long line only the piece around the complaint.
+    """
+    head = f"{complaint.severity}[{complaint.code}]: {_escaped(complaint.message)}"
+    if complaint.span is None:
+        parts = [f"{_escaped(filename)}: {head}"]
+    else:
+        parts = [f"{_escaped(filename)}:{complaint.span.line}:{complaint.span.column}: {head}"]
+        parts += _underlined(complaint.span, normalised(text).split("\n"))
+    if complaint.hint:
+        parts.append(f"  hint: {_escaped(complaint.hint)}")
+    return "\n".join(parts)
+
+
+def _underlined(span: Span, lines: list[str]) -> list[str]:
+    if not 1 <= span.line <= len(lines):
+        return []
+    before, piece, after = _window(lines[span.line - 1], span)
+    gutter = str(span.line).rjust(4)
+    blank = " " * len(gutter)
+    return [f"{gutter} | {before}{piece}{after}".rstrip(), f"{blank} | {' ' * len(before)}{'^' * max(1, len(piece))}"]
+
+
+def _window(line: str, span: Span) -> tuple[str, str, str]:
+    """The text before, under and after the underlining, escaped, cut to a bearable width."""
+    start = min(span.column - 1, len(line))
+    before, piece, after = (
+        _escaped(line[:start]),
+        _escaped(line[start : start + span.length]),
+        _escaped(line[start + span.length :]),
+    )
+    if len(before) + len(piece) + len(after) <= _WIDTH:
+        return before, piece, after
+    if len(piece) > _WIDTH // 2:
+        piece = piece[: _WIDTH // 2 - len(_ELLIPSIS)] + _ELLIPSIS
+    room = (_WIDTH - len(piece)) // 2
+    if len(before) > room:
+        before = _ELLIPSIS + before[len(_ELLIPSIS) - room :]
+    if len(after) > room:
+        after = after[: room - len(_ELLIPSIS)] + _ELLIPSIS
+    return before, piece, after
+
+
+def _escaped(text: str) -> str:
+    """The text with everything that could move a cursor written as an escape; tabs become blanks."""
+    text = text.replace("\t", " ")
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape", "replace").decode("ascii") for c in text)

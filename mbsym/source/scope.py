@@ -1,0 +1,162 @@
+"""Names: which are declared, which words may be names at all, and which names a place allows."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, Expression, Name, walk
+from mbsym.model.system import velocity_name
+
+MAX_NAME = 64
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+
+_KINDS = {
+    "parameter": "a parameter",
+    "prescribed": "a prescribed motion",
+    "coordinate": "a coordinate",
+    "velocity": "a velocity",
+    "time": "the time",
+    "notation": "a notation",
+}
+_PLURALS = {
+    "parameter": "parameters",
+    "prescribed": "prescribed motions",
+    "coordinate": "coordinates",
+    "velocity": "velocities",
+    "time": "t",
+    "notation": "notation",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """What may stand in one sort of place: ``what`` names the place in messages."""
+
+    what: str
+    kinds: tuple[str, ...] = ("parameter",)
+
+
+NUMBER = Allowed("a numerical value", ())
+ANGLE = Allowed("a rotation angle", ("coordinate", "prescribed", "parameter"))
+RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter"))
+VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter"))
+POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"))
+DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"))
+FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time"))
+ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
+
+
+@dataclass(slots=True)
+class Scope:
+    """All declared names with their kinds; complains about clashes and about unknown or misplaced names."""
+
+    complaints: Complaints
+    kinds: dict[str, str] = field(default_factory=dict)
+
+    def declare(self, name: str, kind: str, span: Span) -> bool:
+        """Enter a name; False (with a complaint) if it is no name, or taken."""
+        if not self.is_name(name, span):
+            return False
+        if name in self.kinds:
+            taken = _KINDS[self.kinds[name]]
+            self.complaints.error("repeated-name", f"{ascii_safe(name)} is already declared as {taken}", span)
+            return False
+        self.kinds[name] = kind
+        return True
+
+    def is_name(self, name: str, span: Span) -> bool:
+        reason = why_no_name(name)
+        if reason is not None:
+            self.complaints.error("bad-name", f"{ascii_safe(name)} cannot be a name: {reason[0]}", span, reason[1])
+        return reason is None
+
+    def of_kind(self, *kinds: str) -> list[str]:
+        return [name for name, kind in self.kinds.items() if kind in kinds]
+
+    def kind_of(self, name: str) -> str | None:
+        if name == "t":
+            return "time"
+        if name in self.kinds:
+            return self.kinds[name]
+        base = name.removesuffix("_dot")
+        return "velocity" if base != name and self.kinds.get(base) == "coordinate" else None
+
+    def check(self, expression: Expression, allowed: Allowed) -> None:
+        """Complain about every name in an expression that its place does not allow."""
+        for node in walk(expression):
+            if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
+                self.check_name(node.name, node.span, allowed)
+
+    def check_name(self, name: str, span: Span, allowed: Allowed) -> bool:
+        kind = self.kind_of(name)
+        if kind is None:
+            message = f"unknown name {ascii_safe(name)}"
+            self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
+        elif kind not in allowed.kinds:
+            held = " and ".join(_PLURALS[one] for one in allowed.kinds) or "numbers"
+            message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
+            self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))
+        else:
+            return True
+        return False
+
+    def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
+        known = [one for one in self.kinds if self.kinds[one] in allowed.kinds]
+        if "velocity" in allowed.kinds:
+            known += [velocity_name(one) for one in self.of_kind("coordinate")]
+        close = did_you_mean(name, known)
+        if close is not None:
+            return close
+        if name.endswith("_ddot"):
+            return "accelerations are what the equations are solved for; they stand in no description"
+        if self.kinds.get(name.removesuffix("_dot")) == "prescribed":
+            return "a prescribed motion has a constant rate: write the rate"
+        reason = why_no_name(name)
+        if reason is not None:
+            return reason[1] or f"it cannot be a name: {reason[0]}"
+        return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
+
+
+def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
+    if kind == "time" and "prescribed" in allowed.kinds:
+        return "declare what changes with time under 'prescribed'"
+    if kind == "velocity":
+        return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
+    return None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str | None:
+    """The hint for a word that resembles a known one."""
+    candidates = list(known)[:500]
+    close = get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=0.6)
+    if not close:
+        close = [one for one in candidates if one.lower() == word.lower()]
+    return f"did you mean '{close[0]}'?" if close else None
+
+
+def why_no_name(name: str) -> tuple[str, str | None] | None:
+    """Why a word cannot be the name of a parameter or coordinate (with a hint), or None if it can."""
+    if not _IDENTIFIER.match(name):
+        return "names are Latin letters, digits and _, and begin with a letter", None
+    if len(name) > MAX_NAME:
+        return f"names have at most {MAX_NAME} characters", None
+    if name in FUNCTIONS:
+        return "it is a function", None
+    if name in CONSTANTS:
+        return "it is a number", None
+    if name == "t":
+        return "it is the time", None
+    if keyword.iskeyword(name):
+        return "it is a reserved word of Python, in which results are written", f"write {name[:3]} or {name}1"
+    if name.endswith(("_dot", "_ddot")):
+        return "the ending _dot is kept for velocities", None
+    if "__" in name or name.endswith("_"):
+        return "underscores stand single and inside a name", None
+    return None

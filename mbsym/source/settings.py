@@ -1,0 +1,141 @@
+"""What is asked of a system: relations, assumptions, unperturbed motion, notation, dimensionless time, initial state."""
+
+from __future__ import annotations
+
+import re
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import ZERO, names
+from mbsym.model.system import Assumption, InitialValue, MotionEntry, Notation, Relation
+from mbsym.source.keys import INITIAL, MOTION
+from mbsym.source.placed import Mapping, Node, Scalar
+from mbsym.source.reading import Reading
+from mbsym.source.scope import ASSUMPTION, Allowed
+
+_COMPARISON = re.compile(r"<=|>=|!=|==|=|<|>|≤|≥|≠")
+_OPPOSITES = {"≤": "<=", "≥": ">=", "≠": "!="}
+
+
+def read_relations(node: Node | None, reading: Reading) -> tuple[Relation, ...]:
+    """``name: expression`` between parameters, without circles."""
+    if node is None:
+        return ()
+    relations = []
+    for entry in reading.entries(node, "'relations'"):
+        known = reading.scope.check_name(entry.key.text, entry.key.span, Allowed("the left side of a relation"))
+        value = reading.expression(entry.value, Allowed("a relation"))
+        if known:
+            relations.append(Relation(entry.key.text, value, entry.key.span))
+    _check_circles(relations, reading)
+    return tuple(relations)
+
+
+def _check_circles(relations: list[Relation], reading: Reading) -> None:
+    """Peel off relations that depend on no other one; those that remain depend on themselves."""
+    needs = {relation.name: names(relation.value) for relation in relations}
+    while free := [name for name, needed in needs.items() if not needed & needs.keys()]:
+        for name in free:
+            del needs[name]
+    for relation in relations:
+        if relation.name in needs and _reaches(relation.name, needs):
+            message = f"'{relation.name}' depends on itself through the relations"
+            reading.error("relation-cycle", message, relation.span)
+
+
+def _reaches(name: str, needs: dict[str, set[str]]) -> bool:
+    seen: set[str] = set()
+    pending = [name]
+    while pending:
+        for needed in needs.get(pending.pop(), set()):
+            if needed == name:
+                return True
+            if needed not in seen:
+                seen.add(needed)
+                pending.append(needed)
+    return False
+
+
+def read_assumptions(node: Node | None, reading: Reading) -> tuple[Assumption, ...]:
+    """A list of inequalities; a chain ``-1 < alpha < 1`` is two of them."""
+    assumptions: list[Assumption] = []
+    for item in () if node is None else reading.items(node, "'assumptions'"):
+        scalar = reading.scalar(item, "an assumption")
+        if scalar is not None:
+            assumptions += _comparisons(scalar, reading)
+    return tuple(assumptions)
+
+
+def _comparisons(scalar: Scalar, reading: Reading) -> list[Assumption]:
+    signs = list(_COMPARISON.finditer(scalar.text))
+    if not signs:
+        hint = "write for example alpha > -1"
+        reading.error("bad-assumption", "an assumption compares two expressions", scalar.span, hint)
+        return []
+    for sign in signs:
+        if sign.group() in ("=", "=="):
+            span = scalar.place(sign.start(), sign.end())
+            reading.error(
+                "bad-assumption", "an assumption is an inequality", span, "an equation belongs to 'relations'"
+            )
+            return []
+    cuts = [0, *(edge for sign in signs for edge in sign.span()), len(scalar.text)]
+    sides = [
+        reading.expression(scalar.part(begin, end), ASSUMPTION)
+        for begin, end in zip(cuts[::2], cuts[1::2], strict=True)
+    ]
+    relations = [_OPPOSITES.get(sign.group(), sign.group()) for sign in signs]
+    return [
+        Assumption(left, relation, right, scalar.span)
+        for left, relation, right in zip(sides, relations, sides[1:], strict=False)
+    ]
+
+
+def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
+    """``theta: 0`` or ``phi: {value: 0, rate: Omega}``."""
+    allowed = Allowed("an unperturbed motion")
+    entries = []
+    for entry in () if node is None else reading.entries(node, "'motion'"):
+        known = _is_coordinate(entry.key, "the key of a motion", reading)
+        value, rate = ZERO, ZERO
+        if isinstance(entry.value, Mapping):
+            fields = reading.fields(entry.value, f"the motion of {ascii_safe(entry.key.text)}", MOTION)
+            value = fields.expression("value", allowed) or ZERO
+            rate = fields.expression("rate", allowed) or ZERO
+        else:
+            value = reading.expression(entry.value, allowed)
+        if known:
+            entries.append(MotionEntry(entry.key.text, value, rate, entry.key.span))
+    return tuple(entries)
+
+
+def _is_coordinate(key: Scalar, what: str, reading: Reading) -> bool:
+    return reading.scope.check_name(key.text, key.span, Allowed(what, ("coordinate",)))
+
+
+def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
+    """Symbols in order: each may use parameters and the symbols above it."""
+    notation = []
+    allowed = Allowed("a notation", ("parameter", "notation"))
+    for entry in () if node is None else reading.entries(node, "'notation'"):
+        value = reading.expression(entry.value, allowed)
+        if reading.scope.declare(entry.key.text, "notation", entry.key.span):
+            notation.append(Notation(entry.key.text, value, entry.key.span))
+    return tuple(notation)
+
+
+def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...]:
+    """``theta: 0.1`` or ``theta: {position: 0.1, velocity: 0}``."""
+    allowed = Allowed("an initial value")
+    entries = []
+    for entry in () if node is None else reading.entries(node, "'initial'"):
+        known = _is_coordinate(entry.key, "the key of an initial value", reading)
+        span: Span = entry.key.span
+        if isinstance(entry.value, Mapping):
+            fields = reading.fields(entry.value, f"the initial value of {ascii_safe(entry.key.text)}", INITIAL)
+            position, velocity = fields.expression("position", allowed), fields.expression("velocity", allowed)
+        else:
+            position, velocity = reading.expression(entry.value, allowed), None
+        if known:
+            entries.append(InitialValue(entry.key.text, position, velocity, span))
+    return tuple(entries)

@@ -1,0 +1,168 @@
+"""YAML to the placed tree, over the event stream of PyYAML.
+
+The events carry marks and keep scalars as text, and composing them here (instead of with ``yaml.compose``) bounds the
+depth before any recursion and refuses anchors, aliases, tags and second documents where they stand: a description is a
+plain tree, and what it says must not depend on YAML's finer points.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from mbsym.expressions.place import Complaints, Span
+from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequence
+
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+#: More open brackets than this are refused before the scanner sees them: its work grows with their square.
+_MAX_BRACKETS = 100
+
+
+class _Refused(Exception):
+    """Internal: the document cannot be composed; the complaint is recorded."""
+
+
+def read_yaml(text: str, complaints: Complaints) -> Node | None:
+    """The placed tree of a YAML text (already normalised), or None with complaints."""
+    if not _brackets_bounded(text, complaints):
+        return None
+    try:
+        return _Composer(text, complaints).document()
+    except _Refused:
+        return None
+    except yaml.MarkedYAMLError as error:
+        complaints.error("syntax", _problem(error), _mark_span(error.problem_mark or error.context_mark), _hint(error))
+    except yaml.YAMLError as error:
+        complaints.error("syntax", f"this is not YAML: {str(error).splitlines()[0]}")
+    return None
+
+
+def _brackets_bounded(text: str, complaints: Complaints) -> bool:
+    depth = 0
+    for offset, character in enumerate(text):
+        if character in "[{":
+            depth += 1
+            if depth > _MAX_BRACKETS:
+                line_start = text.rfind("\n", 0, offset) + 1
+                place = Span(text.count("\n", 0, offset) + 1, offset - line_start + 1)
+                complaints.error("too-deep", f"more than {_MAX_BRACKETS} brackets are open here", place)
+                return False
+        elif character in "]}":
+            depth = max(0, depth - 1)
+    return True
+
+
+def _problem(error: yaml.MarkedYAMLError) -> str:
+    problem = error.problem or error.context or "not YAML"
+    return f"this is not YAML: {problem}"
+
+
+def _hint(error: yaml.MarkedYAMLError) -> str | None:
+    problem = error.problem or ""
+    if "tab" in problem or "cannot start any token" in problem:
+        return "indent with blanks, and put values with special characters in quotes"
+    if "mapping values are not allowed" in problem:
+        return "is the line indented as its neighbours are? A value with ': ' in it needs quotes"
+    if "expected ',' or" in problem or "did not find expected" in problem:
+        return "look for a missing bracket, comma or quote here or above"
+    return None
+
+
+def _mark_span(mark: Any) -> Span | None:
+    return None if mark is None else Span(mark.line + 1, mark.column + 1)
+
+
+class _Composer:
+    """Events to nodes, with an explicit depth."""
+
+    def __init__(self, text: str, complaints: Complaints) -> None:
+        self.lines = text.split("\n")
+        self.complaints = complaints
+        self.events = yaml.parse(text, Loader=_Loader)
+
+    def document(self) -> Node | None:
+        next(self.events)  # stream start
+        event = next(self.events)
+        if isinstance(event, yaml.StreamEndEvent):
+            self.complaints.error("empty", "there is no description in this file")
+            return None
+        node = self.node(next(self.events), 0)
+        next(self.events)  # document end
+        event = next(self.events)
+        if not isinstance(event, yaml.StreamEndEvent):
+            message = "a description is one document; here a second one begins"
+            self.complaints.error("several-documents", message, self.span(event))
+            return None
+        if isinstance(node, Scalar) and not node.text:
+            self.complaints.error("empty", "there is no description in this file")
+            return None
+        return node
+
+    def node(self, event: Any, depth: int) -> Node:
+        self.refuse_fineries(event)
+        if depth > MAX_DEPTH:
+            self.complaints.error("too-deep", f"lists and mappings nest at most {MAX_DEPTH} deep", self.span(event))
+            raise _Refused
+        if isinstance(event, yaml.SequenceStartEvent):
+            return self.sequence(event, depth)
+        if isinstance(event, yaml.MappingStartEvent):
+            return self.mapping(event, depth)
+        return self.scalar(event)
+
+    def sequence(self, start: Any, depth: int) -> Sequence:
+        items: list[Node] = []
+        while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
+            items.append(self.node(event, depth + 1))
+        return Sequence(tuple(items), self.collection_span(start, event, items[0].span if items else None))
+
+    def mapping(self, start: Any, depth: int) -> Mapping:
+        entries: list[Entry] = []
+        while not isinstance(event := next(self.events), yaml.MappingEndEvent):
+            key = self.node(event, depth + 1)
+            value = self.node(next(self.events), depth + 1)
+            if isinstance(key, Scalar):
+                entries.append(Entry(key, value))
+            else:
+                self.complaints.error("wrong-shape", "a key is a word, not a list or a mapping", key.span)
+        first = entries[0].key.span if entries else None
+        return Mapping(tuple(entries), self.collection_span(start, event, first))
+
+    def scalar(self, event: Any) -> Scalar:
+        """A scalar and whether its text stands in the file as it is (plain or simply quoted, on one line)."""
+        first, last = event.start_mark, event.end_mark
+        quote = 1 if event.style in ("'", '"') else 0
+        one_line = first.line == last.line
+        raw = self.lines[first.line][first.column + quote : last.column - quote] if one_line else None
+        if raw == event.value:
+            return Scalar(event.value, Span(first.line + 1, first.column + 1 + quote, max(1, len(event.value))))
+        return Scalar(event.value, self.span(event), literal=False)
+
+    def refuse_fineries(self, event: Any) -> None:
+        if isinstance(event, yaml.AliasEvent):
+            message = f"aliases are not used in descriptions: '*{event.anchor}'"
+            self.complaints.error("alias", message, self.span(event), "write the value out, or quote the text")
+            raise _Refused
+        if event.anchor is not None:
+            message = f"anchors are not used in descriptions: '&{event.anchor}'"
+            self.complaints.error("alias", message, self.span(event), "write the value out, or quote the text")
+        if event.tag is not None:
+            hint = "leave the tag out, or quote the text"
+            self.complaints.error("tag", f"tags are not used in descriptions: '{event.tag}'", self.span(event), hint)
+
+    def span(self, event: Any) -> Span:
+        """From the beginning of an event to its end, or to the end of its first line."""
+        first, last = event.start_mark, event.end_mark
+        line = self.lines[first.line] if first.line < len(self.lines) else ""
+        end = last.column if last.line == first.line else len(line.rstrip())
+        return Span(first.line + 1, first.column + 1, max(1, end - first.column))
+
+    def collection_span(self, start: Any, end: Any, first: Span | None) -> Span:
+        """A collection in brackets is underlined from bracket to bracket, another one at its first word."""
+        if not start.flow_style and first is not None:
+            return first
+        begin, last = start.start_mark, end.end_mark
+        line = self.lines[begin.line] if begin.line < len(self.lines) else ""
+        stop = last.column if last.line == begin.line else len(line.rstrip())
+        return Span(begin.line + 1, begin.column + 1, max(1, stop - begin.column))
