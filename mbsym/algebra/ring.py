@@ -138,7 +138,10 @@ class Ring(Algebra):
             again = False
             degrees = x.degrees()
             for leading, relation in self._relations:
-                if all(degrees[k] >= d for k, d in leading):
+                for k, d in leading:
+                    if degrees[k] < d:
+                        break
+                else:
                     reduced = divmod(x, relation)[1]
                     if reduced != x:
                         x, degrees, again = reduced, reduced.degrees(), len(self._relations) > len(self.angles)
@@ -363,11 +366,12 @@ class Ring(Algebra):
             if degrees[index] > 0 and index not in images:
                 images[index] = self._moved(index, images)
         touched = [index for index in images if degrees[index] > 0]
+        constant = [index for index in touched if images[index].is_constant()]
+        for index in constant:  # the remainder modulo g - number puts the number for g, faster than a composition
+            x = divmod(x, self._gens[index] - images[index])[1]
+        touched = [index for index in touched if index not in constant and x.degrees()[index] > 0]
         if not touched:
-            return x
-        if all(images[index].is_constant() for index in touched):
-            numbers = {f"x{index}": _constant(images[index]) for index in touched}
-            return self.reduce(x.subs(numbers))
+            return self.reduce(x) if constant else x
         full = list(self._gens)
         for index in touched:
             full[index] = images[index]
@@ -494,10 +498,6 @@ class _Evaluation:
             case "acceleration":
                 return arb(self.values[g.name + "_ddot"])
         return arb.pi() if g.name == "pi" else arb(self.values[g.name])
-
-
-def _constant(x: Polynomial) -> fmpq:
-    return x.leading_coefficient() if not x.is_zero() else fmpq(0)
 
 
 def _square_part(value: Fraction) -> tuple[Fraction, int]:

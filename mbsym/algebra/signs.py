@@ -5,7 +5,8 @@ A sign is a set of possibilities, a subset of {-1, 0, 1}; the words are names of
     positive {1}   nonnegative {0, 1}   nonzero {-1, 1}   nonpositive {-1, 0}   negative {-1}   unknown {-1, 0, 1}
 
 Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric.
-So an answer may be weaker than the truth (``unknown``), never wrong.  The evidence, from cheap to dear:
+So an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
+that satisfy the assumptions show that nothing stronger can be proved.  The evidence, from cheap to dear:
 
 * **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
 * **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
@@ -21,9 +22,10 @@ Polynomials are ``fmpq_mpoly`` of python-flint over the rationals in the generat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
+from random import Random
 from typing import Any
 
 from flint import fmpq
@@ -55,6 +57,10 @@ ANY, ZERO, POSITIVE = SIGN_SETS["real"], SIGN_SETS["zero"], SIGN_SETS["positive"
 MOST_TERMS = 120
 #: ... and with more terms than this they are not even factored.
 MOST_FACTORED = 4000
+#: Sample points, and attempts to find them.
+WITNESSES, ATTEMPTS = 24, 200
+#: Where they are sought between the bounds; signs change near the ends rather than in the middle.
+SHARES = tuple(fmpq(k, 64) for k in (1, 2, 8, 20, 32, 44, 56, 62, 63))
 #: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
 MOST_STEPS, MOST_STEPS_CHANGED = 60, 8
 
@@ -166,11 +172,12 @@ class Signs:
         product = self.context.constant(1)
         for factor in kept:
             product *= factor
-        overall = self._possible(product, -1)
-        if 1 not in overall:
-            return self._decided(False)
-        if overall == POSITIVE:
-            return self._decided(True, tuple(nonzero))
+        if len(kept) > 1:  # an assumption may be about the product
+            overall = self._possible(product, -1)
+            if 1 not in overall:
+                return self._decided(False)
+            if overall == POSITIVE:
+                return self._decided(True, tuple(nonzero))
         return Condition("inequality", product, tuple(kept), tuple(nonzero))
 
     def nonzero_condition(self, p: Polynomial) -> Condition:
@@ -230,15 +237,30 @@ class Signs:
             result &= self._by_assumptions(p, after)
         return self._consistent(result)
 
+    @cached_property
+    def _answers(self) -> dict[tuple[str, int], SignSet]:
+        return {}
+
     def _irreducible(self, p: Polynomial, after: int) -> SignSet:
+        if len(p) > MOST_TERMS:
+            return self._by_terms(p)
+        key = str(p), after
+        if key not in self._answers:
+            self._answers[key] = self._search(p, after)
+        return self._answers[key]
+
+    def _search(self, p: Polynomial, after: int) -> SignSet:
         result = self._by_terms(p)
-        if len(result) == 1 or len(p) > MOST_TERMS:
+        if len(result) == 1:
             return result
-        result &= self._by_assumptions(p, after)
-        if len(result) > 1:
+        # Only the question as asked has witnesses: making them anew for each change would cost more than it saves.
+        least = self._observed(p) if after < 0 else frozenset()
+        if result != least:
+            result &= self._by_assumptions(p, after)
+        if len(result) > 1 and result != least:
             result &= self._by_square(p)
         for change in self._changes:
-            if len(result) == 1:
+            if len(result) == 1 or result == least:
                 break
             if change.generator > after and p.degrees()[change.generator]:
                 result &= self._by_change(p, change)
@@ -341,6 +363,24 @@ class Signs:
         for factor, exponent in powers:
             result = _product(result, _power(self._by_terms(factor), exponent))
         return result
+
+    # -- witnesses ----------------------------------------------------------------------------------------------
+
+    def _observed(self, p: Polynomial) -> SignSet:
+        return frozenset(_sign(p(*point)) for point in self._witnesses)
+
+    @cached_property
+    def _witnesses(self) -> tuple[tuple[Any, ...], ...]:
+        """Some rational points that satisfy the assumptions; the same ones every time."""
+        random, found = Random(1), []
+        bounds = [self._bounds(generator) for generator in range(self.context.nvars())]
+        for _ in range(ATTEMPTS):
+            point = tuple(_between(lower, upper, random.choice(SHARES)) for lower, upper in bounds)
+            if all(_sign(p(*point)) in RELATIONS[relation] for p, relation in self.assumptions):
+                found.append(point)
+                if len(found) == WITNESSES:
+                    break
+        return tuple(found)
 
     # -- changes of variables -----------------------------------------------------------------------------------
 
@@ -481,6 +521,17 @@ def _normal(factor: Polynomial) -> tuple[Polynomial, int]:
     """The factor or its negative, whichever has more positive terms (then: a positive leading one), and the sign."""
     balance = sum(_sign(c) for c in factor.coeffs()) or _sign(factor.leading_coefficient())
     return (factor, 1) if balance > 0 else (-factor, -1)
+
+
+def _between(lower: tuple[Any, bool] | None, upper: tuple[Any, bool] | None, t: Any) -> Any:
+    """A number strictly within the bounds for 0 < t < 1; never 0 without bounds (t = 1/2 gives 1/8)."""
+    if lower is not None and upper is not None:
+        return lower[0] + (upper[0] - lower[0]) * t
+    if lower is not None:
+        return lower[0] + t / (1 - t)
+    if upper is not None:
+        return upper[0] - t / (1 - t)
+    return (t - fmpq(1, 2)) / (t * (1 - t)) if 2 * t != 1 else fmpq(1, 8)
 
 
 def _is_bound(polynomial: Polynomial, generator: int, relation: str) -> bool:

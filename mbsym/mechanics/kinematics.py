@@ -17,7 +17,7 @@ from typing import Any
 from mbsym.algebra.base import Algebra, Lowering, Scalar, Vector
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.tree import ZERO
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.mechanics.frames import Turn, axis_vector, back, forward, turn_forward
 from mbsym.mechanics.variables import time_derivative
 from mbsym.model.system import INERTIAL, Body, System
@@ -43,13 +43,21 @@ class Scene:
     """A system seen through one algebra: lowered expressions and the motion of every body.
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
-    it and carried over.
+    it and carried over.  With ``frozen`` the prescribed quantities and t stand still.
     """
 
-    def __init__(self, system: System, algebra: Algebra, environment: Mapping[str, Scalar], ring: Ring) -> None:
+    def __init__(
+        self,
+        system: System,
+        algebra: Algebra,
+        environment: Mapping[str, Scalar],
+        ring: Ring,
+        frozen: bool = False,
+    ) -> None:
         self.system = system
         self.algebra = algebra
         self.ring = ring
+        self.frozen = frozen
         self.lower = Lowering(algebra, environment)
         self.environment = environment
         self._carrier = Carrier(ring, algebra, environment)
@@ -71,7 +79,7 @@ class Scene:
             relative = algebra.add(turn_forward(algebra, turn, relative), rate)
             spin = algebra.add(turn_forward(algebra, turn, spin), rate)
         offset = lower.vector(body.connection_point)
-        sliding = lower.vector([time_derivative(x, self.system) for x in body.connection_point])
+        sliding = lower.vector([self.rate(x) for x in body.connection_point])
         carried = algebra.add(parent_velocity, algebra.cross(parent_spin, offset))
         velocity = forward(algebra, turns, algebra.add(carried, sliding))
         centre = lower.vector(body.mass_centre)
@@ -97,10 +105,14 @@ class Scene:
         for axis, angle in body.rotation.turns():
             if angle == ZERO:
                 continue
-            first = time_derivative(angle, self.system)
-            second = time_derivative(first, self.system)
+            first = self.rate(angle)
+            second = self.rate(first)
             turns.append(Turn(axis, angle, *self.lower.angle(angle), self.lower(first), self.lower(second)))
         return turns
+
+    def rate(self, expression: Expression) -> Expression:
+        """The time derivative of an expression, in this scene."""
+        return time_derivative(expression, self.system, self.frozen)
 
     # --- vectors between frames ------------------------------------------------------------------------------------
 

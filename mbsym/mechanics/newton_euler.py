@@ -18,7 +18,6 @@ from mbsym.mechanics.frames import axis_vector, back, forward, turn_back, turn_f
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action
 from mbsym.mechanics.loads.kinds import actions
-from mbsym.mechanics.variables import time_derivative
 from mbsym.model.system import INERTIAL
 
 
@@ -37,9 +36,9 @@ class _Accelerations:
     def _step(self, name: str, motion: BodyMotion) -> None:
         algebra, parent = self.scene.algebra, motion.body.attached_to
         spin, angular = self.spin[parent], self.angular[parent]
-        first = [time_derivative(x, self.scene.system) for x in motion.body.connection_point]
+        first = [self.scene.rate(x) for x in motion.body.connection_point]
         sliding = self.scene.lower.vector(first)
-        second = self.scene.lower.vector([time_derivative(x, self.scene.system) for x in first])
+        second = self.scene.lower.vector([self.scene.rate(x) for x in first])
         at = algebra.add(self.origin[parent], algebra.cross(angular, motion.offset))
         at = algebra.add(at, algebra.cross(spin, algebra.cross(spin, motion.offset)))
         at = algebra.add(at, algebra.scale(algebra.number(2), algebra.cross(spin, sliding)))

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
-from fractions import Fraction
 from math import lcm
 from typing import Any
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Scalar
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.tree import (
+    ONE,
     ZERO,
     Call,
     Expression,
@@ -44,12 +44,16 @@ def expressions(part: Any) -> Iterator[Expression]:
                 yield from expressions(getattr(part, field.name))
 
 
-def time_derivative(expression: Expression, system: System) -> Expression:
-    """d/dt: sum over q of (d/dq) q' + (d/dq') q'', over prescribed quantities of (d/dx) rate, and d/dt itself."""
+def time_derivative(expression: Expression, system: System, frozen: bool = False) -> Expression:
+    """d/dt: sum over q of (d/dq) q' + (d/dq') q'', over prescribed quantities of (d/dx) rate, and d/dt itself.
+
+    With ``frozen`` the prescribed quantities and t stand still: only the coordinates move.
+    """
     total: Expression = ZERO
     present = names(expression)
-    rates: dict[str, Expression] = {"t": Number(Fraction(1))}
-    rates |= {item.name: item.rate for item in system.prescribed}
+    rates: dict[str, Expression] = {}
+    if not frozen:
+        rates = {"t": ONE} | {item.name: item.rate for item in system.prescribed}
     rates |= {name: Name(velocity_name(name)) for name in system.coordinates}
     rates |= {velocity_name(name): Name(acceleration_name(name)) for name in system.coordinates}
     for name in sorted(present & rates.keys()):
@@ -125,12 +129,3 @@ def program_environment(system: System, program: Program) -> dict[str, Scalar]:
     for name in system.coordinates:
         names_ += [name, velocity_name(name), acceleration_name(name)]
     return {name: program.input(name) for name in names_}
-
-
-def with_velocities(environment: Mapping[str, Scalar], system: System, algebra: Algebra, moving: str = "") -> dict:
-    """The environment with all velocities and accelerations zero, save the acceleration of one coordinate."""
-    changed = dict(environment)
-    for name in system.coordinates:
-        changed[velocity_name(name)] = algebra.zero
-        changed[acceleration_name(name)] = algebra.one if name == moving else algebra.zero
-    return changed

@@ -248,6 +248,7 @@ def _tensor(node: Node, reading: Reading) -> Tensor:
             below = items[row]
             if len(reading.complaints.errors) == errors and rows[row][column] != rows[column][row]:
                 assert isinstance(below, Sequence)
-                message = f"a tensor of inertia is symmetric: entries {row + 1},{column + 1} and {column + 1},{row + 1} differ"
+                entries = f"{row + 1},{column + 1} and {column + 1},{row + 1}"
+                message = f"a tensor of inertia is symmetric: entries {entries} differ"
                 reading.error("asymmetric-inertia", message, below.items[column].span)
     return rows[0], rows[1], rows[2]

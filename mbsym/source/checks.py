@@ -1,15 +1,218 @@
-"""What only the finished parts can show."""
+"""What only the finished parts can show: idle coordinates, false velocities, impossible bodies, broken relations."""
 
 from __future__ import annotations
 
-from mbsym.model.system import System
+from collections.abc import Mapping
+from fractions import Fraction
+
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import (
+    ZERO,
+    Expression,
+    Name,
+    add,
+    differentiate,
+    multiply,
+    names,
+    subtract,
+    text,
+)
+from mbsym.model.admissibility import (
+    NumberTensor,
+    about_mass_centre,
+    inertia_violation,
+    number_of,
+    surely_negative,
+)
+from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
+from mbsym.source.identity import vanishes
 from mbsym.source.reading import Reading
 
 
 def check_body(system: System, draft: Draft, reading: Reading) -> None:
-    """..."""
+    """Everything that can be decided about one body whose expressions were read without complaint."""
+    body = system.bodies[draft.number - 1]
+    _check_coordinates(system, body, draft, reading)
+    _check_relative_velocity(system, body, draft, reading)
+    values = known_values(system)
+    _check_mass(system, body, draft, values, reading)
+    _check_inertia(system, body, draft, values, reading)
+
+
+def known_values(system: System) -> dict[str, Fraction]:
+    """The exact values of the parameters that have any, relations included."""
+    values: dict[str, Fraction] = {}
+    for parameter in system.parameters:
+        value = None if parameter.value is None else number_of(parameter.value, {})
+        if value is not None:
+            values[parameter.name] = value
+    for _ in system.relations:  # each round settles at least the next relation of any chain
+        for relation in system.relations:
+            value = None if relation.name in values else number_of(relation.value, values)
+            if value is not None:
+                values[relation.name] = value
+    return values
+
+
+# --- coordinates -----------------------------------------------------------------------------------------------------
+
+
+def _check_coordinates(system: System, body: Body, draft: Draft, reading: Reading) -> None:
+    """Each coordinate of a joint turns the joint or moves its connection point."""
+    for scalar in draft.coordinates:
+        name = scalar.text
+        if _moves(body, name):
+            continue
+        others = [other.name for other in system.bodies if other is not body and _moves(other, name)]
+        hint = f"it moves '{others[0]}': list it there" if others else "use it in an angle or in the connection point"
+        reading.error("idle-coordinate", f"the coordinate '{name}' moves nothing in this joint", scalar.span, hint)
+
+
+def _moves(body: Body, name: str) -> bool:
+    expressions = (*body.rotation.angles, *body.connection_point)
+    return any(
+        name in names(expression) and vanishes(differentiate(expression, name)) is not True
+        for expression in expressions
+    )
+
+
+# --- relative velocity -----------------------------------------------------------------------------------------------
+
+
+def _check_relative_velocity(system: System, body: Body, draft: Draft, reading: Reading) -> None:
+    """A given relative velocity must be the derivative of the radius vector of the connection point."""
+    if body.relative_velocity is None:
+        return
+    rates = _rates(system)
+    relations = {relation.name: relation.value for relation in system.relations}
+    for index, (given, radius) in enumerate(zip(body.relative_velocity, body.connection_point, strict=True)):
+        derived = time_derivative(radius, rates)
+        if vanishes(subtract(given, derived), relations) is False:
+            span = given.span or draft.fields.key_span("relative velocity")
+            message = f"component {index + 1} is not the derivative of the connection point"
+            reading.error("relative-velocity", message, span, _short(f"the derivative is {text(derived)}"))
+
+
+def _short(hint: str) -> str:
+    return hint if len(hint) <= 200 else "leave the relative velocity out: it is then derived"
+
+
+def _rates(system: System) -> dict[str, Expression]:
+    rates: dict[str, Expression] = {name: Name(velocity_name(name)) for name in system.coordinates}
+    rates.update({prescribed.name: prescribed.rate for prescribed in system.prescribed})
+    return rates
+
+
+def time_derivative(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
+    """The chain rule over the names that change with time."""
+    total: Expression = ZERO
+    for name in sorted(names(expression) & rates.keys()):
+        total = add(total, multiply(differentiate(expression, name), rates[name]))
+    return total
+
+
+# --- masses and inertias ---------------------------------------------------------------------------------------------
+
+
+def _check_mass(system: System, body: Body, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    value = number_of(body.mass, values)
+    if (value is not None and value < 0) or surely_negative(body.mass, signs):
+        reading.error("negative-mass", "this mass is negative", _place(draft, "mass"), _values_hint(body.mass))
+
+
+def _values_hint(*expressions: Expression) -> str | None:
+    return "with the given values and signs" if any(names(expression) for expression in expressions) else None
+
+
+def _place(draft: Draft, key: str) -> Span:
+    return draft.fields.found[key].value.span
+
+
+def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
+    if body.inertia is None:
+        return
+    span = _place(draft, "inertia")
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    entries = [entry for row in body.inertia.tensor for entry in row]
+    for index in range(3):
+        if surely_negative(body.inertia.tensor[index][index], signs):
+            message = f"the moment of inertia about axis {index + 1} is negative"
+            reading.error("bad-inertia", f"no body has this inertia: {message}", span, _values_hint(*entries))
+            return
+    tensor = _numeric_tensor(body, values)
+    violation = None if tensor is None else inertia_violation(tensor)
+    if violation is None and tensor is not None and body.inertia.about == "joint":
+        violation = _violation_about_mass_centre(tensor, body, values)
+    if violation is not None:
+        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, _values_hint(*entries))
+
+
+def _numeric_tensor(body: Body, values: Mapping[str, Fraction]) -> NumberTensor | None:
+    assert body.inertia is not None
+    rows = []
+    for row in body.inertia.tensor:
+        first, second, third = (number_of(entry, values) for entry in row)
+        if first is None or second is None or third is None:
+            return None
+        rows.append((first, second, third))
+    return rows[0], rows[1], rows[2]
+
+
+def _violation_about_mass_centre(tensor: NumberTensor, body: Body, values: Mapping[str, Fraction]) -> str | None:
+    mass = number_of(body.mass, values)
+    first, second, third = (number_of(component, values) for component in body.mass_centre)
+    if mass is None or first is None or second is None or third is None:
+        return None
+    violation = inertia_violation(about_mass_centre(tensor, mass, (first, second, third)))
+    return None if violation is None else f"moved to the mass centre, {violation}"
+
+
+# --- the whole -------------------------------------------------------------------------------------------------------
 
 
 def check_system(system: System, reading: Reading) -> None:
-    """..."""
+    """Relations must agree with the values that are given for both sides; assumptions should hold for them."""
+    _check_relation_values(system, reading)
+    _check_assumption_values(system, reading)
+
+
+def _check_relation_values(system: System, reading: Reading) -> None:
+    values = known_values(system)
+    for relation in system.relations:
+        left, right = values.get(relation.name), number_of(relation.value, values)
+        if left is not None and right is not None and left != right:
+            message = f"the given values break this relation: {_decimal(left)} is not {_decimal(right)}"
+            reading.error("conflicting-values", message, relation.span)
+
+
+def _check_assumption_values(system: System, reading: Reading) -> None:
+    values = known_values(system)
+    for notation in system.notation:
+        value = number_of(notation.value, values)
+        if value is not None:
+            values[notation.name] = value
+    for assumption in system.assumptions:
+        left, right = number_of(assumption.left, values), number_of(assumption.right, values)
+        if left is None or right is None or _holds(left, assumption.relation, right):
+            continue
+        message = f"the given values break this assumption: {_decimal(left)} {assumption.relation} {_decimal(right)}"
+        reading.complaints.warning("broken-assumption", message, assumption.span)
+
+
+def _holds(left: Fraction, relation: str, right: Fraction) -> bool:
+    return {
+        "<": left < right,
+        "<=": left <= right,
+        ">": left > right,
+        ">=": left >= right,
+        "!=": left != right,
+    }[relation]
+
+
+def _decimal(value: Fraction) -> str:
+    try:
+        return f"{float(value):.10g}"
+    except OverflowError:
+        return "a huge number"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from mbsym.expressions.place import Complaint, Complaints
@@ -15,7 +14,6 @@ from mbsym.source.yaml_reader import read_yaml
 MAX_COMPLAINTS = 200
 
 
-@dataclass(slots=True)
 class _BoundedComplaints(Complaints):
     """Stops the reading of a file in which everything is wrong."""
 

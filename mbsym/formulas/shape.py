@@ -1,0 +1,428 @@
+"""How a polynomial of the ring is shown: a tree of sums, products and powers, apart from the arithmetic.
+
+The tree is made once per polynomial and every printer walks it.  A polynomial is collected by accelerations and
+velocities first, then by coordinates and their sines and cosines; what stands before these monomials, a polynomial in
+the parameters, is factored, and collected further where that makes it shorter: ``Jx + m*r*(l + r) + m*l**2/3``.
+Rational content and common factors stand in front, reciprocals in denominators.
+
+The order is fixed and human: declared order, highest degree first, and no sum starts with a minus sign if it can be
+helped.  Factoring is for people; polynomials too long for them are only grouped, which is linear in their length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import gcd, lcm
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+
+from mbsym.algebra.ring import Polynomial, Ring
+
+#: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
+FACTOR_WHOLE = 60
+FACTOR_MIXED = 24
+#: In polynomials longer than this the coefficients of the monomials are not factored either.
+FACTOR_COEFFICIENTS = 3000
+#: Polynomials in the parameters with up to so many terms are collected by the variable that makes them shortest.
+COLLECT = 40
+
+Rational = Any  # flint.fmpq
+#: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
+Monomial = tuple[tuple[int, int], ...]
+Terms = dict[Monomial, Rational]
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """``base ** exponent``; the base is the number of a generator (never a reciprocal) or a sum."""
+
+    base: int | Sum
+    exponent: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """coefficient * (product of ``over``) / (product of ``under``)."""
+
+    coefficient: Rational
+    over: tuple[Factor, ...] = ()
+    under: tuple[Factor, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Sum:
+    """The sum of the terms; zero is the empty sum.  Equal brackets of one ring are mostly one object."""
+
+    terms: tuple[Product, ...]
+
+
+def present(ring: Ring, polynomial: Polynomial) -> Sum:
+    """The shape of a polynomial in normal form."""
+    presenter = _PRESENTERS.get(ring)
+    if presenter is None:
+        presenter = _PRESENTERS[ring] = _Presenter(ring)
+    return presenter(polynomial)
+
+
+def leaves(shape: Sum) -> int:
+    """How many symbols and numbers a reader meets."""
+    return sum(_product_leaves(term) for term in shape.terms)
+
+
+def _product_leaves(product: Product) -> int:
+    number = 0 if abs(product.coefficient) == 1 else 1
+    factors = (*product.over, *product.under)
+    inner = sum(1 if isinstance(f.base, int) else leaves(f.base) for f in factors)
+    return max(number + inner, 1)
+
+
+_PRESENTERS: WeakKeyDictionary[Ring, _Presenter] = WeakKeyDictionary()
+
+_RECIPROCAL, _VELOCITY = 2, 3
+_MOTION = {"velocity": _VELOCITY, "acceleration": 4}
+_PLACE = ("coordinate", "prescribed", "time", "sine", "cosine")
+_END = (1 << 30, 0)
+
+
+class _Presenter:
+    """Makes the shapes of one ring's polynomials, and remembers them."""
+
+    def __init__(self, ring: Ring) -> None:
+        self.ring = ring
+        names = [g.name for g in ring.generators if g.kind in ("coordinate", "prescribed", "time", "parameter")]
+        self._declared = {name: place for place, name in enumerate(names)}
+        self._levels: dict[int, int] = {}
+        self._places: dict[int, tuple[Any, ...]] = {}
+        self._shapes: dict[int, tuple[Polynomial, Sum]] = {}
+        self._factored: dict[frozenset[Any], Product] = {}
+        self._brackets: dict[frozenset[Any], Sum] = {}
+        self._negatives: dict[Sum, Sum] = {}
+        self._ranks: dict[Sum, int] = {}
+
+    def __call__(self, polynomial: Polynomial) -> Sum:
+        known = self._shapes.get(id(polynomial))
+        if known is None:
+            # The polynomial is kept with its shape, so that its id stays its own.
+            known = self._shapes[id(polynomial)] = (polynomial, self._present(polynomial))
+        return known[1]
+
+    def _present(self, polynomial: Polynomial) -> Sum:
+        terms, under = self._as_fraction(polynomial)
+        if not terms:
+            return Sum(())
+        product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
+        if under:
+            return Sum((Product(product.coefficient, product.over, _ordered(self, [*product.under, *under])),))
+        return _opened(product)
+
+    def _as_fraction(self, polynomial: Polynomial) -> tuple[Terms, list[Factor]]:
+        """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
+        if len(polynomial) <= FACTOR_WHOLE and any(self._long_reciprocal(k) for k in _used(polynomial)):
+            numerator, denominators = self.ring.fraction(polynomial)
+            if len(numerator) < len(polynomial):
+                return self._terms(numerator), [Factor(self(p), exponent) for p, exponent in denominators]
+        return self._terms(polynomial), []
+
+    def _long_reciprocal(self, index: int) -> bool:
+        generator = self.ring.generators[index]
+        return generator.kind == "reciprocal" and len(generator.argument) > 1
+
+    # --- generators ------------------------------------------------------------------------------------------------
+
+    def level(self, index: int) -> int:
+        """0 parameters, 1 coordinates and time, 2 reciprocals of parameters, 3 velocities, 4 accelerations.
+
+        Adjoined generators have the level of what they hold.
+        """
+        if index not in self._levels:
+            generator = self.ring.generators[index]
+            level = _MOTION.get(generator.kind, 1 if generator.kind in _PLACE else 0)
+            if generator.argument is not None:
+                level = max([0, *(self.level(k) for k in _used(generator.argument))])
+                if generator.kind == "reciprocal" and level <= _RECIPROCAL:
+                    level = _RECIPROCAL
+            elif level == 1 and self.ring.has("parameter", generator.name):
+                level = 0
+            self._levels[index] = level
+        return self._levels[index]
+
+    def place(self, index: int) -> tuple[Any, ...]:
+        """The order in which people read: by level, then as declared; adjoined generators last."""
+        if index not in self._places:
+            g = self.ring.generators[index]
+            within = ("sine", "cosine").index(g.kind) + 1 if g.kind in ("sine", "cosine") else 0
+            adjoined = g.argument is not None
+            declared = -index if adjoined else self._declared[g.name]
+            self._places[index] = (-self.level(index), adjoined, declared, within)
+        return self._places[index]
+
+    # --- terms -----------------------------------------------------------------------------------------------------
+
+    def _terms(self, polynomial: Polynomial) -> Terms:
+        used = sorted(_used(polynomial), key=self.place)
+        return {
+            tuple((k, int(monomial[k])) for k in used if monomial[k]): coefficient
+            for monomial, coefficient in polynomial.terms()
+        }
+
+    def _key(self, monomial: Monomial) -> tuple[Any, ...]:
+        """Sorts as the dense exponents would, highest first."""
+        return (*((self.place(k), -e) for k, e in monomial), (_END,))
+
+    # --- products --------------------------------------------------------------------------------------------------
+
+    def _product(self, terms: Terms, factored: bool) -> Product:
+        """Content and factors in front of what cannot be factored."""
+        if len(terms) == 1:
+            ((monomial, coefficient),) = terms.items()
+            return self._assembled(coefficient, monomial, [], factored)
+        key = frozenset(terms.items()) if len(terms) <= FACTOR_WHOLE else None
+        known = self._factored.get(key) if key is not None and factored else None
+        if known is None:
+            known = self._assembled(*self._factors(terms, factored), factored)
+            if key is not None and factored:
+                self._factored[key] = known
+        return known
+
+    def _factors(self, terms: Terms, factored: bool) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+        """Content, monomial, and the other factors with their exponents."""
+        content, common, rest = _common(terms)
+        level = max(self.level(monomial[0][0]) for monomial in rest if monomial)
+        if not factored or len(terms) > (FACTOR_MIXED if level else FACTOR_WHOLE):
+            parts = [(rest, 1)]
+        else:
+            unit, parts = self._irreducible(rest)
+            content = content * unit
+            if level == 1 and len(parts) > 1:
+                content, common, parts = self._sines_restored(content, common, parts)
+        brackets = sorted(parts, key=lambda item: sorted(map(self._key, item[0])))
+        return self._whole_reciprocals(content, common, brackets)
+
+    def _irreducible(self, terms: Terms) -> tuple[Rational, list[tuple[Terms, int]]]:
+        """A factorisation over the generators that occur: the ring has many more, and flint minds them all."""
+        used = sorted({k for monomial in terms for k, _ in monomial}, key=self.place)
+        context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
+        dense = {}
+        for monomial, coefficient in terms.items():
+            exponents = dict(monomial)
+            dense[tuple(exponents.get(k, 0) for k in used)] = coefficient
+        unit, factors = context.from_dict(dense).factor()
+        return unit, [
+            ({tuple((used[i], int(e)) for i, e in enumerate(m) if e): c for m, c in factor.terms()}, int(exponent))
+            for factor, exponent in factors
+        ]
+
+    def _sines_restored(
+        self, content: Rational, common: Monomial, parts: list[tuple[Terms, int]]
+    ) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+        """(cos x - 1)*(cos x + 1) is -sin(x)**2."""
+        for index in sorted({k for part, _ in parts for m in part for k, _ in m}, key=self.place):
+            g = self.ring.generators[index]
+            if g.kind != "cosine" or g.argument is not None:
+                continue
+            minus = ({((index, 1),): fmpq(1), (): fmpq(-1)}, 1)
+            plus = ({((index, 1),): fmpq(1), (): fmpq(1)}, 1)
+            if minus in parts and plus in parts:
+                parts = [part for part in parts if part not in (minus, plus)]
+                content, common = -content, self._joined(common, (self.ring.index("sine", g.name), 2))
+        return content, common, parts
+
+    def _whole_reciprocals(
+        self, content: Rational, common: Monomial, brackets: list[tuple[Terms, int]]
+    ) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+        """1/R is not taken out of a bracket that holds further powers of it: a/R + b/R^2, not (a + b/R)/R."""
+        for index, exponent in common:
+            if self.level(index) != _RECIPROCAL:
+                continue
+            for place, (terms, power) in enumerate(brackets):
+                if power == 1 and any(k == index for monomial in terms for k, _ in monomial):
+                    brackets[place] = ({self._joined(m, (index, exponent)): c for m, c in terms.items()}, 1)
+                    common = tuple(pair for pair in common if pair[0] != index)
+                    break
+        return content, common, brackets
+
+    def _joined(self, monomial: Monomial, pair: tuple[int, int]) -> Monomial:
+        exponents = dict(monomial)
+        exponents[pair[0]] = exponents.get(pair[0], 0) + pair[1]
+        return tuple((k, exponents[k]) for k in sorted(exponents, key=self.place))
+
+    def _assembled(
+        self, coefficient: Rational, monomial: Monomial, brackets: Sequence[tuple[Terms, int]], factored: bool
+    ) -> Product:
+        over: list[Factor] = []
+        under: list[Factor] = []
+        for index, exponent in monomial:
+            generator = self.ring.generators[index]
+            if generator.kind == "reciprocal":
+                inner = self(generator.argument)
+                under += _powers(inner, exponent)
+            else:
+                over.append(Factor(index, exponent))
+        for terms, exponent in brackets:
+            bracket = self._bracket(terms, factored)
+            if exponent % 2 and (coefficient < 0 or _only_negative(bracket)) and _takes_sign(bracket):
+                bracket, coefficient = self._negated(bracket), -coefficient
+            over.append(Factor(bracket, exponent))
+        return Product(coefficient, _ordered(self, over), _ordered(self, under))
+
+    # --- brackets --------------------------------------------------------------------------------------------------
+
+    def _bracket(self, terms: Terms, factored: bool) -> Sum:
+        level = max(self.level(monomial[0][0]) for monomial in terms if monomial)
+        if level:
+            return self._grouped(terms, lambda index: self.level(index) == level, factored)
+        if len(terms) > COLLECT:
+            return self._plain(terms)
+        key = frozenset(terms.items())
+        if key not in self._brackets:
+            self._brackets[key] = self._collected(terms) if factored and len(terms) > 2 else self._plain(terms)
+        return self._brackets[key]
+
+    def _plain(self, terms: Terms) -> Sum:
+        ordered = sorted(terms, key=self._key)
+        return _tidy([self._assembled(terms[monomial], monomial, [], False) for monomial in ordered])
+
+    def _grouped(self, terms: Terms, leading: Callable[[int], bool], factored: bool) -> Sum:
+        """Collected by the monomials in the generators that ``leading`` chooses, of highest degree first."""
+        groups: dict[Monomial, Terms] = {}
+        for monomial, coefficient in terms.items():
+            head = tuple(pair for pair in monomial if leading(pair[0]))
+            tail = tuple(pair for pair in monomial if not leading(pair[0]))
+            groups.setdefault(head, {})[tail] = coefficient
+        shared: dict[tuple[Any, ...], Terms] = {}
+        for head in sorted(groups, key=lambda m: (-sum(e for _, e in m), self._key(m))):
+            product = self._product(groups[head], factored)
+            shared.setdefault((product.over, product.under), {})[head] = product.coefficient
+        products: list[Product] = []
+        for (over, under), heads in shared.items():
+            products += self._shared(over, under, heads, factored)
+        return _tidy(products)
+
+    def _shared(
+        self, over: tuple[Factor, ...], under: tuple[Factor, ...], heads: Terms, factored: bool
+    ) -> Sequence[Product]:
+        """over/under times the sum of the heads: l*(m + 3*m0)*(sin(phi)*cos(sigma) + cos(phi)*sin(sigma))."""
+        if len(heads) > 1 and (over or under):
+            return [self._times(self._product(heads, factored), over, under)]
+        products: list[Product] = []
+        for head, coefficient in heads.items():
+            if head:
+                products.append(self._times(self._assembled(coefficient, head, [], False), over, under))
+            else:
+                product = Product(coefficient, over, under)
+                products += _opened(product).terms if abs(coefficient) == 1 else [product]
+        return products
+
+    def _times(self, product: Product, over: Sequence[Factor], under: Sequence[Factor]) -> Product:
+        over, under = [*over, *product.over], [*under, *product.under]
+        return Product(product.coefficient, _ordered(self, over), _ordered(self, under))
+
+    def _collected(self, terms: Terms) -> Sum:
+        """Collected by the parameter that leaves the fewest symbols to read."""
+        best = self._plain(terms)
+        fewest = leaves(best)
+        for variable in sorted({k for monomial in terms for k, _ in monomial}, key=self.place):
+            if sum(any(k == variable for k, _ in monomial) for monomial in terms) < 2:
+                continue
+            candidate = self._grouped(terms, variable.__eq__, True)
+            if leaves(candidate) < fewest:
+                best, fewest = candidate, leaves(candidate)
+        return best
+
+    def _negated(self, bracket: Sum) -> Sum:
+        if bracket not in self._negatives:
+            opposite = _tidy([Product(-term.coefficient, term.over, term.under) for term in bracket.terms])
+            self._negatives[bracket], self._negatives[opposite] = opposite, bracket
+        return self._negatives[bracket]
+
+    def rank(self, factor: Factor) -> int:
+        """The highest level of anything in a factor."""
+        if isinstance(factor.base, int):
+            return self.level(factor.base)
+        known = self._ranks.get(factor.base)
+        if known is None:
+            inner = (self.rank(f) for term in factor.base.terms for f in (*term.over, *term.under))
+            known = self._ranks[factor.base] = max(inner, default=0)
+        return known
+
+
+def _used(polynomial: Polynomial) -> list[int]:
+    return [k for k, degree in enumerate(polynomial.degrees()) if degree > 0]
+
+
+def _common(terms: Terms) -> tuple[Rational, Monomial, Terms]:
+    """(content, common monomial, rest), the cheap part of a factorisation."""
+    numerator = gcd(*(int(c.p) for c in terms.values()))
+    denominator = lcm(*(int(c.q) for c in terms.values()))
+    content = fmpq(numerator, denominator)
+    shared = dict(next(iter(terms)))
+    for monomial in terms:
+        if not shared:
+            break
+        here = dict(monomial)
+        shared = {k: min(e, here[k]) for k, e in shared.items() if k in here}
+    rest = {}
+    for monomial, coefficient in terms.items():
+        kept = tuple((k, e - shared.get(k, 0)) for k, e in monomial if e > shared.get(k, 0)) if shared else monomial
+        rest[kept] = coefficient / content
+    return content, tuple(shared.items()), rest
+
+
+def _powers(inner: Sum, exponent: int) -> Iterator[Factor]:
+    """The factors of 1/inner**exponent's denominator; a lone symbol needs no bracket."""
+    if len(inner.terms) == 1 and inner.terms[0].coefficient == 1 and not inner.terms[0].under:
+        for factor in inner.terms[0].over:
+            yield Factor(factor.base, factor.exponent * exponent)
+    else:
+        yield Factor(inner, exponent)
+
+
+def _ordered(presenter: _Presenter, factors: Sequence[Factor]) -> tuple[Factor, ...]:
+    """Parameters, then motion, then angles; long brackets in the motion come before what multiplies them."""
+    if len(factors) < 2:
+        return tuple(factors)
+    mixed = any(not isinstance(f.base, int) and presenter.rank(f) for f in factors)
+
+    def key(factor: Factor) -> tuple[Any, ...]:
+        rank = presenter.rank(factor)
+        if not isinstance(factor.base, int):
+            return (4 if rank else 1,)
+        if rank >= _VELOCITY:
+            return (5 if mixed else 2, -rank, presenter.place(factor.base))
+        return (3 if rank else 0, 0, presenter.place(factor.base))
+
+    return tuple(sorted(factors, key=key))
+
+
+def _takes_sign(bracket: Sum) -> bool:
+    return _only_negative(bracket) or any(term.coefficient < 0 for term in bracket.terms)
+
+
+def _only_negative(bracket: Sum) -> bool:
+    return all(term.coefficient < 0 for term in bracket.terms)
+
+
+def _tidy(products: Sequence[Product]) -> Sum:
+    """The sum, with a positive term in front if there is one."""
+    ordered = list(products)
+    first = next((i for i, product in enumerate(ordered) if product.coefficient > 0), 0)
+    ordered.insert(0, ordered.pop(first))
+    return Sum(tuple(ordered))
+
+
+def _opened(product: Product) -> Sum:
+    """A lone bracket without its brackets, unless its content is worth standing in front."""
+    if product.under or len(product.over) != 1:
+        return Sum((product,))
+    (factor,) = product.over
+    if isinstance(factor.base, int) or factor.exponent != 1:
+        return Sum((product,))
+    content = product.coefficient
+    terms = [Product(content * term.coefficient, term.over, term.under) for term in factor.base.terms]
+    broken = sum(term.coefficient.q != 1 for term in terms)
+    if abs(content.p) != 1 or 2 * broken > len(terms):
+        return Sum((product,))
+    return _tidy(terms)

@@ -1,0 +1,387 @@
+"""An independent derivation at one state: d'Alembert's principle in inertial axes, by Taylor series in time.
+
+It shares with the rest of mbsym only the description and the arithmetic of numbers; the geometry is its own.  Bodies
+are placed by active rotations (Rodrigues' formula e e^T + c (1 - e e^T) + s [e]), velocities and accelerations are the
+Taylor coefficients of positions, partial velocities are directional derivatives of positions, and
+
+    residual_i = sum over bodies of  m r_C'' . dr_C/dq_i + dH_C/dt . (rotation vector of dA/dq_i)  -  Q_i .
+
+Gravity is taken from the second moments of the masses, conservative forces by displacing the system, so that a slip in
+a frame, an axis order, a Coriolis term or a gravity torque elsewhere does not repeat itself here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from mbsym.algebra.base import Algebra, Lowering, Scalar
+from mbsym.expressions.angles import LinearForm
+from mbsym.model import system as model
+from mbsym.model.system import INERTIAL, System, velocity_name
+
+Triple = list["Series"]
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """a + b s + c s^2, higher powers dropped."""
+
+    a: Scalar
+    b: Scalar
+    c: Scalar
+
+    def __add__(self, other: Series) -> Series:
+        return Series(self.a + other.a, self.b + other.b, self.c + other.c)
+
+    def __sub__(self, other: Series) -> Series:
+        return Series(self.a - other.a, self.b - other.b, self.c - other.c)
+
+    def __neg__(self) -> Series:
+        return Series(-self.a, -self.b, -self.c)
+
+    def __mul__(self, other: Series) -> Series:
+        middle = self.a * other.c + self.b * other.b + self.c * other.a
+        return Series(self.a * other.a, self.a * other.b + self.b * other.a, middle)
+
+
+class TaylorSeries(Algebra):
+    """Series over numbers (rationals or balls)."""
+
+    def __init__(self, numbers: Algebra, angles: Mapping[str, Series]) -> None:
+        self.numbers = numbers
+        self.angles = angles
+        self.zero, self.one = self.number(0), self.number(1)
+
+    def number(self, value: Fraction | int) -> Series:
+        return self.constant(self.numbers.number(value))
+
+    def constant(self, value: Scalar) -> Series:
+        return Series(value, self.numbers.zero, self.numbers.zero)
+
+    def vanishes(self, x: Series) -> bool:
+        return all(self.numbers.vanishes(part) for part in (x.a, x.b, x.c))
+
+    def _compose(self, x: Series, value: Scalar, slope: Scalar, half_curvature: Scalar) -> Series:
+        return Series(value, slope * x.b, slope * x.c + half_curvature * x.b * x.b)
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Series, Series]:
+        total = self.zero
+        for name, coefficient in angle.coefficients:
+            total = total + self.number(coefficient) * self.angles[name]
+        return self._turned(total, *self.numbers.sin_cos(angle))
+
+    def sin_cos_of(self, argument: Series) -> tuple[Series, Series]:
+        return self._turned(argument, *self.numbers.sin_cos_of(argument.a))
+
+    def _turned(self, x: Series, sine: Scalar, cosine: Scalar) -> tuple[Series, Series]:
+        half = self.numbers.number(Fraction(-1, 2))
+        return self._compose(x, sine, cosine, half * sine), self._compose(x, cosine, -sine, half * cosine)
+
+    def reciprocal(self, x: Series) -> Series:
+        inverse = self.numbers.reciprocal(x.a)
+        return self._compose(x, inverse, -inverse * inverse, inverse * inverse * inverse)
+
+    def square_root(self, x: Series) -> Series:
+        root = self.numbers.square_root(x.a)
+        inverse = self.numbers.reciprocal(root)
+        slope = self.numbers.number(Fraction(1, 2)) * inverse
+        return self._compose(x, root, slope, self.numbers.number(Fraction(-1, 8)) * inverse * inverse * inverse)
+
+    def function(self, name: str, x: Series) -> Series:
+        if name in ("sinh", "cosh", "tanh"):
+            up, down = self.function("exp", x), self.function("exp", -x)
+            half = self.number(Fraction(1, 2))
+            sinh, cosh = half * (up - down), half * (up + down)
+            return {"sinh": sinh, "cosh": cosh}.get(name) or sinh * self.reciprocal(cosh)
+        value = self.numbers.function(name, x.a)
+        half_number = self.numbers.number(Fraction(1, 2))
+        if name == "exp":
+            return self._compose(x, value, value, half_number * value)
+        if name == "log":
+            inverse = self.numbers.reciprocal(x.a)
+            return self._compose(x, value, inverse, -half_number * inverse * inverse)
+        inverse = self.numbers.reciprocal(self.numbers.one + x.a * x.a)
+        return self._compose(x, value, inverse, -x.a * inverse * inverse)
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Numbers for everything: ``values`` by declared name (and ``q_dot``, ``q_ddot``), in ``numbers``' kind."""
+
+    numbers: Algebra
+    values: Mapping[str, Scalar]
+
+
+class Placement:
+    """Every body's place in inertial axes as series: ``origin``, and ``axes`` whose columns are the body axes."""
+
+    def __init__(self, system: System, state: State, environment: Mapping[str, Series]) -> None:
+        self.system = system
+        self.algebra = TaylorSeries(state.numbers, environment)
+        self.lower = Lowering(self.algebra, environment)
+        one, zero = self.algebra.one, self.algebra.zero
+        identity = [[one if i == j else zero for j in range(3)] for i in range(3)]
+        self.origin: dict[str, Triple] = {INERTIAL: [zero, zero, zero]}
+        self.axes: dict[str, list[Triple]] = {INERTIAL: identity}
+        for body in system.bodies:
+            offset = self.lower.vector(body.connection_point)
+            self.origin[body.name] = self.point(body.attached_to, offset)
+            axes = self.axes[body.attached_to]
+            for axis, angle in body.rotation.turns():
+                axes = _product(axes, self._rodrigues(axis - 1, *self.lower.angle(angle)))
+            self.axes[body.name] = axes
+
+    def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
+        """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
+        one, zero = self.algebra.one, self.algebra.zero
+        rows = [[one if i == j == k else (c if i == j else zero) for j in range(3)] for i in range(3)]
+        rows[(k + 1) % 3][(k + 2) % 3] = -s
+        rows[(k + 2) % 3][(k + 1) % 3] = s
+        return rows
+
+    def direction(self, body: str, v: Sequence[Series]) -> Triple:
+        """A vector given in a body's axes, in inertial axes."""
+        return [_dot(row, v) for row in self.axes[body]]
+
+    def point(self, body: str, v: Sequence[Series]) -> Triple:
+        return [a + b for a, b in zip(self.origin[body], self.direction(body, v), strict=True)]
+
+    def mass_centre(self, body: model.Body) -> Triple:
+        return self.point(body.name, self.lower.vector(body.mass_centre))
+
+    def inertia(self, body: model.Body) -> list[Triple] | None:
+        """A Theta_C A^T, in inertial axes."""
+        if body.inertia is None:
+            return None
+        tensor = [list(self.lower.vector(row)) for row in body.inertia.tensor]
+        if body.inertia.about == "joint":
+            c = self.lower.vector(body.mass_centre)
+            mass, square = self.lower(body.mass), _dot(c, c)
+            for i in range(3):
+                for j in range(3):
+                    steiner = square - c[i] * c[j] if i == j else -(c[i] * c[j])
+                    tensor[i][j] = tensor[i][j] - mass * steiner
+        axes = self.axes[body.name]
+        return _product(_product(axes, tensor), _transpose(axes))
+
+    def spin(self, body: str) -> tuple[list[Scalar], list[Scalar]]:
+        """omega and domega/ds from A' A^T, in inertial axes."""
+        axes = self.axes[body]
+        omega, rate = [], []
+        for i, j in ((2, 1), (0, 2), (1, 0)):
+            pairs = list(zip(axes[i], axes[j], strict=True))
+            omega.append(sum((x.b * y.a for x, y in pairs), self.algebra.numbers.zero))
+            two = self.algebra.numbers.number(2)
+            rate.append(sum((two * x.c * y.a + x.b * y.b for x, y in pairs), self.algebra.numbers.zero))
+        return omega, rate
+
+
+def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _product(a: list[Triple], b: list[Triple]) -> list[Triple]:
+    return [[_dot(row, [b[k][j] for k in range(3)]) for j in range(3)] for row in a]
+
+
+def _transpose(a: list[Triple]) -> list[Triple]:
+    return [[a[j][i] for j in range(3)] for i in range(3)]
+
+
+class Oracle:
+    """All generalised forces of a system at one state."""
+
+    def __init__(self, system: System, state: State) -> None:
+        self.system = system
+        self.state = state
+        self.numbers = state.numbers
+        self.moving = Placement(system, state, self._in_time())
+        self.displaced = {name: Placement(system, state, self._displaced(name)) for name in system.coordinates}
+
+    def _constants(self) -> dict[str, Series]:
+        zero = self.numbers.zero
+        return {name: Series(value, zero, zero) for name, value in self.state.values.items()}
+
+    def _in_time(self) -> dict[str, Series]:
+        zero, half = self.numbers.zero, self.numbers.number(Fraction(1, 2))
+        environment, values = self._constants(), self.state.values
+        environment["t"] = Series(values["t"], self.numbers.one, zero)
+        rates = Lowering(self.numbers, values)
+        for item in self.system.prescribed:
+            environment[item.name] = Series(values[item.name], rates(item.rate), zero)
+        for name in self.system.coordinates:
+            speed, acceleration = values[name + "_dot"], values[name + "_ddot"]
+            environment[name] = Series(values[name], speed, half * acceleration)
+            environment[velocity_name(name)] = Series(speed, acceleration, zero)
+        return environment
+
+    def _displaced(self, name: str) -> dict[str, Series]:
+        environment = self._constants()
+        environment[name] = Series(self.state.values[name], self.numbers.one, self.numbers.zero)
+        return environment
+
+    def residuals(self) -> dict[str, Scalar]:
+        """M q'' - forcing, for every coordinate."""
+        return {name: self._inertia(name) - self._applied(name) for name in self.system.coordinates}
+
+    def _inertia(self, name: str) -> Scalar:
+        total = self.numbers.zero
+        two = self.numbers.number(2)
+        displaced = self.displaced[name]
+        for body in self.system.bodies:
+            mass = self.moving.lower(body.mass).a
+            path, shift = self.moving.mass_centre(body), displaced.mass_centre(body)
+            total = total + mass * two * _dot([x.c for x in path], [x.b for x in shift])
+            tensor = self.moving.inertia(body)
+            if tensor is not None:
+                omega, rate = self.moving.spin(body.name)
+                change = [_dot([x.a for x in row], rate) + _dot([x.b for x in row], omega) for row in tensor]
+                total = total + _dot(change, displaced.spin(body.name)[0])
+        return total
+
+    def _applied(self, name: str) -> Scalar:
+        total = self.numbers.zero
+        for load in self.system.loads:
+            total = total + _LOADS[type(load)](self, load, name)
+        return total
+
+    def along(self, name: str, body: str, point: Sequence[Scalar]) -> list[Scalar]:
+        """dr_P/dq in inertial axes."""
+        constant = [self.moving.algebra.constant(x) for x in point]
+        return [x.b for x in self.displaced[name].point(body, constant)]
+
+    def numbers_of(self, components: Sequence[Any]) -> list[Scalar]:
+        return [self.moving.lower(x).a for x in components]
+
+    def in_inertial_axes(self, axes: str, components: Sequence[Any]) -> list[Scalar]:
+        return [x.a for x in self.moving.direction(axes, self.moving.lower.vector(components))]
+
+
+# --- loads, each by the shortest physical argument ---
+
+
+def _uniform(oracle: Oracle, load: model.UniformGravity, name: str) -> Scalar:
+    field = oracle.numbers_of(load.acceleration)
+    total = oracle.numbers.zero
+    for body in oracle.system.bodies:
+        mass = oracle.moving.lower(body.mass).a
+        total = total + mass * _dot(field, [x.b for x in oracle.displaced[name].mass_centre(body)])
+    return total
+
+
+def _newtonian(oracle: Oracle, load: model.NewtonianGravity, name: str) -> Scalar:
+    """dU/dq with U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
+    place = oracle.displaced[name]
+    algebra = place.algebra
+    outward = [a - b for a, b in zip(place.origin[load.about], place.origin[load.centre], strict=True)]
+    distance = algebra.square_root(_dot(outward, outward))
+    inverse = algebra.reciprocal(distance)
+    e = [inverse * x for x in outward]
+    total = algebra.zero
+    half, three = algebra.number(Fraction(1, 2)), algebra.number(3)
+    for body in oracle.system.bodies:
+        if load.about not in oracle.system.path(body.name):
+            continue
+        mass = place.lower(body.mass)
+        x = [a - b for a, b in zip(place.mass_centre(body), place.origin[load.about], strict=True)]
+        second = [[mass * x[i] * x[j] for j in range(3)] for i in range(3)]
+        tensor = place.inertia(body)
+        if tensor is not None:
+            trace = half * (tensor[0][0] + tensor[1][1] + tensor[2][2])
+            for i in range(3):
+                for j in range(3):
+                    spread = trace - tensor[i][j] if i == j else -tensor[i][j]
+                    second[i][j] = second[i][j] + spread
+        along = _dot(e, [_dot(row, e) for row in second])
+        quadrupole = half * (three * along - (second[0][0] + second[1][1] + second[2][2]))
+        terms = mass * inverse - inverse * inverse * mass * _dot(e, x) + inverse * inverse * inverse * quadrupole
+        total = total + terms
+    return (place.lower(load.constant) * total).b
+
+
+def _coordinate_spring(oracle: Oracle, load: model.CoordinateSpring, name: str) -> Scalar:
+    place = oracle.displaced[name]
+    stretch = place.lower.environment[load.coordinate] - place.lower(load.rest)
+    energy = place.algebra.number(Fraction(1, 2)) * place.lower(load.stiffness) * stretch * stretch
+    return -energy.b
+
+
+def _point_spring(oracle: Oracle, load: model.PointSpring, name: str) -> Scalar:
+    place = oracle.displaced[name]
+    algebra = place.algebra
+    ends = [place.point(end.body, place.lower.vector(end.position)) for end in (load.first, load.second)]
+    span = [a - b for a, b in zip(*ends, strict=True)]
+    square, length = _dot(span, span), place.lower(load.length)
+    energy = square
+    if not algebra.vanishes(length):
+        energy = square - algebra.number(2) * length * algebra.square_root(square)
+    return -(algebra.number(Fraction(1, 2)) * place.lower(load.stiffness) * energy).b
+
+
+def _coordinate_damper(oracle: Oracle, load: model.CoordinateDamper, name: str) -> Scalar:
+    if name != load.coordinate:
+        return oracle.numbers.zero
+    return -(oracle.moving.lower(load.coefficient).a * oracle.state.values[name + "_dot"])
+
+
+def _point_damper(oracle: Oracle, load: model.PointDamper, name: str) -> Scalar:
+    velocities, shifts = [], []
+    for end in (load.first, load.second):
+        point = oracle.moving.lower.vector(end.position)
+        velocities.append([x.b for x in oracle.moving.point(end.body, point)])
+        shifts.append(oracle.along(name, end.body, [x.a for x in point]))
+    closing = [a - b for a, b in zip(*velocities, strict=True)]
+    shift = [a - b for a, b in zip(*shifts, strict=True)]
+    return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
+
+
+def _force_function(oracle: Oracle, load: model.ForceFunction, name: str) -> Scalar:
+    slope = oracle.displaced[name].lower(load.expression).b
+    return -slope if load.spelled == "potential" else slope
+
+
+def _rayleigh(oracle: Oracle, load: model.Rayleigh, name: str) -> Scalar:
+    environment = oracle._constants()
+    zero, one = oracle.numbers.zero, oracle.numbers.one
+    environment[velocity_name(name)] = Series(oracle.state.values[name + "_dot"], one, zero)
+    return -Lowering(TaylorSeries(oracle.numbers, environment), environment)(load.expression).b
+
+
+def _generalized(oracle: Oracle, load: model.GeneralizedForce, name: str) -> Scalar:
+    total = oracle.numbers.zero
+    for coordinate, value in load.components:
+        if coordinate == name:
+            total = total + oracle.moving.lower(value).a
+    return total
+
+
+def _point_force(oracle: Oracle, load: model.PointForce, name: str) -> Scalar:
+    force = oracle.in_inertial_axes(load.axes, load.components)
+    return _dot(force, oracle.along(name, load.point.body, oracle.numbers_of(load.point.position)))
+
+
+def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
+    torque = oracle.in_inertial_axes(load.axes, load.components)
+    place = oracle.displaced[name]
+    turned = place.spin(load.body)[0] if load.body != INERTIAL else [oracle.numbers.zero] * 3
+    if load.reaction_on is not None and load.reaction_on != INERTIAL:
+        turned = [a - b for a, b in zip(turned, place.spin(load.reaction_on)[0], strict=True)]
+    return _dot(torque, turned)
+
+
+_LOADS: dict[type, Any] = {
+    model.UniformGravity: _uniform,
+    model.NewtonianGravity: _newtonian,
+    model.CoordinateSpring: _coordinate_spring,
+    model.PointSpring: _point_spring,
+    model.CoordinateDamper: _coordinate_damper,
+    model.PointDamper: _point_damper,
+    model.ForceFunction: _force_function,
+    model.Rayleigh: _rayleigh,
+    model.GeneralizedForce: _generalized,
+    model.PointForce: _point_force,
+    model.Torque: _torque,
+}

@@ -1,0 +1,41 @@
+"""Random exact states, the same on every run, at which two routes are compared without tolerance."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from flint import arb, fmpq
+
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.oracle import State
+from mbsym.model.system import System
+
+#: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
+SEED = 1788
+
+
+def _values(system: System, ring: Ring, source: random.Random) -> dict[str, fmpq]:
+    values = {name: fmpq(source.randint(1, 40), source.randint(1, 24)) for name in ring.names()}
+    for parameter in system.parameters:
+        if parameter.sign in ("negative", "nonpositive"):
+            values[parameter.name] = -values[parameter.name]
+    return values
+
+
+def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
+    """States whose sines and cosines are rational; a plain coordinate is an independent number there."""
+    source = random.Random(SEED)
+    for _ in range(count):
+        values = _values(system, ring, source) | {"pi": fmpq(355, 113)}
+        tangents = {name: fmpq(source.randint(-9, 9) or 1, source.randint(1, 9)) for name in ring.angles}
+        yield State(Rationals(tangents, ring.angles), values)
+
+
+def ball_states(system: System, ring: Ring, count: int) -> Iterator[State]:
+    """States in which irrational functions have rigorous enclosures."""
+    source = random.Random(SEED)
+    for _ in range(count):
+        values = {name: arb(value) for name, value in _values(system, ring, source).items()} | {"pi": arb.pi()}
+        yield State(Balls(values), values)

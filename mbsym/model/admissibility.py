@@ -1,0 +1,157 @@
+"""Which masses and inertias a real body can have.
+
+For a body with density rho >= 0 the second moments P = int rho x x^T are positive semidefinite, and the tensor of
+inertia is J = tr(P) 1 - P, that is P = tr(J)/2 1 - J.  So J belongs to a body exactly if P is positive semidefinite;
+for principal moments that is the triangle inequality A <= B + C in its three forms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from itertools import combinations
+
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+
+Numbers = tuple[Fraction, Fraction, Fraction]
+NumberTensor = tuple[Numbers, Numbers, Numbers]
+
+#: A number longer than this is not worth a check.
+_MAX_BITS = 20_000
+
+
+def inertia_violation(tensor: NumberTensor) -> str | None:
+    """Why no body has this tensor of inertia, or None if some body has it."""
+    for index in range(3):
+        if tensor[index][index] < 0:
+            return f"the moment of inertia about axis {index + 1} is negative"
+    if _is_diagonal(tensor):
+        for index in range(3):
+            others = [tensor[other][other] for other in range(3) if other != index]
+            if tensor[index][index] > sum(others, Fraction(0)):
+                return f"the moment of inertia about axis {index + 1} exceeds the sum of the other two"
+        return None
+    if any(minor < 0 for minor in principal_minors(second_moments(tensor))):
+        return "its principal moments violate the triangle inequality (tr(J)/2 - J is not positive semidefinite)"
+    return None
+
+
+def _is_diagonal(tensor: NumberTensor) -> bool:
+    return not any(tensor[row][column] for row in range(3) for column in range(3) if row != column)
+
+
+def second_moments(tensor: NumberTensor) -> NumberTensor:
+    """P = tr(J)/2 1 - J, the tensor of second moments."""
+    half = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2
+    return _tensor(lambda row, column: (half if row == column else Fraction(0)) - tensor[row][column])
+
+
+def _tensor(entry: Callable[[int, int], Fraction]) -> NumberTensor:
+    rows = [(entry(row, 0), entry(row, 1), entry(row, 2)) for row in range(3)]
+    return rows[0], rows[1], rows[2]
+
+
+def principal_minors(matrix: NumberTensor) -> Iterator[Fraction]:
+    """All principal minors: a symmetric matrix is positive semidefinite exactly if none is negative."""
+    for size in (1, 2, 3):
+        for chosen in combinations(range(3), size):
+            yield _determinant([[matrix[row][column] for column in chosen] for row in chosen])
+
+
+def _determinant(matrix: list[list[Fraction]]) -> Fraction:
+    if len(matrix) == 1:
+        return matrix[0][0]
+    total = Fraction(0)
+    for column, entry in enumerate(matrix[0]):
+        minor = [row[:column] + row[column + 1 :] for row in matrix[1:]]
+        total += (-1) ** column * entry * _determinant(minor)
+    return total
+
+
+def about_mass_centre(tensor: NumberTensor, mass: Fraction, centre: Numbers) -> NumberTensor:
+    """The parallel-axis theorem: J_C = J_O - m (c.c 1 - c c^T), with c from O to the mass centre."""
+    square = sum((component * component for component in centre), Fraction(0))
+    return _tensor(
+        lambda row, column: (
+            tensor[row][column] - mass * ((square if row == column else Fraction(0)) - centre[row] * centre[column])
+        )
+    )
+
+
+def number_of(expression: Expression, values: Mapping[str, Fraction]) -> Fraction | None:
+    """The exact value where the names have values, or None where it is not rational, not known or absurdly long."""
+    result: Fraction | None = None
+    match expression:
+        case Number(value):
+            result = value
+        case Name(name):
+            result = values.get(name)
+        case Negative(operand):
+            inner = number_of(operand, values)
+            result = None if inner is None else -inner
+        case Operation(operator, left, right):
+            first, second = number_of(left, values), number_of(right, values)
+            if first is not None and second is not None:
+                result = _combine(operator, first, second)
+        case Call():
+            result = None
+    return result if result is None or _is_short(result) else None
+
+
+def _is_short(value: Fraction) -> bool:
+    return value.numerator.bit_length() + value.denominator.bit_length() <= _MAX_BITS
+
+
+def _combine(operator: str, first: Fraction, second: Fraction) -> Fraction | None:
+    match operator:
+        case "+":
+            return first + second
+        case "-":
+            return first - second
+        case "*":
+            return first * second
+        case "/":
+            return first / second if second else None
+    if second.denominator != 1 or (not first and second < 0):
+        return None
+    size = first.numerator.bit_length() + first.denominator.bit_length()
+    return first**second.numerator if size * abs(second.numerator) <= _MAX_BITS else None
+
+
+def surely_negative(expression: Expression, signs: Mapping[str, str]) -> bool:
+    """Whether the declared signs alone force a negative value."""
+    return _sign(expression, signs) == "negative"
+
+
+def _sign(expression: Expression, signs: Mapping[str, str]) -> str | None:
+    """``positive``, ``negative`` (both strict) or None for not known."""
+    match expression:
+        case Number(value):
+            return "positive" if value > 0 else "negative" if value < 0 else None
+        case Name("pi"):
+            return "positive"
+        case Name(name):
+            return signs.get(name) if signs.get(name) in ("positive", "negative") else None
+        case Negative(operand):
+            return {"positive": "negative", "negative": "positive"}.get(_sign(operand, signs) or "")
+        case Operation("+", left, right):
+            return _common(_sign(left, signs), _sign(right, signs))
+        case Operation("-", left, right):
+            return _common(_sign(left, signs), _sign(Negative(right), signs))
+        case Operation("*" | "/", left, right):
+            first, second = _sign(left, signs), _sign(right, signs)
+            if first is None or second is None:
+                return None
+            return "positive" if first == second else "negative"
+        case Operation("**", base, Number(exponent)):
+            inner = _sign(base, signs)
+            if inner == "positive" or (inner == "negative" and exponent.denominator == 1 and exponent.numerator % 2):
+                return inner
+            return "positive" if inner == "negative" and exponent.denominator == 1 else None
+        case Call("exp" | "cosh", _):
+            return "positive"
+    return None
+
+
+def _common(first: str | None, second: str | None) -> str | None:
+    return first if first == second else None

@@ -1,0 +1,204 @@
+"""Is an expression identically zero?  Decided without a computer algebra system, so that reading stays light.
+
+The expression is evaluated at random points of a large prime field.  Names become random elements; sin and cos of
+angles become elements with sin^2 + cos^2 = 1 through sin = 2u/(1 + u^2), cos = (1 - u^2)/(1 + u^2), with multiple
+angles by the addition theorem, so every identity between rational functions of names, sines and cosines holds exactly.
+A nonzero value is a proof of difference; an identity that holds by accident has a probability of about 1e-30.
+
+What is not such a function (``sqrt(x)``, ``sin(1)``, ``sin(x*y)``) is evaluated in floating point instead.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, walk
+
+_PRIME = 2**127 - 1
+_POINTS = 2
+_MAX_MULTIPLE = 1_000
+_TOLERANCE = 1e-9
+
+
+class _NotRational(Exception):
+    """Internal: this expression has no value in the prime field."""
+
+
+def vanishes(expression: Expression, replaced: Mapping[str, Expression] | None = None) -> bool | None:
+    """Whether an expression is zero at every point, or None where it cannot be evaluated.
+
+    ``replaced`` gives the names that are functions of other names (relations between parameters, without circles).
+    """
+    replaced = replaced or {}
+    try:
+        scales = _denominators([expression, *replaced.values()])
+        return all(_FieldPoint(seed, scales, replaced).value(expression) == 0 for seed in range(_POINTS))
+    except (_NotRational, RecursionError):
+        return _vanishes_in_floats(expression, replaced)
+
+
+def _denominators(expressions: Iterable[Expression]) -> dict[str, int]:
+    """For each name the common denominator of its coefficients inside sines and cosines."""
+    scales: dict[str, int] = {}
+    for expression in expressions:
+        for node in walk(expression):
+            form = linear_form(node.argument) if isinstance(node, Call) else None
+            for name, coefficient in form.coefficients if form else ():
+                scales[name] = math.lcm(scales.get(name, 1), coefficient.denominator)
+    return scales
+
+
+def _inverse(value: int) -> int:
+    if value % _PRIME == 0:
+        raise _NotRational
+    return pow(value, -1, _PRIME)
+
+
+class _FieldPoint:
+    """One random point: a value and a half-angle tangent for every name."""
+
+    def __init__(self, seed: int, scales: Mapping[str, int], replaced: Mapping[str, Expression]) -> None:
+        self.seed = seed
+        self.scales = scales
+        self.replaced = replaced
+        self.known: dict[str, int] = {}
+
+    def random(self, what: str) -> int:
+        return random.Random(f"{self.seed} {what}").randrange(1, _PRIME)
+
+    def value(self, expression: Expression) -> int:
+        match expression:
+            case Number(number):
+                return self.fraction(number)
+            case Name(name):
+                return self.name(name)
+            case Negative(operand):
+                return -self.value(operand) % _PRIME
+            case Operation("**", base, Number(exponent)):
+                return self.power(self.value(base), exponent)
+            case Operation("+", left, right):
+                return (self.value(left) + self.value(right)) % _PRIME
+            case Operation("-", left, right):
+                return (self.value(left) - self.value(right)) % _PRIME
+            case Operation("*", left, right):
+                return self.value(left) * self.value(right) % _PRIME
+            case Operation("/", left, right):
+                return self.value(left) * _inverse(self.value(right)) % _PRIME
+            case Call("sin" | "cos" | "tan" as function, argument):
+                return self.circular(function, argument)
+        raise _NotRational
+
+    def fraction(self, number: Fraction) -> int:
+        return number.numerator * _inverse(number.denominator) % _PRIME
+
+    def name(self, name: str) -> int:
+        if name not in self.known:
+            relation = self.replaced.get(name)
+            self.known[name] = self.random("value " + name) if relation is None else self.value(relation)
+        return self.known[name]
+
+    def power(self, base: int, exponent: Fraction) -> int:
+        if exponent.denominator != 1:
+            raise _NotRational
+        if exponent < 0:
+            base = _inverse(base)
+        return pow(base, abs(exponent.numerator), _PRIME)
+
+    def circular(self, function: str, argument: Expression) -> int:
+        form = linear_form(argument)
+        if form is None or form.constant or any(name in self.replaced for name, _ in form.coefficients):
+            raise _NotRational
+        sine, cosine = self.sine_and_cosine(form)
+        if function == "tan":
+            return sine * _inverse(cosine) % _PRIME
+        return sine if function == "sin" else cosine
+
+    def sine_and_cosine(self, form: LinearForm) -> tuple[int, int]:
+        quarters = form.turns * 2
+        if quarters.denominator != 1:
+            raise _NotRational
+        sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[quarters.numerator % 4]
+        for name, coefficient in form.coefficients:
+            other_sine, other_cosine = self.multiple(name, coefficient)
+            sine, cosine = (
+                (sine * other_cosine + cosine * other_sine) % _PRIME,
+                (cosine * other_cosine - sine * other_sine) % _PRIME,
+            )
+        return sine % _PRIME, cosine % _PRIME
+
+    def multiple(self, name: str, coefficient: Fraction) -> tuple[int, int]:
+        """sin and cos of coefficient * name, from those of name / scale."""
+        scale = self.scales.get(name, 1)
+        count = abs(coefficient.numerator) * (scale // coefficient.denominator)
+        if count > _MAX_MULTIPLE:
+            raise _NotRational
+        half = self.random("angle " + name)
+        inverse = _inverse(1 + half * half)
+        one_sine, one_cosine = 2 * half * inverse % _PRIME, (1 - half * half) * inverse % _PRIME
+        sine, cosine = 0, 1
+        for _ in range(count):
+            sine, cosine = (
+                (sine * one_cosine + cosine * one_sine) % _PRIME,
+                (cosine * one_cosine - sine * one_sine) % _PRIME,
+            )
+        return (sine if coefficient > 0 else -sine % _PRIME), cosine
+
+
+def _vanishes_in_floats(expression: Expression, replaced: Mapping[str, Expression]) -> bool | None:
+    verdicts = []
+    for seed in range(4):
+        point = _FloatPoint(seed, replaced)
+        try:
+            value, size = point.value(expression), point.largest
+        except (ArithmeticError, ValueError, TypeError, RecursionError):
+            continue
+        if math.isfinite(value) and math.isfinite(size):
+            verdicts.append(abs(value) <= _TOLERANCE * size)
+    return all(verdicts) if verdicts else None
+
+
+class _FloatPoint:
+    """One random point of ordinary numbers; remembers the largest number met, the measure of rounding."""
+
+    def __init__(self, seed: int, replaced: Mapping[str, Expression]) -> None:
+        self.seed = seed
+        self.replaced = replaced
+        self.largest = 1.0
+
+    def value(self, expression: Expression) -> float:
+        value = self.evaluated(expression)
+        if isinstance(value, complex):
+            raise ValueError
+        self.largest = max(self.largest, abs(value))
+        return value
+
+    def evaluated(self, expression: Expression) -> float:
+        match expression:
+            case Number(number):
+                return float(number)
+            case Name("pi"):
+                return math.pi
+            case Name(name):
+                relation = self.replaced.get(name)
+                if relation is not None:
+                    return self.value(relation)
+                return random.Random(f"{self.seed} {name}").uniform(0.4, 1.4)
+            case Negative(operand):
+                return -self.value(operand)
+            case Operation("**", base, exponent):
+                return float(self.value(base) ** self.value(exponent))
+            case Operation("+", left, right):
+                return self.value(left) + self.value(right)
+            case Operation("-", left, right):
+                return self.value(left) - self.value(right)
+            case Operation("*", left, right):
+                return self.value(left) * self.value(right)
+            case Operation("/", left, right):
+                return self.value(left) / self.value(right)
+            case Call(function, argument):
+                return float(getattr(math, function)(self.value(argument)))
+        raise ValueError

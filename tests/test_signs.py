@@ -1,0 +1,155 @@
+"""Signs of polynomials: what must be proved, what must stay unknown, and that no answer is ever wrong."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsym.algebra.signs import RELATIONS, SIGN_SETS, Condition, ContradictionError, Signs, conditions
+
+CONTEXT = fmpq_mpoly_ctx.get(["x", "y", "z"], Ordering.degrevlex)
+x, y, z = CONTEXT.gens()
+ONE = CONTEXT.constant(1)
+
+
+def signs(words: str, *assumptions: tuple[Any, str]) -> Signs:
+    return Signs(CONTEXT, tuple(words.split()), assumptions)
+
+
+@pytest.mark.parametrize(
+    ("words", "assumptions", "polynomial", "expected"),
+    [
+        ("positive positive real", (), x * y + x**2, "positive"),
+        ("positive negative real", (), x * y, "negative"),
+        ("positive nonnegative real", (), x * y, "nonnegative"),
+        ("positive real real", (), x * y, "unknown"),
+        ("nonzero real real", (), x, "nonzero"),
+        ("nonzero real real", (), x**2, "positive"),
+        ("real real real", (), x**2, "nonnegative"),
+        ("real real real", (), x**2 + 1, "positive"),
+        ("real real real", (), x**2 - x * y + y**2, "nonnegative"),
+        ("real real real", (), x**2 - x + 1, "positive"),
+        ("real real real", (), -(x**2) + x - 1, "negative"),
+        ("real real real", (), x * 0, "zero"),
+        ("real real real", (), ONE * -3, "negative"),
+        ("positive positive positive", ((x + y - z, ">"),), 2 * x + 2 * y - 2 * z, "positive"),
+        ("positive positive positive", ((x + y - z, ">"),), z - x - y, "negative"),
+        ("positive positive positive", ((x + y - z, ">"),), 3 * x + y - z, "positive"),
+        ("positive positive positive", ((x - y, ">"), (y - z, ">=")), x - z, "positive"),
+        ("positive positive positive", ((x - y, ">"),), x**2 - y**2, "positive"),
+        ("positive positive positive", ((x - y, ">"),), x * z - y * z, "positive"),
+        ("real real real", ((x * y, ">"),), x * y * 5, "positive"),
+        ("real real real", ((x - y, "!="),), (x - y) ** 2, "positive"),
+        ("real real real", ((x - y, "!="),), x - y, "nonzero"),
+        ("real real real", ((1 - x, ">"), (1 + x, ">")), 1 - x**2, "positive"),
+        ("real real real", ((1 - x, ">"), (1 + x, ">"), (y, ">"), (1 - y, ">")), 1 + x * y, "positive"),
+        ("positive real real", ((1 - x, ">="),), 1 - x, "nonnegative"),
+        ("positive real real", ((1 - x, ">="),), 1 - x**3, "nonnegative"),
+        ("positive real real", ((1 - x, ">="),), 2 - x**3, "positive"),
+        ("positive real real", ((1 - x, ">="),), x**2 - x, "nonpositive"),
+        ("real real real", ((x - 2, ">"),), x**2 - 4, "positive"),
+        ("real real real", ((x - 2, ">="),), x**2 - 3 * x + 2, "nonnegative"),
+        ("real real real", ((-2 - x, ">"),), x + 1, "negative"),
+        ("positive positive real", ((2 * x - 2 * x * y, ">"),), 1 - y, "positive"),
+        ("positive positive real", ((x * (1 - y), ">"),), 2 - y, "positive"),
+    ],
+)
+def test_proved(words: str, assumptions: tuple[tuple[Any, str], ...], polynomial: Any, expected: str) -> None:
+    assert signs(words, *assumptions).sign(polynomial) == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "assumptions", "polynomial"),
+    [
+        ("positive positive real", (), x - y),
+        ("real real real", ((x - y, ">"),), x + y),
+        ("positive real real", ((1 - x, ">="),), 1 - 2 * x),
+        ("positive positive positive", ((x + y - z, ">"),), x - z),
+        ("real real real", (), x**2 - 3 * x * y + y**2),
+    ],
+)
+def test_unknown_stays_unknown(words: str, assumptions: tuple[tuple[Any, str], ...], polynomial: Any) -> None:
+    assert signs(words, *assumptions).sign(polynomial) == "unknown"
+
+
+def test_bad_knowledge_is_refused() -> None:
+    with pytest.raises(ValueError, match="sign words"):
+        Signs(CONTEXT, ("real",))
+    with pytest.raises(ValueError, match="no such sign"):
+        signs("real real plus")
+    with pytest.raises(ValueError, match="no such relation"):
+        signs("real real real", (x, "<"))
+    with pytest.raises(ContradictionError):
+        signs("real real real", (ONE * -1, ">")).sign(x - y)
+    with pytest.raises(ContradictionError):
+        signs("real real real", (x - 2, ">"), (1 - x, ">")).sign(x - y)
+
+
+def test_condition_drops_what_is_known() -> None:
+    known = signs("positive real real", (1 - y, ">"))
+    assert known.condition(x * (2 - y)).kind == "always"
+    assert known.condition(-x).kind == "never"
+    assert known.condition(-(y**2)).kind == "never"
+    assert known.condition(x * 0).kind == "never"
+    assert known.condition(y**2 * x) == Condition("nonzero", ONE, (), (y,))
+    assert known.condition(fmpq(3, 4) * x**3 * (z - y)) == Condition("inequality", z - y, (z - y,))
+    assert known.condition(-2 * x * (z - y)) == Condition("inequality", y - z, (y - z,))
+    assert known.condition((z - y) * y**2 * (1 - y)) == Condition("inequality", z - y, (z - y,), (y,))
+    assert known.condition(-6 * y * z**3) == Condition("inequality", -y * z, (y, -z)) or known.condition(
+        -6 * y * z**3
+    ) == Condition("inequality", -y * z, (z, -y))
+    assert known.nonzero_condition(x * y**2) == Condition("nonzero", ONE, (), (y,))
+    assert known.nonzero_condition(x).kind == "always"
+    assert known.nonzero_condition(x * 0).kind == "never"
+
+
+def test_list_of_conditions() -> None:
+    known = signs("positive real real")
+    required = [known.condition(p) for p in (x, y, 2 * x * y, y * z, z, x**2 * z**2, y - z)]
+    assert [c.polynomial for c in conditions(required)] == [y, z, y - z]
+    assert conditions([known.condition(y), known.condition(-x)])[0].kind == "never"
+    assert conditions([]) == ()
+
+
+integers = st.integers(-3, 3)
+polynomials = st.dictionaries(st.tuples(*[st.integers(0, 2)] * 3), integers, min_size=1, max_size=5).map(
+    CONTEXT.from_dict
+)
+words = st.sampled_from(["positive", "nonnegative", "negative", "nonpositive", "nonzero", "real"])
+assumption = st.tuples(
+    st.tuples(integers, integers, integers, integers).map(lambda c: c[0] * x + c[1] * y + c[2] * z + c[3]),
+    st.sampled_from(sorted(RELATIONS)),
+)
+grid = [Fraction(n, 2) for n in range(-6, 7)]
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.tuples(words, words, words), st.lists(assumption, max_size=3), polynomials, polynomials, st.randoms())
+def test_never_wrong(
+    three: tuple[str, ...], given_: list[tuple[Any, str]], p: Any, q: Any, random: Any
+) -> None:
+    """Every sampled point that satisfies the assumptions has one of the claimed signs and agrees with condition()."""
+    known = Signs(CONTEXT, three, tuple(given_))
+    product = p * q
+    try:
+        claimed = SIGN_SETS.get(known.sign(product), SIGN_SETS["real"])
+        condition = known.condition(product)
+    except ContradictionError:
+        claimed, condition = frozenset(), known._decided(False)
+    for _ in range(60):
+        point = [fmpq(c.numerator, c.denominator) for c in random.choices(grid, k=3)]
+        possible = all(_sign(v) in SIGN_SETS[word] for v, word in zip(point, three, strict=True))
+        if possible and all(_sign(a(*point)) in RELATIONS[relation] for a, relation in given_):
+            value = product(*point)
+            assert _sign(value) in claimed
+            reduced = condition.polynomial(*point) > 0 and all(f(*point) != 0 for f in condition.nonzero)
+            assert reduced == (value > 0)
+
+
+def _sign(value: Any) -> int:
+    return (value > 0) - (value < 0)
