@@ -100,9 +100,9 @@ def test_condition_drops_what_is_known() -> None:
     assert known.condition(fmpq(3, 4) * x**3 * (z - y)) == Condition("inequality", z - y, (z - y,))
     assert known.condition(-2 * x * (z - y)) == Condition("inequality", y - z, (y - z,))
     assert known.condition((z - y) * y**2 * (1 - y)) == Condition("inequality", z - y, (z - y,), (y,))
-    assert known.condition(-6 * y * z**3) == Condition("inequality", -y * z, (y, -z)) or known.condition(
-        -6 * y * z**3
-    ) == Condition("inequality", -y * z, (z, -y))
+    product = known.condition(-6 * y * z**3)
+    assert (product.kind, product.polynomial, product.nonzero) == ("inequality", -y * z, ())
+    assert sorted(map(str, product.factors)) == ["-z", "y"] or sorted(map(str, product.factors)) == ["-y", "z"]
     assert known.nonzero_condition(x * y**2) == Condition("nonzero", ONE, (), (y,))
     assert known.nonzero_condition(x).kind == "always"
     assert known.nonzero_condition(x * 0).kind == "never"
@@ -130,9 +130,7 @@ grid = [Fraction(n, 2) for n in range(-6, 7)]
 
 @settings(max_examples=120, deadline=None)
 @given(st.tuples(words, words, words), st.lists(assumption, max_size=3), polynomials, polynomials, st.randoms())
-def test_never_wrong(
-    three: tuple[str, ...], given_: list[tuple[Any, str]], p: Any, q: Any, random: Any
-) -> None:
+def test_never_wrong(three: tuple[str, ...], given_: list[tuple[Any, str]], p: Any, q: Any, random: Any) -> None:
     """Every sampled point that satisfies the assumptions has one of the claimed signs and agrees with condition()."""
     known = Signs(CONTEXT, three, tuple(given_))
     product = p * q

@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.latex import latex_text
+from mbsym.formulas.python import python_text
+from mbsym.formulas.wolfram import wolfram_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,18 +23,12 @@ class Formula:
     polynomial: Polynomial
 
     def __str__(self) -> str:
-        from mbsym.formulas.python import python_text
-
         return python_text(self.ring, self.polynomial)
 
     def latex(self) -> str:
-        from mbsym.formulas.latex import latex_text
-
         return latex_text(self.ring, self.polynomial)
 
     def wolfram(self) -> str:
-        from mbsym.formulas.wolfram import wolfram_text
-
         return wolfram_text(self.ring, self.polynomial)
 
     def to_sympy(self) -> Any:

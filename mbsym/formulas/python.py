@@ -5,9 +5,6 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.formulas.shape import Factor, Product, Sum, present
 
@@ -16,7 +13,7 @@ _SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
 
 def python_text(ring: Ring, polynomial: Polynomial) -> str:
     """The polynomial as one line of Python."""
-    return _Printer(ring).sum(present(ring, polynomial))
+    return _PythonPrinter(ring).sum(present(ring, polynomial))
 
 
 def declared_name(generator: Generator) -> str:
@@ -24,10 +21,22 @@ def declared_name(generator: Generator) -> str:
     return generator.name + _SUFFIX.get(generator.kind, "")
 
 
-class _Printer:
+class InfixPrinter:
+    """Sums, products and quotients on one line; languages differ in their power sign and in how atoms look."""
+
+    power = "**"
+
     def __init__(self, ring: Ring) -> None:
         self.ring = ring
         self._atoms: dict[int, str] = {}
+
+    def call(self, function: str, argument: str) -> str:
+        """A function of one argument; ``function`` is Python's name."""
+        raise NotImplementedError
+
+    def symbol(self, generator: Generator) -> str:
+        """A coordinate, velocity, acceleration, parameter, prescribed quantity or the time."""
+        raise NotImplementedError
 
     def sum(self, shape: Sum) -> str:
         if not shape.terms:
@@ -35,8 +44,8 @@ class _Printer:
         pieces: list[str] = []
         for term in shape.terms:
             negative = term.coefficient < 0
-            sign = (" - " if negative else " + ") if pieces else ("-" if negative else "")
-            pieces.append(sign + self.product(term))
+            pieces.append((" - " if negative else " + ") if pieces else ("-" if negative else ""))
+            pieces.append(self.product(term))
         return "".join(pieces)
 
     def product(self, product: Product) -> str:
@@ -48,11 +57,12 @@ class _Printer:
             over.insert(0, str(top))
         if bottom != 1:
             under.insert(0, str(bottom))
-        return "*".join(over) + _divided_by(under)
+        quotient = "" if not under else "/" + (under[0] if len(under) == 1 else f"({'*'.join(under)})")
+        return "*".join(over) + quotient
 
     def factor(self, factor: Factor) -> str:
         base = self.atom(factor.base) if isinstance(factor.base, int) else f"({self.sum(factor.base)})"
-        return base if factor.exponent == 1 else f"{base}**{factor.exponent}"
+        return base if factor.exponent == 1 else f"{base}{self.power}{factor.exponent}"
 
     def atom(self, index: int) -> str:
         if index not in self._atoms:
@@ -60,21 +70,25 @@ class _Printer:
         return self._atoms[index]
 
     def _atom(self, g: Generator) -> str:
-        argument = self._argument(g.argument) if g.argument is not None else g.name
-        if g.kind in ("sine", "cosine"):
-            whole = argument if g.denominator == 1 else f"{argument}/{g.denominator}"
-            return f"{'sin' if g.kind == 'sine' else 'cos'}({whole})"
-        if g.kind == "root":
-            return f"sqrt({argument})"
-        if g.kind == "function":
-            return f"{g.name}({argument})"
-        return declared_name(g)
+        if g.kind not in FUNCTION_OF_KIND:
+            return self.symbol(g)
+        argument = self._angle(g) if g.argument is None else self.sum(present(self.ring, g.argument))
+        return self.call(FUNCTION_OF_KIND[g.kind] or g.name, argument)
 
-    def _argument(self, argument: Any) -> str:
-        return self.sum(present(self.ring, argument))
+    def _angle(self, g: Generator) -> str:
+        """What stands under the sine of a named angle."""
+        kind = next(k for k in ("coordinate", "prescribed", "parameter", "time") if self.ring.has(k, g.name))
+        angle = self.atom(self.ring.index(kind, g.name))
+        return angle if g.denominator == 1 else f"{angle}/{g.denominator}"
 
 
-def _divided_by(under: Sequence[str]) -> str:
-    if not under:
-        return ""
-    return "/" + (under[0] if len(under) == 1 else f"({'*'.join(under)})")
+#: Python's function for each kind of generator that is one; functions go by their own names.
+FUNCTION_OF_KIND = {"sine": "sin", "cosine": "cos", "root": "sqrt", "function": ""}
+
+
+class _PythonPrinter(InfixPrinter):
+    def call(self, function: str, argument: str) -> str:
+        return f"{function}({argument})"
+
+    def symbol(self, generator: Generator) -> str:
+        return declared_name(generator)

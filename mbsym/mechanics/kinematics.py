@@ -43,7 +43,8 @@ class Scene:
     """A system seen through one algebra: lowered expressions and the motion of every body.
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
-    it and carried over.  With ``frozen`` the prescribed quantities and t stand still.
+    it and carried over.  With ``frozen`` the prescribed quantities and t stand still;
+    without ``bodies`` only expressions are lowered.
     """
 
     def __init__(
@@ -53,6 +54,7 @@ class Scene:
         environment: Mapping[str, Scalar],
         ring: Ring,
         frozen: bool = False,
+        bodies: bool = True,
     ) -> None:
         self.system = system
         self.algebra = algebra
@@ -62,7 +64,7 @@ class Scene:
         self.environment = environment
         self._carrier = Carrier(ring, algebra, environment)
         self.motions: dict[str, BodyMotion] = {}
-        for body in system.bodies:
+        for body in system.bodies if bodies else ():
             self.motions[body.name] = self._motion(body)
 
     def _motion(self, body: Body) -> BodyMotion:

@@ -73,11 +73,13 @@ class TimePeriodic(NoClosedForm):
     """The first approximation has coefficients that vary with time."""
 
 
-def by_quadratisation(scene: Scene, equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 2: never forms the nonlinear equations.  Raises TimePeriodic, NoClosedForm or SingularPoint."""
+def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | None) -> Linearisation:
+    """Route 2, from the system over jets (``quadratised``): never forms the nonlinear equations.
+
+    Raises TimePeriodic, NoClosedForm or SingularPoint.
+    """
     ring, names = scene.ring, scene.system.coordinates
     n = len(names)
-    expanded = quadratised(scene)
     lagrangian = kinetic_energy(expanded) + force_function(expanded)
     mass = [[_second(ring, lagrangian, n + i, n + j) for j in range(n)] for i in range(n)]
     mixed = [[_second(ring, lagrangian, n + i, j) for j in range(n)] for i in range(n)]

@@ -144,11 +144,16 @@ class Case:
     """If all of ``all_of`` and, unless it is empty, at least one of ``any_of`` hold, then ``verdict``.
 
     Cases are read in order, like an if-elif chain: a later one presumes that the earlier ones do not apply.
+    A case that requires nothing is a mistake (``ValueError``): an empty choice must not count as fulfilled.
     """
 
     all_of: tuple[Requirement, ...]
     any_of: tuple[Requirement, ...]
     verdict: Verdict
+
+    def __post_init__(self) -> None:
+        if not self.all_of and not self.any_of:
+            raise ValueError("a case needs a requirement")
 
     @property
     def always(self) -> bool:
@@ -405,18 +410,17 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
 
 def _cases(system: LinearSystem, found: Stability, known: Signs) -> tuple[Case, ...]:
     stiff, wanted = found.stiffness.requirements, found.requirements
-    reversed_ = _reversed(wanted, known)
-    unstable = Case((), reversed_, Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part."))
+    unstable = _unstable(wanted, known)
     if not _is_zero(system.N) or found.dissipation is not None:
         if found.variable == "lambda^2":
             why = "All roots are imaginary and simple; the forces are not potential."
-            return Case(wanted, (), _critical(why)), unstable
+            return Case(wanted, (), _critical(why)), *unstable
         if found.dissipation is None:
             odd = tuple(_differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
             why = "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
             return (Case((), odd, Verdict(UNSTABLE, LYAPUNOV, why)),)
         if not _is_zero(system.N) or found.dissipation.word != "positive definite":
-            return Case(wanted, (), _asymptotic()), unstable
+            return Case(wanted, (), _asymptotic()), *unstable
     negative = _reversed(stiff, known)
     if found.dissipation is not None:
         nonsingular = _differs("det K", stiff[-1].polynomial, known)
@@ -431,7 +435,7 @@ def _cases(system: LinearSystem, found: Stability, known: Signs) -> tuple[Case, 
         Case(stiff, (), _conservative(system)),
         Case(wanted, (), _gyroscopic()),
         Case((), negative[-1:], Verdict(UNSTABLE, KELVIN_CHETAEV, odd_degree)),
-        unstable,
+        *unstable,
     )
 
 
@@ -439,17 +443,15 @@ def _cases_with_zero_roots(
     system: LinearSystem, found: Stability, known: Signs
 ) -> tuple[tuple[Case, ...], Stability | None]:
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
-    unstable = Case(
-        (), _reversed(found.requirements, known), Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part.")
-    )
+    unstable = _unstable(found.requirements, known)
     if not system.cyclic:
-        return (unstable,), None
+        return unstable, None
     if _momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=_drifting(c.verdict)) for c in reduced.cases), reduced
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), _drifting(_asymptotic())), unstable), None
-    return (unstable,), None
+        return (Case(found.requirements, (), _drifting(_asymptotic())), *unstable), None
+    return unstable, None
 
 
 def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
@@ -506,6 +508,12 @@ def _first_certain(cases: Sequence[Case]) -> Verdict:
         if not case.never:
             return Verdict(UNDECIDED, "", "It depends on the parameters; see the cases.")
     return Verdict(UNDECIDED, "", "On a border: no theorem of the first approximation decides.")
+
+
+def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:
+    """One case at most: some necessary inequality is reversed, so that there is a root with positive real part."""
+    against = _reversed(requirements, known)
+    return (Case((), against, Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part.")),) if against else ()
 
 
 def _reversed(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
@@ -577,6 +585,8 @@ def _drifting(verdict: Verdict) -> Verdict:
     return replace(
         verdict,
         word=words.get(verdict.word, verdict.word),
+        # A minimum of the effective potential at constant cyclic momenta is Routh's theorem.
+        theorem=ROUTH if verdict.theorem == LAGRANGE else verdict.theorem,
         explanation=(
             f"{verdict.explanation} This is about the other coordinates and all velocities; a perturbation of the "
             "cyclic velocities makes the cyclic coordinates drift away."

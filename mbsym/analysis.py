@@ -1,0 +1,260 @@
+"""The pipeline on one page: numbers, titles, who needs whom.
+
+``Analysis`` computes every result when it is first asked for and remembers it, or why there is none, and the seconds
+it took.  The dependency graph is plain attribute access.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.ring import TERM_BUDGET, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.formulas.formula import Column, column
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.programs import Programs, programs
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.system import System
+from mbsym.problems import (
+    checks,
+    energy,
+    equations,
+    equilibrium,
+    integrals,
+    kinematics,
+    knowledge,
+    linearisation,
+    stability,
+)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A numbered problem: ``attribute`` of Analysis holds the result; ``module`` explains it."""
+
+    number: int
+    title: str
+    attribute: str
+    module: Any
+
+    @property
+    def explanation(self) -> str:
+        return str(self.module.__doc__).strip()
+
+
+PROBLEMS = {
+    problem.number: problem
+    for problem in (
+        Problem(1, "kinematics", "kinematics", kinematics),
+        Problem(2, "energy and force function", "energy", energy),
+        Problem(3, "nonlinear Lagrange equations", "equations", equations),
+        Problem(4, "equilibrium conditions", "equilibrium", equilibrium),
+        Problem(5, "linearisation", "linearisation", linearisation),
+        Problem(6, "stability", "stability", stability),
+        Problem(7, "first integrals", "integrals", integrals),
+    )
+}
+ALL_PROBLEMS = tuple(PROBLEMS)
+
+
+@dataclass(frozen=True)
+class NoResult:
+    """Why a stage has no result, and what to try next; a value, not a crash."""
+
+    reason: str
+    hint: str = ""
+
+
+class Unavailable(Exception):
+    """Raised when a result is asked for that a stage could not produce; ``failure`` says why."""
+
+    def __init__(self, stage: str, failure: NoResult) -> None:
+        super().__init__(f"{stage}: {failure.reason}" + (f" ({failure.hint})" if failure.hint else ""))
+        self.failure = failure
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What a stage left behind: its value, or its failure, and its own seconds (needed stages not counted)."""
+
+    name: str
+    value: Any
+    failure: NoResult | None
+    seconds: float
+
+
+class Analysis:
+    """Everything that can be derived from one system, lazily.
+
+    ``problems`` are the numbers that reports and self-checks are about; any attribute may be asked for nevertheless.
+    ``terms`` is the budget of terms a closed formula may have.
+    """
+
+    def __init__(self, system: System, problems: Iterable[int] = ALL_PROBLEMS, terms: int = TERM_BUDGET) -> None:
+        self.system = system
+        self.problems = tuple(sorted(set(problems)))
+        self.terms = terms
+        self._stages: dict[str, Stage] = {}
+        self._nested = 0.0
+
+    # --- the machinery of stages ---
+
+    def run(self, name: str, compute: Callable[[], Any]) -> Stage:
+        """The remembered stage, computed on first demand."""
+        if name not in self._stages:
+            outer, self._nested = self._nested, 0.0
+            started = time.perf_counter()
+            value, failure = None, None
+            try:
+                value = compute()
+            except Unavailable as missing:
+                failure = missing.failure
+            except (NoClosedForm, NotRational) as reason:
+                failure = NoResult(str(reason), "the straight-line program is available; raise --terms for more")
+            except SingularPoint as reason:
+                failure = NoResult(f"singular: {reason}", "choose another motion or other coordinates")
+            whole = time.perf_counter() - started
+            self._stages[name] = Stage(name, value, failure, whole - self._nested)
+            self._nested = outer + whole
+        return self._stages[name]
+
+    def _result(self, name: str, compute: Callable[[], Any]) -> Any:
+        stage = self.run(name, compute)
+        if stage.failure is not None:
+            raise Unavailable(name, stage.failure)
+        return stage.value
+
+    def stage(self, number: int) -> Stage:
+        """Stage of a numbered problem, derived now if it was not before."""
+        name = PROBLEMS[number].attribute
+        try:
+            getattr(self, name)
+        except Unavailable:
+            pass
+        return self._stages[name]
+
+    def _optional(self, attribute: str) -> Any:
+        """A result, or None where there is none."""
+        try:
+            return getattr(self, attribute)
+        except Unavailable:
+            return None
+
+    # --- what everything stands on ---
+
+    @cached_property
+    def ring(self) -> Ring:
+        return ring_of(self.system, self.terms)
+
+    @property
+    def scene(self) -> Scene:
+        """The system over the ring."""
+        return self._result("scene", self._scene)
+
+    def _scene(self) -> Scene:
+        return Scene(self.system, self.ring, ring_environment(self.system, self.ring), self.ring)
+
+    @property
+    def parameters_scene(self) -> Scene:
+        """The system over the ring, for formulas in parameters only: its bodies are not derived."""
+        return self._result("parameters", self._parameters_scene)
+
+    def _parameters_scene(self) -> Scene:
+        return Scene(self.system, self.ring, ring_environment(self.system, self.ring), self.ring, bodies=False)
+
+    @property
+    def signs(self) -> Signs:
+        return self._result("signs", lambda: knowledge.signs(self.parameters_scene))
+
+    @property
+    def programs(self) -> Programs:
+        """The equations as a straight-line program."""
+        return self._result("programs", lambda: programs(self.system, self.ring))
+
+    @property
+    def expanded(self) -> Scene:
+        """The system over second-order jets about the unperturbed motion."""
+        return self._result("expansion", lambda: linearisation.quadratised(self.parameters_scene))
+
+    # --- the numbered problems ---
+
+    @property
+    def kinematics(self) -> kinematics.Kinematics:
+        return self._result("kinematics", lambda: kinematics.kinematics(self.scene))
+
+    @property
+    def energy(self) -> energy.Energy:
+        return self._result("energy", lambda: energy.energy(self.scene))
+
+    @property
+    def equations(self) -> equations.Equations:
+        return self._result("equations", lambda: equations.equations(self.scene, self.energy))
+
+    @property
+    def residuals(self) -> Column:
+        """The forcing on the unperturbed motion, by the Newton-Euler recursion over jets."""
+        return self._result("residuals", self._residuals)
+
+    def _residuals(self) -> Column:
+        return column(self.ring, [-x.value for x in residuals(self.expanded).values()])
+
+    @property
+    def equilibrium(self) -> equilibrium.Equilibrium:
+        return self._result("equilibrium", self._equilibrium)
+
+    def _equilibrium(self) -> equilibrium.Equilibrium:
+        forcing = [x.polynomial for x in self.residuals]
+        return equilibrium.equilibrium(self.parameters_scene, forcing, self.signs)
+
+    @property
+    def linearisation(self) -> linearisation.Linearisation:
+        return self._result("linearisation", self._linearisation)
+
+    def _linearisation(self) -> linearisation.Linearisation:
+        return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
+
+    @property
+    def stability(self) -> stability.Stability:
+        return self._result("stability", self._stability)
+
+    def _stability(self) -> stability.Stability:
+        linear, energies = self.linearisation, self._optional("energy")
+        cyclic = () if energies is None else energies.cyclic
+        conserved = stability.conserves_energy(self.parameters_scene, energies)
+        return stability.stability(self.parameters_scene, conserved, cyclic, linear, self.signs)
+
+    @property
+    def integrals(self) -> tuple[integrals.Integral, ...]:
+        return self._result("integrals", lambda: integrals.integrals(self.scene, self.energy, self.equations))
+
+    # --- self-check ---
+
+    @property
+    def checks(self) -> tuple[checks.Check, ...]:
+        """Every result of the asked-for problems that has a second route, compared with it."""
+        return self._result("checks", self._checks)
+
+    def _checks(self) -> tuple[checks.Check, ...]:
+        system, ring, done = self.system, self.ring, []
+        closed = self._optional("equations") if 3 in self.problems else None
+        if 1 in self.problems and (own := self._optional("kinematics")) is not None:
+            done.append(checks.check_kinematics(system, ring, own))
+        if 2 in self.problems and (own := self._optional("energy")) is not None:
+            done.append(checks.check_energy(system, ring, own))
+        if closed is not None:
+            done.append(checks.check_equations(system, ring, closed))
+        if 3 in self.problems and (own := self._optional("programs")) is not None:
+            done.append(checks.check_program(system, ring, own))
+        if closed is not None and 4 in self.problems and (own := self._optional("equilibrium")) is not None:
+            second = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
+            done.append(checks.check_residuals(ring, own.residuals, second.residuals))
+        if closed is not None and 5 in self.problems and (own := self._optional("linearisation")) is not None:
+            second = linearisation.by_equations(self.scene, closed, self.equilibrium)
+            done.append(checks.check_linearisation(ring, own, second))
+        return tuple(done)

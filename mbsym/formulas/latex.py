@@ -1,0 +1,227 @@
+"""Formulas in LaTeX (amsmath): dots for velocities, Greek letters, indices, fractions.
+
+Long formulas must break across lines.  Only TeX knows how wide things are, so ``breaks=True`` marks the places before
+plus and minus signs, in brackets too, with penalties that grow with the depth, and TeX chooses.  Brackets are of fixed
+size, therefore, never ``\\left`` and ``\\right``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
+from mbsym.formulas.shape import Factor, Product, Sum, present
+
+_VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
+#: Greek letters that LaTeX has no command for: they look Latin.
+_LATIN = {
+    "omicron": "o", "Alpha": "A", "Beta": "B", "Epsilon": "E", "Zeta": "Z", "Eta": "H", "Iota": "I", "Kappa": "K",
+    "Mu": "M", "Nu": "N", "Omicron": "O", "Rho": "P", "Tau": "T", "Chi": "X",
+}  # fmt: skip
+_BRACKETS = (("(", ")"), (r"\bigl[", r"\bigr]"), (r"\bigl\{", r"\bigr\}"), (r"\Bigl(", r"\Bigr)"))
+_DOTS = {"velocity": "dot", "acceleration": "ddot"}
+_COMMANDS = {"sine": r"\sin", "cosine": r"\cos"}
+_NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan"}
+
+
+def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
+    """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus."""
+    return LatexPrinter(ring, breaks).sum(present(ring, polynomial))
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """``\\theta`` with index ``1``: accents stand over the stem only."""
+
+    stem: str
+    index: str = ""
+
+    def __str__(self) -> str:
+        return self.stem + (f"_{{{self.index}}}" if self.index else "")
+
+    def accented(self, accent: str) -> str:
+        return str(Symbol(f"\\{accent}{{{self.stem}}}", self.index))
+
+
+def latex_symbol(name: str) -> Symbol:
+    """theta1 -> \\theta_{1}, Jx -> J_{x}, p_max -> p_{\\mathrm{max}}, mass -> \\mathit{mass}."""
+    split = parts(name)
+    if split.greek:
+        return Symbol(_greek_command(split.greek), _index(split.indices))
+    stem, indices = split.stem, list(split.indices)
+    match = re.fullmatch(r"([A-Z])([a-z]{1,2}|[A-Z])|([a-z])([a-z])", stem)
+    if match:
+        stem, first = (match[1], match[2]) if match[1] else (match[3], match[4])
+        indices.insert(0, first)
+    return Symbol(stem if len(stem) == 1 else f"\\mathit{{{stem}}}", _index(indices))
+
+
+def _index(indices: Iterable[str]) -> str:
+    """Indices that belong together: x1 stays x1, words are upright and set apart by commas."""
+    written: list[str] = []
+    for piece in indices:
+        if greek(piece):
+            text = _greek_command(greek(piece))
+        else:
+            text = piece if len(piece) <= 2 or piece.isdigit() else f"\\mathrm{{{piece}}}"
+        if written and not (len(piece) == 1 or piece.isdigit()):
+            text = "," + text
+        written.append(text if not written or not written[-1][-1:].isdigit() or not text[:1].isdigit() else "," + text)
+    return " ".join(written)
+
+
+def _greek_command(letter: str) -> str:
+    if letter in _LATIN:
+        return _LATIN[letter] if letter == "omicron" else f"\\mathrm{{{_LATIN[letter]}}}"
+    return "\\" + (_VARIANTS.get(letter, letter) if letter in LOWER_GREEK else letter)
+
+
+class LatexNames:
+    """One renaming for a system: no two names look alike (``Jx`` and ``J_x`` do not both become J with index x)."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        ordered = list(dict.fromkeys(names))
+        symbols = {name: latex_symbol(name) for name in ordered}
+        shown = injective([str(symbols[name]) for name in ordered], str)
+        first: dict[str, str] = {}
+        for name in ordered:
+            first.setdefault(str(symbols[name]), name)
+        plain = {name: Symbol(f"\\mathtt{{{_escaped(name)}}}") for name in ordered}
+        assert len(shown) == len(first)
+        self._symbols = {name: symbols[name] if first[str(symbols[name])] == name else plain[name] for name in ordered}
+
+    def __getitem__(self, name: str) -> Symbol:
+        known = self._symbols.get(name)
+        return latex_symbol(name) if known is None else known
+
+
+def _escaped(name: str) -> str:
+    return name.replace("_", r"\_")
+
+
+_NAMES: WeakKeyDictionary[Ring, LatexNames] = WeakKeyDictionary()
+
+
+def latex_names(ring: Ring) -> LatexNames:
+    """The ring's renaming, made once."""
+    if ring not in _NAMES:
+        kinds = ("coordinate", "prescribed", "parameter")
+        _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])
+    return _NAMES[ring]
+
+
+class LatexPrinter:
+    def __init__(self, ring: Ring, breaks: bool = False) -> None:
+        self.ring = ring
+        self.breaks = breaks
+        self.names = latex_names(ring)
+        self._atoms: dict[int, tuple[str, str]] = {}
+        self._heights: dict[Sum, int] = {}
+
+    def sum(self, shape: Sum, depth: int = 0) -> str:
+        if not shape.terms:
+            return "0"
+        pieces: list[str] = []
+        for term in shape.terms:
+            negative = term.coefficient < 0
+            if pieces and self.breaks:
+                pieces.append(f"\\penalty{60 * depth} ")
+            pieces.append((" - " if negative else " + ") if pieces else ("-" if negative else ""))
+            pieces.append(self.product(term, depth))
+        return "".join(pieces)
+
+    def product(self, product: Product, depth: int = 0) -> str:
+        """Without its sign: number and parameters as one fraction if there is a denominator, then the rest."""
+        top, bottom = abs(int(product.coefficient.p)), int(product.coefficient.q)
+        over = list(product.over)
+        if product.under:
+            inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]
+            if len(over) == 1 and not inside and isinstance(over[0].base, int):
+                inside = over
+            over = [f for f in over if f not in inside]
+            number = [str(top)] if top != 1 or not inside else []
+            below = [str(bottom)] if bottom != 1 else []
+            numerator = _joined(number + [self.factor(f, depth) for f in inside])
+            alone = len(product.under) == 1 and not below
+            denominator = _joined(below + [self._denominator(f, alone) for f in product.under])
+            pieces = [f"\\frac{{{numerator}}}{{{denominator}}}"]
+        elif bottom != 1:
+            pieces = [f"\\frac{{{top}}}{{{bottom}}}"]
+        else:
+            pieces = [str(top)] if top != 1 or not over else []
+        return _joined(pieces + [self.factor(f, depth) for f in over])
+
+    def _is_parameter(self, index: int) -> bool:
+        return self.ring.generators[index].kind == "parameter"
+
+    def _denominator(self, factor: Factor, alone: bool) -> str:
+        """Inside a fraction's denominator nothing can break, and a lone bracket needs no brackets."""
+        quiet = LatexPrinter(self.ring)
+        if alone and factor.exponent == 1 and isinstance(factor.base, Sum):
+            return quiet.sum(factor.base)
+        return quiet.factor(factor)
+
+    def factor(self, factor: Factor, depth: int = 0) -> str:
+        if isinstance(factor.base, int):
+            return self.atom(factor.base, factor.exponent)
+        opening, closing = _BRACKETS[min(self._height(factor.base), len(_BRACKETS)) - 1]
+        raised = f"^{{{factor.exponent}}}" if factor.exponent != 1 else ""
+        return f"{opening}{self.sum(factor.base, depth + 1)}{closing}{raised}"
+
+    def _height(self, shape: Sum) -> int:
+        """How deeply brackets are nested, this one included."""
+        if shape not in self._heights:
+            inner = (f.base for term in shape.terms for f in term.over if isinstance(f.base, Sum))
+            self._heights[shape] = 1 + max(map(self._height, inner), default=0)
+        return self._heights[shape]
+
+    def atom(self, index: int, exponent: int = 1) -> str:
+        if index not in self._atoms:
+            self._atoms[index] = self._atom(self.ring.generators[index])
+        head, tail = self._atoms[index]
+        return head + (f"^{{{exponent}}}" if exponent != 1 else "") + tail
+
+    def _atom(self, g: Generator) -> tuple[str, str]:
+        """(before, after) an exponent: ``\\sin^{2}`` and its argument."""
+        if g.kind in _COMMANDS:
+            return _COMMANDS[g.kind], self._angle(g)
+        if g.kind == "root":
+            return f"\\sqrt{{{self._quiet(g.argument)}}}", ""
+        if g.kind == "function":
+            return _NAMED[g.name], f"({self._quiet(g.argument)})"
+        if g.name == "pi":
+            return r"\pi", ""
+        if g.kind in _DOTS:
+            return self.names[g.name].accented(_DOTS[g.kind]), ""
+        return str(self.names[g.name]), ""
+
+    def _angle(self, g: Generator) -> str:
+        if g.argument is not None:
+            return f"({self._quiet(g.argument)})"
+        symbol = str(self.names[g.name])
+        return " " + symbol if g.denominator == 1 else f"\\frac{{{symbol}}}{{{g.denominator}}}"
+
+    def _quiet(self, argument: Any) -> str:
+        return LatexPrinter(self.ring).sum(present(self.ring, argument))
+
+
+def _joined(factors: Sequence[str]) -> str:
+    """Factors side by side; a thin space after a function, whose argument would seem to go on."""
+    written = "".join(factors[:1])
+    for before, factor in pairwise(factors):
+        after_function = re.match(r"\\(sin|cos|exp|ln|arctan)\b", before) is not None
+        written += r"\, " if after_function and not factor.startswith(("\\sin", "\\cos")) else " "
+        written += factor
+    return written
+
+
+def latex_matrix(rows: Sequence[Sequence[str]]) -> str:
+    """A pmatrix of finished entries."""
+    body = " \\\\ ".join(" & ".join(row) for row in rows)
+    return f"\\begin{{pmatrix}} {body} \\end{{pmatrix}}"

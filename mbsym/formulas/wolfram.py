@@ -1,0 +1,127 @@
+"""Formulas in the Wolfram Language: ``1/2*m*l^2*\\[Theta]'[t]^2``, ``Sin[\\[Theta][t]]``.
+
+Names: ``_`` would make a pattern, and ``N`` or ``Gamma`` mean something else there, so every system has its own
+injective renaming.  Numbers are exact quotients; decimals of a description such as 1e-9 are exact quotients too.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.formulas.names import greek, injective, parts
+from mbsym.formulas.python import InfixPrinter, declared_name
+from mbsym.formulas.shape import present
+
+_PRIMES = {"velocity": "'", "acceleration": "''"}
+_FUNCTIONS = {"sqrt": "Sqrt", "atan": "ArcTan"}
+#: Two letters, the first a capital: these are taken.
+_SHORT_SYMBOLS = ("Do", "If", "In", "Im", "Re", "Or", "On", "Tr", "Pi", "Up", "By")
+
+
+def wolfram_text(ring: Ring, polynomial: Polynomial, functions_of_time: bool = True) -> str:
+    """The polynomial on one line; coordinates as functions of t, or as plain symbols (``\\[Theta]dot``)."""
+    return WolframPrinter(ring, functions_of_time).sum(present(ring, polynomial))
+
+
+def wolfram_name(name: str) -> str:
+    """What a name would like to be called: no underscores, Greek letters, and nothing that Wolfram defines itself."""
+    split = parts(name)
+    stem = _greek_letter(split.greek) if split.greek else split.stem
+    whole = stem + "".join(_greek_letter(greek(index)) if greek(index) else index for index in split.indices)
+    return whole + "Par" if _may_be_defined(whole) else whole
+
+
+def _greek_letter(letter: str) -> str:
+    return f"\\[{'Capital' if letter[:1].isupper() else ''}{letter.capitalize()}]" if letter else ""
+
+
+def _may_be_defined(name: str) -> bool:
+    """Wolfram's own names are C, D, E, I, K, N, O and capitalised words (``Jxy`` and ``M2`` are none)."""
+    if not name[0].isupper():
+        return False
+    if len(name) == 1:
+        return name in "CDEIKNO"
+    if name[1:].strip("xyz0123456789") == "":
+        return False
+    return len(name) > 2 or name in _SHORT_SYMBOLS
+
+
+class WolframNames:
+    """One renaming for all names of a system, velocities among them; different names stay different."""
+
+    def __init__(self, ring: Ring) -> None:
+        plain = ("coordinate", "prescribed", "parameter", "velocity", "acceleration")
+        names = [declared_name(g) for g in ring.generators if g.kind in plain and g.name != "pi"]
+        self.table = injective(names, wolfram_name, taken=("t", *RESERVED))
+
+    def __getitem__(self, name: str) -> str:
+        if name == "pi":
+            return "Pi"
+        return name if name == "t" else self.table[name]
+
+
+#: What the report itself defines.
+RESERVED = (
+    "coordinates", "parameters", "values", "massMatrix", "forcing", "equations", "initialConditions", "kineticEnergy",
+    "forceFunction", "rotation", "angularVelocity", "velocityOrigin", "velocityMassCentre", "linearM", "linearD",
+    "linearG", "linearK", "linearN", "subsystems", "characteristicPolynomials", "stabilityConditions", "notation",
+    "firstIntegrals", "prescribed", "equilibriumConditions", "lambda", "tau",
+)  # fmt: skip
+
+_NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()
+
+
+def wolfram_names(ring: Ring) -> WolframNames:
+    """The ring's renaming, made once."""
+    if ring not in _NAMES:
+        _NAMES[ring] = WolframNames(ring)
+    return _NAMES[ring]
+
+
+class WolframPrinter(InfixPrinter):
+    """``functions_of_time``: coordinates and prescribed quantities as ``x[t]``, velocities as ``x'[t]``."""
+
+    power = "^"
+
+    def __init__(self, ring: Ring, functions_of_time: bool = True) -> None:
+        super().__init__(ring)
+        self.functions_of_time = functions_of_time
+        self.names = wolfram_names(ring)
+
+    def call(self, function: str, argument: str) -> str:
+        return f"{_function(function)}[{argument}]"
+
+    def symbol(self, generator: Generator) -> str:
+        moving = generator.kind in ("coordinate", "prescribed", *_PRIMES)
+        if self.functions_of_time and moving:
+            return f"{self.names[generator.name]}{_PRIMES.get(generator.kind, '')}[t]"
+        return self.names[declared_name(generator)]
+
+
+def _function(name: str) -> str:
+    return _FUNCTIONS.get(name, name.capitalize())
+
+
+def wolfram_expression(expression: Expression, names: WolframNames) -> str:
+    """An expression of the description as it stands, in plain symbols."""
+    match expression:
+        case Number(value):
+            return wolfram_number(value)
+        case Name(name):
+            return names[name]
+        case Negative(operand):
+            return f"-({wolfram_expression(operand, names)})"
+        case Call(function, argument):
+            return f"{_function(function)}[{wolfram_expression(argument, names)}]"
+        case Operation(operator, left, right):
+            sign = "^" if operator == "**" else operator
+            return f"({wolfram_expression(left, names)}){sign}({wolfram_expression(right, names)})"
+    raise TypeError(f"not an expression: {expression!r}")
+
+
+def wolfram_number(value: Fraction) -> str:
+    """An exact number: 10^-9 rather than a float."""
+    return str(value.numerator) if value.denominator == 1 else f"{value.numerator}/{value.denominator}"

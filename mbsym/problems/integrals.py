@@ -1,0 +1,214 @@
+"""Problem 7: first integrals.
+
+An expression I(q, q', t) is an integral if dI/dt vanishes by virtue of the equations E_i = (M q'' - f)_i = 0.  Found are
+
+* the generalised energy  H = T_2 - T_0 - U,  with  dH/dt = sum q'_i E_i  if L does not contain the time and the other
+  loads do no work;
+* a cyclic momentum  p_i = dT/dq'_i,  with  dp_i/dt = E_i,  for every coordinate that L and Q_i do not contain;
+* components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
+  above: candidates are tried at exact rational states, and proved through multipliers, det(M) dI/dt = sum mu_i E_i
+  with mu = adj(M) dI/dq', where that is small enough.
+
+``status`` is "proved" (an identity of the ring) or "verified numerically" (exact at random rational states).
+
+Source: Banshchikov & Vetrov (first integrals); the generalised energy is Jacobi's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.ring import Polynomial
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.frames import axis_vector
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.states import rational_states
+from mbsym.model.system import INERTIAL, acceleration_name
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations, convective_rate
+
+PROVED, NUMERICAL = "proved", "verified numerically"
+
+#: States at which a candidate must be conserved exactly before it is reported.
+STATES = 4
+#: Multipliers through adj(M) are tried up to this size of M and of the candidate.
+MOST_COORDINATES, MOST_TERMS = 3, 400
+
+
+@dataclass(frozen=True)
+class Integral:
+    """``kind`` is energy, cyclic momentum, linear momentum or angular momentum; ``of`` a coordinate or an axis."""
+
+    name: str
+    kind: str
+    of: str
+    formula: Formula
+    status: str
+
+
+def integrals(scene: Scene, energy: Energy, equations: Equations) -> tuple[Integral, ...]:
+    """All first integrals of the kinds above (scene over the ring)."""
+    found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
+    found += _momenta(scene, equations, [item.formula.polynomial for item in found if item.kind != "energy"])
+    return tuple(found)
+
+
+def total_rate(scene: Scene, x: Polynomial) -> Polynomial:
+    """dx/dt with the accelerations q'' as they stand."""
+    ring = scene.ring
+    total = convective_rate(scene, ring, x)
+    for name in scene.system.coordinates:
+        total = total + ring.generator("acceleration", name) * ring.velocity_derivative(x, name)
+    return ring.reduce(total)
+
+
+def residual(scene: Scene, equations: Equations, i: int) -> Polynomial:
+    """E_i = (M q'' - f)_i."""
+    ring, names = scene.ring, scene.system.coordinates
+    total = -equations.forcing[i].polynomial
+    for j, name in enumerate(names):
+        total = total + equations.mass_matrix[i, j].polynomial * ring.generator("acceleration", name)
+    return ring.reduce(total)
+
+
+def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
+    ring, names = scene.ring, scene.system.coordinates
+    momenta = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
+    speeds = [ring.generator("velocity", name) for name in names]
+    power = ring.dot(momenta, speeds)
+    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
+    integral = ring.reduce(power - lagrangian)
+    multiplied = ring.zero
+    for i, speed in enumerate(speeds):
+        multiplied = multiplied + speed * residual(scene, equations, i)
+    if ring.is_zero(total_rate(scene, integral) - multiplied):
+        yield Integral("generalised energy", "energy", "time", Formula(ring, integral), PROVED)
+
+
+def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
+    ring = scene.ring
+    for i, name in enumerate(scene.system.coordinates):
+        momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
+        if name in energy.cyclic and ring.is_zero(total_rate(scene, momentum) - residual(scene, equations, i)):
+            yield Integral(f"momentum of {name}", "cyclic momentum", name, Formula(ring, momentum), PROVED)
+
+
+# --- momenta of the whole system ---
+
+
+def _momenta(scene: Scene, equations: Equations, known: Sequence[Polynomial]) -> list[Integral]:
+    try:
+        candidates = _candidates(scene)
+        found: list[Integral] = []
+        for kind, axis, formula in candidates:
+            others = [*known, *(item.formula.polynomial for item in found)]
+            if _is_new(formula, others) and _conserved(scene, equations, formula):
+                name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
+                status = PROVED if _proved(scene, equations, formula) else NUMERICAL
+                found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
+        return found
+    except (NoClosedForm, NotRational):
+        return []
+
+
+def _candidates(scene: Scene) -> list[tuple[str, int, Polynomial]]:
+    """Components along the inertial axes of sum m V_C and of sum (r_C x m V_C + Theta_C omega).
+
+    Axes are turned outwards to the bodies, so that nothing is turned inwards: P.e = sum m V_C.e_k, and
+    H.e = sum m (e_k x r_k).V_C + omega.Theta_C e_k with r_k the mass centre from the inertial origin.
+    """
+    algebra = scene.ring
+    found = []
+    for axis in (3, 1, 2):
+        direction = {INERTIAL: axis_vector(algebra, axis, algebra.one)}
+        origin = {INERTIAL: algebra.zero_vector}
+        linear, angular = algebra.zero, algebra.zero
+        for name, motion in scene.motions.items():
+            parent = motion.body.attached_to
+            direction[name] = scene.to_axes(direction[parent], parent, name)
+            origin[name] = scene.to_axes(algebra.add(origin[parent], motion.offset), parent, name)
+            along = direction[name]
+            about_joint = motion.body.inertia is not None and motion.body.inertia.about == "joint"
+            momentum = algebra.scale(motion.mass, motion.velocity_mass_centre)
+            linear = linear + algebra.dot(momentum, along)
+            arm = origin[name] if about_joint else algebra.add(origin[name], motion.mass_centre)
+            angular = angular + algebra.dot(momentum, algebra.cross(along, arm))
+            if about_joint:
+                carried = algebra.scale(motion.mass, motion.velocity_origin)
+                angular = angular + algebra.dot(carried, algebra.cross(along, motion.mass_centre))
+            if motion.inertia is not None:
+                angular = angular + algebra.dot(motion.angular_velocity, algebra.apply(motion.inertia, along))
+        found.append(("linear momentum", axis, algebra.reduce(linear)))
+        found.append(("angular momentum", axis, algebra.reduce(angular)))
+    order = {"linear momentum": 0, "angular momentum": 1}
+    return sorted(found, key=lambda item: order[item[0]])
+
+
+def _is_new(formula: Polynomial, others: Sequence[Polynomial]) -> bool:
+    """Whether it depends on the state and is no rational combination of the others and a constant of parameters."""
+    if formula.is_zero() or formula.is_constant():
+        return False
+    columns = [other.to_dict() for other in others] + [formula.to_dict()]
+    monomials = sorted({monomial for column in columns for monomial in column})
+    table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
+    return bool(table.rank() == len(columns)) if len(others) else True
+
+
+def _conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
+    """Whether dI/dt = 0 exactly, q'' from the equations, at random rational states; and I varies with the state."""
+    ring, names = scene.ring, scene.system.coordinates
+    if not any(formula.degrees()[ring.index("velocity", name)] > 0 for name in names):
+        return False
+    rate = total_rate(scene, formula)
+    passed = 0
+    for state in rational_states(scene.system, ring, 4 * STATES):
+        values = dict(state.values)
+        carry = Carrier(ring, state.numbers, values)
+        n = len(names)
+        try:
+            mass = fmpq_mat(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
+            forcing = fmpq_mat(n, 1, [carry(x.polynomial) for x in equations.forcing])
+            accelerations = mass.solve(forcing)
+        except (SingularPoint, ZeroDivisionError):
+            continue
+        values |= {acceleration_name(name): accelerations[i, 0] for i, name in enumerate(names)}
+        if Carrier(ring, state.numbers, values)(rate) != fmpq(0):
+            return False
+        passed += 1
+        if passed == STATES:
+            return True
+    return False
+
+
+def _proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
+    """det(M) dI/dt = sum mu_i E_i with mu = adj(M) dI/dq', as polynomials."""
+    ring, names = scene.ring, scene.system.coordinates
+    n = len(names)
+    if n > MOST_COORDINATES or len(formula) > MOST_TERMS or equations.mass_matrix.terms > MOST_TERMS:
+        return False
+    mass = [list(row) for row in equations.mass_matrix.polynomials]
+    slopes = [ring.velocity_derivative(formula, name) for name in names]
+    cofactors = [[_cofactor(scene, mass, i, j) for j in range(n)] for i in range(n)]
+    determinant = ring.dot(mass[0], cofactors[0])
+    multipliers = [ring.dot(slopes, [cofactors[j][i] for j in range(n)]) for i in range(n)]
+    left = ring.times(determinant, total_rate(scene, formula))
+    for i in range(n):
+        left = left - ring.times(multipliers[i], residual(scene, equations, i))
+    return ring.is_zero(left) is True
+
+
+def _cofactor(scene: Scene, matrix: list[list[Polynomial]], i: int, j: int) -> Polynomial:
+    ring = scene.ring
+    minor = [[x for k, x in enumerate(row) if k != j] for m, row in enumerate(matrix) if m != i]
+    if not minor:
+        return ring.one
+    if len(minor) == 1:
+        value = minor[0][0]
+    else:
+        value = ring.reduce(minor[0][0] * minor[1][1] - minor[0][1] * minor[1][0])
+    return value if (i + j) % 2 == 0 else -value

@@ -1,0 +1,214 @@
+"""Problem 6: stability of the unperturbed motion, subsystem by subsystem.
+
+For every subsystem  M x'' + (D + G) x' + (K + N) x = 0  of problem 5, in the user's dimensionless notation,
+
+    Lambda(lambda) = det(lambda^2 M + lambda (D + G) + K + N)
+
+is made primitive (a factor of known sign is removed) and factored; the conditions are
+
+* only even powers of lambda: all roots in lambda^2 real, negative and simple (coefficients and discriminants);
+* otherwise: all roots to the left of the imaginary axis (Lienard-Chipart).
+
+"Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
+gyroscopically stabilised only; stable in first approximation only, critical; unstable; undecided.  With symbolic
+parameters it comes as cases, and at numerical values it is decided exactly.
+
+Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.algebra.base import NotRational, SingularPoint
+from mbsym.algebra.elimination import Elimination, eliminate
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import Signs
+from mbsym.formulas.formula import Formula, Matrix
+from mbsym.expressions.tree import names
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.mechanics.motion import relations
+from mbsym.mechanics.variables import expressions
+from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
+from mbsym.problems.energy import Energy
+from mbsym.problems.knowledge import definition_in_parameters
+from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
+from mbsym.problems.stability_theory import LinearSystem, Verdict, analyse, combine
+from mbsym.problems.stability_theory import Stability as Theory
+
+_DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
+
+
+@dataclass(frozen=True)
+class SubsystemStability:
+    """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
+
+    ``theory`` holds the characteristic polynomial, conditions, cases and verdict (polynomials of the ring; lambda is
+    the position in the coefficient lists).
+    """
+
+    coordinates: tuple[str, ...]
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
+    factor: Formula
+    theory: Theory
+
+    @property
+    def characteristic(self) -> tuple[Formula, ...]:
+        """Coefficients of the primitive polynomial, from low to high powers of lambda."""
+        ring = self.factor.ring
+        zero = (ring.zero,) * self.theory.zero_power
+        return tuple(Formula(ring, x) for x in (*zero, *self.theory.polynomial))
+
+    @property
+    def conditions(self) -> tuple[tuple[str, Formula, str], ...]:
+        """(label, polynomial, relation to 0) of every condition that is not known to hold."""
+        ring = self.factor.ring
+        open_ = [r for r in self.theory.requirements if not r.always]
+        return tuple((r.label, Formula(ring, r.condition.polynomial), r.relation) for r in open_)
+
+
+@dataclass(frozen=True)
+class Stability:
+    """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any."""
+
+    subsystems: tuple[SubsystemStability, ...]
+    verdict: Verdict
+    numerical: Verdict | None
+
+
+def stability(scene: Scene, energy_conserved: bool, cyclic: Sequence[str], linear: Linearisation, signs: Signs) -> Stability:
+    """Judges every subsystem.
+
+    ``energy_conserved``: the nonlinear system has a generalised energy integral, dissipation apart; ``cyclic``: the
+    coordinates that occur neither in L nor in the other loads.
+    """
+    elimination = _elimination(scene)
+    values = parameter_values(scene)
+    judged = tuple(
+        _judge(scene, part, elimination, signs, values, energy_conserved, cyclic) for part in linear.subsystems
+    )
+    numerical = None
+    if all(part.theory.at_point is not None for part in judged):
+        numerical = combine(part.theory.at_point.verdict for part in judged if part.theory.at_point is not None)
+    return Stability(judged, combine(part.theory.verdict for part in judged), numerical)
+
+
+def _judge(
+    scene: Scene,
+    part: Subsystem,
+    elimination: Elimination,
+    signs: Signs,
+    values: Mapping[str, Fraction] | None,
+    energy_conserved: bool,
+    cyclic: Sequence[str],
+) -> SubsystemStability:
+    matrices, factor = _polynomial(scene, part, elimination, signs)
+    rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
+    idle = tuple(
+        i
+        for i, name in enumerate(part.coordinates)
+        if name in cyclic and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
+    )
+    system = LinearSystem(*rows, conservative=energy_conserved, cyclic=idle)
+    point = None if values is None else _point(scene, rows, values)
+    return SubsystemStability(part.coordinates, matrices, factor, analyse(system, signs, point))
+
+
+def _elimination(scene: Scene) -> Elimination:
+    """The user's second symbols (alpha = (c - b)/a) in place of the first ones (a, b, c)."""
+    ring, images = scene.ring, relations(scene)
+    first = [index for index, _ in first_symbols(scene)]
+    second = []
+    for item in scene.system.notation:
+        index = ring.index("parameter", item.name)
+        if index not in first:
+            second.append((index, ring.substitute(scene.lower(item.value), images)))
+    return eliminate(ring, second, first)
+
+
+def _polynomial(
+    scene: Scene, part: Subsystem, elimination: Elimination, signs: Signs
+) -> tuple[tuple[Matrix, Matrix, Matrix, Matrix, Matrix], Formula]:
+    """The matrices in the user's symbols, times a positive factor that clears denominators and common factors."""
+    ring = scene.ring
+    given = [[[elimination(x) for x in row] for row in m.polynomials] for m in (part.M, part.D, part.G, part.K, part.N)]
+    factor = ring.one
+    for x in (x for matrix in given for row in matrix for x in row):
+        for bottom, exponent in ring.fraction(ring.reduce(x * factor))[1]:
+            factor = ring.reduce(factor * bottom**exponent)
+    if signs.sign(factor) != "positive":
+        factor = ring.reduce(factor * factor)  # a square is positive wherever the formulas make sense
+    scaled = [[[ring.fraction(ring.reduce(x * factor))[0] for x in row] for row in matrix] for matrix in given]
+    common = ring.zero
+    for x in (x for matrix in scaled for row in matrix for x in row):
+        common = common.gcd(x)
+    if not common.is_zero() and not common.is_constant() and signs.sign(common) == "positive":
+        scaled = [[[divmod(x, common)[0] for x in row] for row in matrix] for matrix in scaled]
+        factor = ring.reduce(factor * ring.reciprocal(common))
+    made = [Matrix.of(ring, matrix) for matrix in scaled]
+    return (made[0], made[1], made[2], made[3], made[4]), Formula(ring, factor)
+
+
+def parameter_values(scene: Scene) -> dict[str, Fraction] | None:
+    """Exact values of all parameters, relations used; None unless every independent one has a value."""
+    given = {p.name: value for p in scene.system.parameters if (value := rational(p.value)) is not None}
+    dependent = {item.name for item in scene.system.relations}
+    if any(p.name not in given and p.name not in dependent for p in scene.system.parameters):
+        return None
+    numbers = Rationals({}, {})
+    environment = {name: numbers.number(value) for name, value in given.items()}
+    carry = Carrier(scene.ring, numbers, environment)
+    try:
+        for index, value in relations(scene).items():
+            exact = carry(value)
+            given[scene.ring.generators[index].name] = Fraction(int(exact.p), int(exact.q))
+    except (NotRational, SingularPoint, KeyError):
+        return None
+    return given
+
+
+def _point(scene: Scene, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Fraction]) -> dict | None:
+    """Exact values of the generators that occur in the matrices; None if one of them is irrational."""
+    ring, numbers = scene.ring, Rationals({}, {})
+    environment = {name: numbers.number(value) for name, value in values.items()}
+    carry = Carrier(ring, numbers, environment)
+    used = {
+        k
+        for matrix in rows
+        for row in matrix
+        for x in row
+        for k, degree in enumerate(x.degrees())
+        if degree > 0
+    }
+    notation = {item.name for item in scene.system.notation}
+    point = {}
+    try:
+        for index in used:
+            g = ring.generators[index]
+            named = g.kind == "parameter" and g.name in notation
+            symbol = definition_in_parameters(scene, g.name) if named else ring.context.gen(index)
+            exact = carry(symbol)
+            point[index] = Fraction(int(exact.p), int(exact.q))
+    except (NotRational, SingularPoint, KeyError):
+        return None
+    return point
+
+
+def conserves_energy(scene: Scene, energy: Energy | None) -> bool:
+    """Whether a generalised energy integral exists, dissipation apart: no other loads, L free of the time.
+
+    Without ``energy`` (no closed form) only systems that never mention the time are known to have one.
+    """
+    for load in scene.system.loads:
+        if KINDS[type(load)].force_function is None and not isinstance(load, _DISSIPATIVE):
+            return False
+    timely = {item.name for item in scene.system.prescribed} | {"t"}
+    if energy is None:
+        return not any(timely & names(expression) for expression in expressions(scene.system))
+    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
+    return not any(scene.ring.depends_on(lagrangian, name) for name in timely)
