@@ -180,7 +180,13 @@ class Analysis:
     @property
     def expanded(self) -> Scene:
         """The system over second-order jets about the unperturbed motion."""
-        return self._result("expansion", lambda: linearisation.quadratised(self.parameters_scene))
+        return self._result("expansion", self._expanded)
+
+    def _expanded(self) -> Scene:
+        if not self.system.motion:
+            hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in self.system.coordinates) + "}"
+            raise Unavailable("motion", NoResult("the description gives no unperturbed motion", hint))
+        return linearisation.quadratised(self.parameters_scene)
 
     # --- the numbered problems ---
 
@@ -217,6 +223,13 @@ class Analysis:
         return self._result("linearisation", self._linearisation)
 
     def _linearisation(self) -> linearisation.Linearisation:
+        if self.equilibrium.impossible:
+            never = ", ".join(f"{item} = 0" for item in self.equilibrium.impossible)
+            raise Unavailable("motion", NoResult(f"the given motion does not exist: {never} is impossible"))
+        if self.equilibrium.unsteady:
+            varying = ", ".join(self.equilibrium.unsteady)
+            reason = f"on the given motion the equations still vary with {varying}"
+            raise Unavailable("motion", NoResult(reason, "it is no steady motion in these coordinates"))
         return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
 
     @property

@@ -436,6 +436,7 @@ def test_double_imaginary_pair_with_jordan_block() -> None:
     assert "not semisimple" in found.verdict.explanation
     symbolic = analyse(system, signs(NONE))
     assert symbolic.verdict.word == "undecided"
+    assert all(case.never for case in symbolic.cases)
     assert any("Jordan blocks" in remark for remark in symbolic.remarks)
 
 
@@ -539,6 +540,15 @@ def test_unknown_factor_is_not_removed() -> None:
     found = analyse(LinearSystem(raw[0], raw[1], raw[1], raw[2], raw[1]), signs(context, "negative negative"))
     assert found.removed * found.polynomial[0] == b * b
     assert signs(context, "negative negative").sign(found.removed) == "positive"
+
+
+def test_analysis_beyond_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(theory, "characteristic_polynomial", lambda *_: determinant([[ALPHA]], budget=0))
+    found = analyse(YAW_ROLL, RANGES, dict(enumerate([F(1, 10), F(1, 2), F(3, 4), F(1, 4)])))
+    assert found.verdict.word == "undecided"
+    assert "not written out" in found.remarks[0]
+    assert found.at_point is not None
+    assert found.at_point.verdict.word == "stable"
 
 
 def test_too_large_is_said_and_never_a_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -830,6 +840,77 @@ def test_symbols_numbers_and_floats_agree(parts: dict[str, Any]) -> None:
     assume(abs(largest) > 1e-3)
     assert (exact.verdict.word == "unstable") == (largest > 0)
     assert (exact.verdict.word == "asymptotically stable") == (largest < 0)
+
+
+def holds(r: theory.Requirement, point: list[Any]) -> bool:
+    """The requirement as it arose; what was left of it after reduction must say the same."""
+    value = r.polynomial(*point)
+    raw = value != 0 if r.relation == "!=" else value > 0
+    reduced = r.condition.polynomial(*point) > 0 and all(f(*point) != 0 for f in r.condition.nonzero)
+    assert r.by_mass or reduced == raw
+    return raw
+
+
+def read_off(found: theory.Stability, point: list[Any]) -> str:
+    """The cases as an if-elif chain at given values."""
+    for case in found.cases:
+        if all(holds(r, point) for r in case.all_of) and (not case.any_of or any(holds(r, point) for r in case.any_of)):
+            return case.verdict.word
+    return "undecided"
+
+
+PAIR, (K1, K2, G1, N1, D1, D2) = ring("k1 k2 g n d1 d2")
+
+
+def pair(parts: str) -> LinearSystem:
+    """Two degrees of freedom with the forces named in ``parts``."""
+    every: dict[str, Any] = {
+        "D": [[D1, 0], [0, D2]],
+        "G": [[0, G1], [-G1, 0]],
+        "K": [[K1, 1], [1, K2]],
+        "N": [[0, N1], [-N1, 0]],
+    }
+    return linear(PAIR, True, M=[[2, 1], [1, 1]], **{name: every[name] for name in parts})
+
+
+FAMILIES = {
+    "pitch": (PITCH, RANGES, 2),
+    "yaw and roll": (YAW_ROLL, RANGES, 2),
+    "gradient": (gradient_yaw_roll(), signs(GRADIENT, "positive positive positive"), 3),
+    "ziegler": (ziegler(damped=False), signs(ZIEGLER), 2),
+    "damped ziegler": (ziegler(damped=True), signs(ZIEGLER, "real positive positive"), 2),
+    "gyroscopic": (gyroscopic_pair(), signs(TWO, "positive positive real real"), 2),
+    "damped gyroscopic": (gyroscopic_pair(damped=True), signs(TWO, "real real real positive"), 1),
+    "dissipative": (pair("DGK"), signs(PAIR, "real real real real positive positive"), 2),
+    "any damping": (pair("DGK"), signs(PAIR), 2),
+    "everything": (pair("DGKN"), signs(PAIR), 2),
+    "without damping": (pair("GKN"), signs(PAIR), 1),
+}
+
+
+@pytest.mark.parametrize("name", sorted(FAMILIES))
+def test_cases_are_true_at_random_points(name: str) -> None:
+    """What the symbolic cases say at random parameter values is what the exact count of roots says there."""
+    system, known, different = FAMILIES[name]
+    found = analyse(system, known)
+    random = np.random.default_rng(7)
+    top = 12 if known.context is SATELLITE else 40
+    seen = set()
+    for _ in range(300):
+        values = [F(int(n), 12) for n in random.integers(-top, top, known.context.nvars())]
+        values = [abs(value) if word == "positive" else value for value, word in zip(values, known.words, strict=True)]
+        point = [rational(value) for value in values]
+        inside = all(values[i] or word == "real" for i, word in enumerate(known.words))
+        inside = inside and all(p(*point) > 0 for p, _ in known.assumptions)
+        if not inside or any(p(*point) <= 0 for p in found.mass.minors):
+            continue
+        exact = verdict_at(system, dict(enumerate(values))).verdict.word
+        symbolic = read_off(found, point)
+        assert symbolic in (exact, "undecided")
+        border = any(r.polynomial(*point) == 0 for r in found.requirements)
+        assert symbolic == exact or border
+        seen.add(exact)
+    assert len(seen) >= different
 
 
 @settings(max_examples=60, deadline=None)

@@ -164,6 +164,9 @@ def subdiscriminants(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ..
 
 def resultant(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polynomial:
     """Vanishes exactly where two polynomials in lambda have a common root (or both leading coefficients vanish)."""
+    terms = [sum(len(c) for c in p if c != 0) for p in (left, right)]
+    if terms[0] ** (len(right) - 1) * terms[1] ** (len(left) - 1) > BUDGET**2:
+        raise TooLargeError("a resultant with too many terms")
     lam = _Variable(left[0].context())
     value = lam.assemble(left).resultant(lam.assemble(right), lam.name)
     return lam.coefficients(value, 0)[0]

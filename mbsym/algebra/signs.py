@@ -246,8 +246,28 @@ class Signs:
             return self._by_terms(p)
         key = str(p), after
         if key not in self._answers:
-            self._answers[key] = self._search(p, after)
+            small, q = self._restricted(p) if after < 0 else (self, p)
+            self._answers[key] = small._search(q, after)
         return self._answers[key]
+
+    @cached_property
+    def _restrictions(self) -> dict[tuple[int, ...], Signs]:
+        return {}
+
+    def _restricted(self, p: Polynomial) -> tuple[Signs, Polynomial]:
+        """The same question with only the generators that occur in p or in the assumptions: contexts can be wide."""
+        degrees = [p.degrees(), *(a.degrees() for a, _ in self.assumptions if not a.is_constant())]
+        used = tuple(i for i, column in enumerate(zip(*degrees, strict=True)) if any(column))
+        if len(used) == len(self.words):
+            return self, p
+        if used not in self._restrictions:
+            names = self.context.names()
+            context = type(self.context).get([names[i] for i in used], self.context.ordering())
+            words = tuple(self.words[i] for i in used)
+            assumptions = tuple((_narrowed(a, used, context), relation) for a, relation in self.assumptions)
+            self._restrictions[used] = Signs(context, words, assumptions)
+        small = self._restrictions[used]
+        return small, _narrowed(p, used, small.context)
 
     def _search(self, p: Polynomial, after: int) -> SignSet:
         result = self._by_terms(p)
@@ -504,6 +524,10 @@ def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
         return fmpq(1), [(p, 1)]
     unit, powers = p.factor()
     return unit, powers
+
+
+def _narrowed(p: Polynomial, used: tuple[int, ...], context: Any) -> Polynomial:
+    return context.from_dict({tuple(exponents[i] for i in used): c for exponents, c in p.to_dict().items()})
 
 
 def _same(left: Condition, right: Condition) -> bool:

@@ -62,7 +62,6 @@ _LOOKALIKES = {
     "³": "write **3",
     "√": "write sqrt(...)",
     "π": "write pi",
-    "'": "a velocity is written theta_dot",
     "[": "only round parentheses group",
     "]": "only round parentheses group",
     "{": "only round parentheses group",
@@ -130,6 +129,8 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
         end += 1
     shown = text[position:end]
     hint = _LOOKALIKES.get(character)
+    if character == "'" and position and text[position - 1].isalnum():
+        hint = "a velocity is written theta_dot"
     if hint is None and character.isalpha():
         hint = f"names are Latin letters, digits and _: write {_latin_name(character)}"
     complaints.error(
@@ -141,7 +142,8 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
 def ascii_safe(text: str) -> str:
     """A quoted piece of the file for a message, shortened, with unprintable characters escaped."""
     short = text if len(text) <= 60 else text[:57] + "..."
-    return "'" + "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short) + "'"
+    quote = '"' if "'" in short else "'"
+    return quote + "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short) + quote
 
 
 def _latin_name(character: str) -> str:

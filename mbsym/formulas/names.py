@@ -61,12 +61,13 @@ def injective(names: Iterable[str], propose: Callable[[str], str], taken: Collec
         for name in ordered:
             proposed = propose(name)
             if (proposed == name) is unchanged:
-                result[name] = _free(proposed, used)
+                result[name] = free_name(proposed, used)
                 used.add(result[name])
     return {name: result[name] for name in ordered}
 
 
-def _free(proposed: str, used: Collection[str]) -> str:
+def free_name(proposed: str, used: Collection[str]) -> str:
+    """The proposed name, with letters appended until it is not among the used ones."""
     candidate, count = proposed, 0
     while candidate in used:
         candidate, count = proposed + "x" + "z" * count, count + 1

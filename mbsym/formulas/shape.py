@@ -425,4 +425,4 @@ def _opened(product: Product) -> Sum:
     broken = sum(term.coefficient.q != 1 for term in terms)
     if abs(content.p) != 1 or 2 * broken > len(terms):
         return Sum((product,))
-    return _tidy(terms)
+    return _tidy([inner for term in terms for inner in (_opened(term).terms if abs(term.coefficient) == 1 else [term])])

@@ -6,7 +6,8 @@ Conventions (all of mbsym follows them; the reports state them):
   R^jk = C_a3(x3) C_a2(x2) C_a1(x1); the new axes are the rows of R.  Axis number 0 means "no rotation here".
 * Body k hangs on body j at its connection point O_k, r^j_Ok in the axes of body j; the mass centre is r^k_Ck in its
   own axes.  Body "0" is the inertial frame.
-* An inertia tensor is the symmetric matrix J of T = w.J w / 2, so its products carry the minus sign (J13 = -int x z dm).
+* An inertia tensor is the symmetric matrix J of T = w.J w / 2, so its products carry the minus sign
+  (J13 = -int x z dm).
 * L = T + U with the force function U = -potential energy.
 
 Spans point back into the description; they take no part in equality, so two spellings of one system compare equal.
@@ -66,7 +67,10 @@ class Prescribed:
 
 @dataclass(frozen=True, slots=True)
 class Rotation:
-    """Rotation axis numbers (1, 2, 3; 0 for none) and the angle about each, in the order of turning."""
+    """Rotation axis numbers (1, 2, 3; 0 for none) and the angle about each, in the order of turning.
+
+    Readers drop the unused turns, so that {3, 0, 0} and {3} are equal.
+    """
 
     axes: tuple[int, ...] = ()
     angles: tuple[Expression, ...] = ()
@@ -292,7 +296,10 @@ class InitialValue:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A whole description.  ``time_scale`` (a rate) makes time dimensionless: tau = time_scale * t, problems 5 and 6."""
+    """A whole description.
+
+    ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.
+    """
 
     name: str
     parameters: tuple[Parameter, ...]

@@ -102,6 +102,8 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Itera
 
 
 def _momenta(scene: Scene, equations: Equations, known: Sequence[Polynomial]) -> list[Integral]:
+    if scene.system.prescribed:  # whatever drives a prescribed motion exchanges momentum with the system
+        return []
     try:
         candidates = _candidates(scene)
         found: list[Integral] = []

@@ -26,7 +26,7 @@ from mbsym.algebra.base import NotRational, SingularPoint
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Rationals
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.expressions.tree import names
@@ -48,26 +48,27 @@ _DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
 class SubsystemStability:
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
-    ``theory`` holds the characteristic polynomial, conditions, cases and verdict (polynomials of the ring; lambda is
-    the position in the coefficient lists).
+    ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
     """
 
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
     factor: Formula
+    ring: Ring
     theory: Theory
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
         """Coefficients of the primitive polynomial, from low to high powers of lambda."""
-        ring = self.factor.ring
+        ring = self.ring
         zero = (ring.zero,) * self.theory.zero_power
         return tuple(Formula(ring, x) for x in (*zero, *self.theory.polynomial))
 
     @property
     def conditions(self) -> tuple[tuple[str, Formula, str], ...]:
         """(label, polynomial, relation to 0) of every condition that is not known to hold."""
-        ring = self.factor.ring
+        ring = self.ring
         open_ = [r for r in self.theory.requirements if not r.always]
         return tuple((r.label, Formula(ring, r.condition.polynomial), r.relation) for r in open_)
 
@@ -114,9 +115,28 @@ def _judge(
         for i, name in enumerate(part.coordinates)
         if name in cyclic and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
+    ring, known = _in_parameters(scene.ring, rows, signs)
+    if isinstance(ring, ParameterRing):
+        rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
     system = LinearSystem(*rows, conservative=energy_conserved, cyclic=idle)
-    point = None if values is None else _point(scene, rows, values)
-    return SubsystemStability(part.coordinates, matrices, factor, analyse(system, signs, point))
+    point = None if values is None else _point(scene, ring, rows, values)
+    return SubsystemStability(part.coordinates, matrices, factor, ring, analyse(system, known, point))
+
+
+def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], signs: Signs) -> tuple[Ring, Signs]:
+    """The ring of the parameters that matter, with what is known about them; the ring itself if it takes more."""
+    used = {k for matrix in rows for row in matrix for x in row for k, d in enumerate(x.degrees()) if d > 0}
+    for assumption, _ in signs.assumptions:
+        used |= {k for k, d in enumerate(assumption.degrees()) if d > 0 and ring.generators[k].kind == "parameter"}
+    if any(ring.generators[k].kind != "parameter" for k in used):
+        return ring, signs
+    small = ParameterRing(ring, sorted(used))
+    kept = [
+        (small.project(assumption), relation)
+        for assumption, relation in signs.assumptions
+        if all(d <= 0 or k in used for k, d in enumerate(assumption.degrees()))
+    ]
+    return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept))
 
 
 def _elimination(scene: Scene) -> Elimination:
@@ -172,11 +192,13 @@ def parameter_values(scene: Scene) -> dict[str, Fraction] | None:
     return given
 
 
-def _point(scene: Scene, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Fraction]) -> dict | None:
+def _point(
+    scene: Scene, ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Fraction]
+) -> dict[int, Fraction] | None:
     """Exact values of the generators that occur in the matrices; None if one of them is irrational."""
-    ring, numbers = scene.ring, Rationals({}, {})
+    numbers = Rationals({}, {})
     environment = {name: numbers.number(value) for name, value in values.items()}
-    carry = Carrier(ring, numbers, environment)
+    carry = Carrier(scene.ring, numbers, environment)
     used = {
         k
         for matrix in rows
@@ -191,7 +213,8 @@ def _point(scene: Scene, rows: Sequence[Sequence[Sequence[Polynomial]]], values:
         for index in used:
             g = ring.generators[index]
             named = g.kind == "parameter" and g.name in notation
-            symbol = definition_in_parameters(scene, g.name) if named else ring.context.gen(index)
+            whole = ring.indices[index] if isinstance(ring, ParameterRing) else index
+            symbol = definition_in_parameters(scene, g.name) if named else scene.ring.context.gen(whole)
             exact = carry(symbol)
             point[index] = Fraction(int(exact.p), int(exact.q))
     except (NotRational, SingularPoint, KeyError):

@@ -200,8 +200,9 @@ class PointVerdict:
 class Stability:
     """Everything about one subsystem.
 
-    characteristic = removed * lambda^zero_power * polynomial, ``removed`` known to be positive.  ``factors`` of
-    ``polynomial`` are in ``variable``: lambda^2 where only even powers occur, else lambda.
+    characteristic = removed * lambda^zero_power * polynomial, ``removed`` known to be positive (both polynomials are
+    empty when they were too large to be written out).  ``factors`` of ``polynomial`` are in ``variable``: lambda^2
+    where only even powers occur, else lambda.
     """
 
     kind: str
@@ -234,8 +235,38 @@ class Stability:
 def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | None = None) -> Stability:
     """Characteristic polynomial, conditions, cases and verdict; with ``point`` also the exact verdict there.
 
-    Without proof by ``signs`` the verdict is ``undecided`` and ``cases`` say what it depends on.
+    Without proof by ``signs`` the verdict is ``undecided`` and ``cases`` say what it depends on.  Formulas beyond the
+    budget are left out, with a remark; then nothing is claimed in symbols.
     """
+    try:
+        found = _analyse(system, signs)
+    except TooLargeError as error:
+        found = _left_out(system, signs, str(error))
+    return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Stability:
+    nothing = Definiteness(UNDECIDED, ())
+    return Stability(
+        kind=kind_of(system),
+        characteristic=(),
+        removed=signs.context.constant(1),
+        zero_power=0,
+        polynomial=(),
+        variable="lambda",
+        factors=(),
+        method=NO_METHOD,
+        requirements=(),
+        mass=nothing,
+        stiffness=nothing,
+        dissipation=None if _is_zero(system.D) else nothing,
+        cases=(),
+        verdict=Verdict(UNDECIDED, "", f"No closed form within the budget: {reason}."),
+        remarks=(f"The characteristic polynomial is not written out: {reason}; at a point the verdict is exact.",),
+    )
+
+
+def _analyse(system: LinearSystem, signs: Signs) -> Stability:
     mass = definiteness(system.M, signs, "M")
     # A mass matrix is positive definite, so its minors may be used to judge everything else.
     known = signs.assuming((r.polynomial, ">") for r in mass.requirements if not r.polynomial.is_constant())
@@ -255,7 +286,6 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         dissipation=None if _is_zero(system.D) else definiteness(system.D, known, "D"),
         cases=(),
         verdict=Verdict(UNDECIDED, "", "The mass matrix is singular, so the order of the equations is lower."),
-        at_point=None if point is None else verdict_at(system, point),
     )
     if raw[-1] == 0:
         return start
@@ -362,7 +392,7 @@ def _requirements(
             wanted = _even_wanted(p) if even else lienard_chipart(p)[1:]
         except TooLargeError as error:
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
-            requirements.append(Requirement(UNWRITTEN, p[0], Condition("unwritten", signs.context.constant(1))))
+            requirements.append(_unwritten(p[0]))
             continue
         requirements += [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
     if even and not _is_potential(system):
@@ -394,18 +424,32 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
     """No common roots of different factors; a factor that occurs several times must be semisimple."""
     requirements = []
     for i, left in enumerate(factors):
-        for j in range(i + 1, len(factors)):
-            value = resultant(left.coefficients, factors[j].coefficients)
-            requirements.append(_differs(f"resultant of factors {i + 1} and {j + 1}", value, known))
-        if left.multiplicity > 1:
-            in_lambda = tuple(c for v in left.coefficients for c in (v, v * 0))[:-1]
-            c, k = _add(system.D, system.G), _add(system.K, system.N)
-            if is_semisimple(system.M, c, k, in_lambda, left.multiplicity):
-                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with simple elementary divisors.")
-            else:
-                requirements.append(_differs(f"multiplicity of factor {i + 1}", left.coefficients[0] * 0, known))
-                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with Jordan blocks: never simple.")
+        try:
+            for j in range(i + 1, len(factors)):
+                value = resultant(left.coefficients, factors[j].coefficients)
+                requirements.append(_differs(f"resultant of factors {i + 1} and {j + 1}", value, known))
+            if left.multiplicity > 1:
+                simple = _is_semisimple(system, left)
+                if not simple:
+                    never = left.coefficients[0] * 0
+                    requirements.append(_differs(f"multiplicity of factor {i + 1}", never, known))
+                how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
+                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
+        except TooLargeError as error:
+            requirements.append(_unwritten(left.coefficients[0]))
+            remarks.append(f"Whether roots of factor {i + 1} coincide with others is left open: {error}.")
     return requirements
+
+
+def _is_semisimple(system: LinearSystem, factor: Factor) -> bool:
+    in_lambda = tuple(c for v in factor.coefficients for c in (v, v * 0))[:-1]
+    c, k = _add(system.D, system.G), _add(system.K, system.N)
+    return is_semisimple(system.M, c, k, in_lambda, factor.multiplicity)
+
+
+def _unwritten(p: Polynomial) -> Requirement:
+    """Neither provable nor refutable, so that no verdict can rest on what was left out."""
+    return Requirement(UNWRITTEN, p, Condition("unwritten", p * 0 + 1))
 
 
 def _cases(system: LinearSystem, found: Stability, known: Signs) -> tuple[Case, ...]:

@@ -52,7 +52,7 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
 
 def _draft(number: int, node: Node, reading: Reading) -> Draft:
     fields = reading.fields(node, f"body {number}", BODY)
-    given = fields.require("name") if isinstance(node, Mapping) else None
+    given = fields.require("name")
     scalar = None if given is None else reading.scalar(given, "the name of a body")
     if scalar is None:
         return Draft(number, f"body {number}", node.span, fields, [])
@@ -112,7 +112,7 @@ def bare_name(angle: Expression | None) -> str | None:
 def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
     """The second pass: everything about one body."""
     fields = draft.fields
-    mass = fields.required_expression("mass", Allowed("a mass")) if fields.found else ZERO
+    mass = fields.required_expression("mass", Allowed("a mass"))
     return Body(
         name=draft.name,
         attached_to=_attached_to(draft, drafts, reading),
@@ -136,7 +136,7 @@ def _attached_to(draft: Draft, drafts: list[Draft], reading: Reading) -> str:
     """The name of an earlier body, or the inertial frame; only the first body may leave it unsaid."""
     node = draft.fields.get("attached to")
     if node is None:
-        if draft.number > 1 and draft.fields.found:
+        if draft.number > 1:
             draft.fields.require("attached to", "an earlier body, or 0 for the inertial frame")
         return INERTIAL
     name = read_body_name(node, "'attached to'", [other.name for other in drafts], reading)
@@ -200,15 +200,16 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     return Rotation(tuple(axis for axis, _ in turns), tuple(angle for _, angle in turns))
 
 
-def _axis(node: Node, reading: Reading) -> int:
+def _axis(node: Node, reading: Reading) -> int | None:
+    """The number of an axis, or None after a complaint."""
     scalar = reading.scalar(node, "a rotation axis")
     if scalar is None:
-        return 0
+        return None
     if scalar.text in ("0", "1", "2", "3"):
         return int(scalar.text)
     hint = "for the opposite sense, turn by the negative angle" if scalar.text.startswith("-") else None
     reading.error("bad-axis", f"rotation axes are 1, 2, 3 or 0, not {ascii_safe(scalar.text)}", scalar.span, hint)
-    return 0
+    return None
 
 
 def _inertia(fields: Fields, reading: Reading) -> Inertia | None:

@@ -10,7 +10,7 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.system import System
 from mbsym.source.bodies import draft_bodies, read_body
-from mbsym.source.checks import check_body, check_system
+from mbsym.source.checks import check_body, check_system, known_values
 from mbsym.source.constants import declare_prescribed, read_parameters, read_prescribed, read_values
 from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.loads import read_loads
@@ -25,9 +25,8 @@ def build(node: Node, complaints: Complaints) -> System | None:
     reading = Reading(complaints, Scope(complaints))
     fields = reading.fields(node, "a description", SYSTEM)
     _check_version(fields, reading)
-    if fields.found:
-        for key in ("name", "bodies"):
-            fields.require(key)
+    for key in ("name", "bodies"):
+        fields.require(key)
     parameters = read_parameters(fields.get("parameters"), reading)
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
     drafts = draft_bodies(fields.get("bodies"), reading)
@@ -55,15 +54,16 @@ def build(node: Node, complaints: Complaints) -> System | None:
         time_scale=fields.expression("dimensionless time", Allowed("the rate of dimensionless time")),
         initial=read_initial(fields.get("initial"), reading),
     )
+    values = known_values(system)
     for draft, good in zip(drafts, sound, strict=True):
         if good:
-            check_body(system, draft, reading)
+            check_body(system, draft, values, reading)
     check_system(system, reading)
     return None if complaints.errors else system
 
 
 def _check_version(fields: Fields, reading: Reading) -> None:
-    node = fields.require("mbsym", "begin the file with 'mbsym: 1'") if fields.found else None
+    node = fields.require("mbsym", "begin the file with 'mbsym: 1'")
     scalar = None if node is None else reading.scalar(node, "'mbsym'")
     if scalar is not None and scalar.text != VERSION:
         message = f"this is version {ascii_safe(scalar.text)} of the format, and only {VERSION} is known"

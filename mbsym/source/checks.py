@@ -30,12 +30,11 @@ from mbsym.source.identity import vanishes
 from mbsym.source.reading import Reading
 
 
-def check_body(system: System, draft: Draft, reading: Reading) -> None:
+def check_body(system: System, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
     """Everything that can be decided about one body whose expressions were read without complaint."""
     body = system.bodies[draft.number - 1]
     _check_coordinates(system, body, draft, reading)
     _check_relative_velocity(system, body, draft, reading)
-    values = known_values(system)
     _check_mass(system, body, draft, values, reading)
     _check_inertia(system, body, draft, values, reading)
 

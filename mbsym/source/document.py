@@ -9,6 +9,7 @@ from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
+from mbsym.source.text_reader import looks_like_text, read_text
 from mbsym.source.yaml_reader import read_yaml
 
 MAX_COMPLAINTS = 200
@@ -34,7 +35,7 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     try:
         if check_characters(text, complaints):
             node = _placed_tree(text, filename, complaints)
-            system = build(node, complaints) if node is not None and not complaints.errors else None
+            system = None if node is None else build(node, complaints)
     except TooManyComplaints:
         system = None
     found = Complaints(complaints.sorted())
@@ -44,6 +45,10 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
 
 
 def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:
+    """One of the two readers, by the ending of the name or by the look of the text."""
+    ending = filename.lower().rpartition(".")[2]
+    if ending == "txt" or (ending not in ("yaml", "yml", "json") and looks_like_text(text)):
+        return read_text(text, complaints)
     return read_yaml(text, complaints)
 
 

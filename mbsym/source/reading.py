@@ -16,7 +16,7 @@ from mbsym.model.system import Vector
 from mbsym.source import placed
 from mbsym.source.keys import ALIASES
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
-from mbsym.source.scope import Allowed, Scope, did_you_mean
+from mbsym.source.scope import Allowed, Scope, closest, did_you_mean
 
 MAX_ENTRIES = 500
 MAX_FREE_TEXT = 4_000
@@ -126,27 +126,32 @@ class Reading:
         return node.items
 
     def fields(self, node: Node, what: str, known: Mapping[str, str]) -> Fields:
-        """A mapping with a fixed set of keys; unknown ones are complained about."""
+        """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         found: dict[str, Entry] = {}
+        misspelt: dict[str, Entry] = {}
         for entry in self.entries(node, what):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:
                 found[key] = entry
             else:
-                hint = did_you_mean(entry.key.text, known) or f"the keys are: {', '.join(known)}"
+                guess = closest(entry.key.text, known)
+                hint = f"did you mean '{guess}'?" if guess else f"the keys are: {', '.join(known)}"
                 message = f"unknown key {ascii_safe(entry.key.text)} in {what}"
                 self.error("unknown-key", message, entry.key.span, hint)
-        return Fields(self, what, found, node.span)
+                if guess:
+                    misspelt[guess] = entry
+        return Fields(self, what, {**misspelt, **found}, node.span, isinstance(node, placed.Mapping))
 
 
 @dataclass(slots=True)
 class Fields:
-    """The known keys of a mapping and their values."""
+    """The known keys of a mapping and their values; not ``sound`` where there was no mapping to read."""
 
     reading: Reading
     what: str
     found: dict[str, Entry]
     span: Span
+    sound: bool
 
     def get(self, key: str) -> Node | None:
         entry = self.found.get(key)
@@ -155,7 +160,7 @@ class Fields:
     def require(self, key: str, hint: str | None = None) -> Node | None:
         """The value of a key that must be there."""
         node = self.get(key)
-        if node is None:
+        if node is None and self.sound:
             self.reading.error("missing-key", f"{self.what} has no {ascii_safe(key)}", self.span, hint)
         return node
 

@@ -55,14 +55,19 @@ ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 
 @dataclass(slots=True)
 class Scope:
-    """All declared names with their kinds; complains about clashes and about unknown or misplaced names."""
+    """All declared names with their kinds; complains about clashes and about unknown or misplaced names.
+
+    ``later`` holds the names of notation that is still to come.
+    """
 
     complaints: Complaints
     kinds: dict[str, str] = field(default_factory=dict)
+    later: set[str] = field(default_factory=set)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
         if not self.is_name(name, span):
+            self.kinds.setdefault(name, kind)  # one complaint about it is enough
             return False
         if name in self.kinds:
             taken = _KINDS[self.kinds[name]]
@@ -100,7 +105,7 @@ class Scope:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
-            held = " and ".join(_PLURALS[one] for one in allowed.kinds) or "numbers"
+            held = _enumerated([_PLURALS[one] for one in allowed.kinds]) or "numbers"
             message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
             self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))
         else:
@@ -108,14 +113,16 @@ class Scope:
         return False
 
     def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
+        if name in self.later:
+            return "notation is read in order: move its definition up"
+        if name.endswith("_ddot"):
+            return "accelerations are what the equations are solved for; they stand in no description"
         known = [one for one in self.kinds if self.kinds[one] in allowed.kinds]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
         close = did_you_mean(name, known)
         if close is not None:
             return close
-        if name.endswith("_ddot"):
-            return "accelerations are what the equations are solved for; they stand in no description"
         if self.kinds.get(name.removesuffix("_dot")) == "prescribed":
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)
@@ -124,21 +131,30 @@ class Scope:
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
 
 
+def _enumerated(words: list[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
 def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and "prescribed" in allowed.kinds:
         return "declare what changes with time under 'prescribed'"
-    if kind == "velocity":
+    if kind == "velocity" and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
     return None
 
 
+def closest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that a word resembles, if there is one."""
+    candidates = list(known)[:200]
+    same = [one for one in candidates if one.lower() == word.lower()]
+    close = same or get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=0.6)
+    return close[0] if close else None
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
     """The hint for a word that resembles a known one."""
-    candidates = list(known)[:500]
-    close = get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=0.6)
-    if not close:
-        close = [one for one in candidates if one.lower() == word.lower()]
-    return f"did you mean '{close[0]}'?" if close else None
+    close = closest(word, known)
+    return None if close is None else f"did you mean '{close}'?"
 
 
 def why_no_name(name: str) -> tuple[str, str | None] | None:

@@ -118,10 +118,13 @@ def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
     """Symbols in order: each may use parameters and the symbols above it."""
     notation = []
     allowed = Allowed("a notation", ("parameter", "notation"))
-    for entry in () if node is None else reading.entries(node, "'notation'"):
+    entries = [] if node is None else list(reading.entries(node, "'notation'"))
+    reading.scope.later = {entry.key.text for entry in entries}
+    for entry in entries:
         value = reading.expression(entry.value, allowed)
         if reading.scope.declare(entry.key.text, "notation", entry.key.span):
             notation.append(Notation(entry.key.text, value, entry.key.span))
+        reading.scope.later.discard(entry.key.text)
     return tuple(notation)
 
 
@@ -135,6 +138,8 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...
         if isinstance(entry.value, Mapping):
             fields = reading.fields(entry.value, f"the initial value of {ascii_safe(entry.key.text)}", INITIAL)
             position, velocity = fields.expression("position", allowed), fields.expression("velocity", allowed)
+            if not fields.found:
+                reading.error("missing-key", f"{fields.what} has neither 'position' nor 'velocity'", span)
         else:
             position, velocity = reading.expression(entry.value, allowed), None
         if known:

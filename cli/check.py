@@ -1,0 +1,33 @@
+"""``mbsym check``: validates descriptions without deriving anything."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, OK, read_description
+
+
+@click.command("check")
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
+def command(files: tuple[Path, ...]) -> None:
+    """Validate descriptions without deriving anything.
+
+    Prints every complaint with its place; the exit code is 2 if there is an error.
+
+    \b
+    Example:
+      mbsym check systems/*.yaml
+    """
+    worst = OK
+    for path in files:
+        system = read_description(path)
+        if system is None:
+            worst = BAD_INPUT
+            continue
+        n = len(system.coordinates)
+        freedom = f"{n} degree{'s' if n != 1 else ''} of freedom ({', '.join(system.coordinates)})"
+        click.echo(f"{path}: ok: {system.name}; {len(system.bodies)} bodies, {freedom}")
+    sys.exit(worst)

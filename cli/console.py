@@ -1,0 +1,51 @@
+"""What the commands share: reading descriptions, printing complaints, the two consoles, exit codes."""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mbsym.source import load, render
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from mbsym.model.system import System
+
+#: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
+OK, FAILED, BAD_INPUT = 0, 1, 2
+
+
+@cache
+def console(stderr: bool = False) -> Console:
+    """rich's console; plain text where the output is no terminal."""
+    from rich.console import Console
+
+    return Console(stderr=stderr, highlight=False, soft_wrap=not (sys.stderr if stderr else sys.stdout).isatty())
+
+
+def read_description(path: Path) -> System | None:
+    """The system of a file, or None after printing every complaint on standard error."""
+    system, complaints, text = load(path)
+    for complaint in complaints.sorted():
+        print(render(complaint, text, str(path)), file=sys.stderr)
+    errors = len(complaints.errors)
+    if errors:
+        print(f"{path}: {errors} error{'s' if errors > 1 else ''}; nothing was written.", file=sys.stderr)
+    return system
+
+
+def numbers(text: str) -> tuple[int, ...]:
+    """``1-5``, ``1,3,5`` or ``6`` as problem numbers.  Raises ValueError with a hint."""
+    found: set[int] = set()
+    for part in text.split(","):
+        first, dash, last = part.strip().partition("-")
+        if not first.isdigit() or (dash and not last.isdigit()):
+            raise ValueError(f"'{part.strip()}' is no problem number; write 1-5 or 1,3,6")
+        found.update(range(int(first), int(last or first) + 1))
+    wrong = sorted(n for n in found if not 1 <= n <= 7)
+    if wrong or not found:
+        raise ValueError(f"there is no problem {', '.join(map(str, wrong))}; problems are numbered 1 to 7")
+    return tuple(sorted(found))

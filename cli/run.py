@@ -1,0 +1,166 @@
+"""``mbsym run``: derives the numbered problems of each description and writes its reports."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, console, numbers, read_description
+from mbsym_cli.files import write_whole
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.model.system import System
+
+#: What a folder is searched for.
+SUFFIXES = (".yaml", ".yml", ".txt")
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to derive, and what to write."""
+
+    problems: tuple[int, ...]
+    formats: tuple[str, ...]
+    terms: int
+    quiet: bool
+
+
+def _problems(context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, ...]:
+    try:
+        return numbers(value)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+def _formats(context: click.Context, parameter: click.Parameter, value: str) -> tuple[str, ...]:
+    from mbsym.report.targets import TARGETS
+
+    chosen = tuple(dict.fromkeys(part.strip() for part in value.split(",") if part.strip()))
+    if chosen == ("all",):
+        return tuple(TARGETS)
+    unknown = [name for name in chosen if name not in TARGETS]
+    if unknown or not chosen:
+        raise click.BadParameter(f"choose from {', '.join(TARGETS)} or all, separated by commas")
+    return chosen
+
+
+@click.command("run")
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
+@click.option("--problems", "-p", default="1-7", callback=_problems, show_default=True, help="Which: 1-5 or 1,3,6.")
+@click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="latex,wolfram,...")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
+@click.option("--terms", default=400_000, show_default=True, help="Budget of terms for a closed formula.")
+@click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
+def command(
+    files: tuple[Path, ...], problems: tuple[int, ...], formats: tuple[str, ...], out: Path | None, terms: int, quiet: bool
+) -> None:
+    """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
+
+    Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals.
+    One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
+    failed or a report could not be written, 2 a description has errors.
+
+    \b
+    Examples:
+      mbsym run systems/satellite.yaml
+      mbsym run systems/ --problems 1-5 --format latex,json --out reports
+    """
+    options = Options(problems, formats, terms, quiet)
+    paths = list(_descriptions(files))
+    worst = OK
+    for path, folder in zip(paths, _folders(paths, out), strict=True):
+        worst = max(worst, _run_one(path, folder, options))
+    sys.exit(worst)
+
+
+def _descriptions(files: Iterable[Path]) -> Iterator[Path]:
+    """The files themselves; a folder stands for the descriptions in it, by name."""
+    for path in files:
+        if path.is_dir():
+            yield from sorted(child for child in path.iterdir() if child.suffix in SUFFIXES)
+        else:
+            yield path
+
+
+def _folders(paths: list[Path], out: Path | None) -> list[Path]:
+    """Where each file's reports go; files of one name get folders of their own."""
+    base = out if out is not None else Path("reports")
+    if out is not None and len(paths) == 1:
+        return [out]
+    taken: set[str] = set()
+    folders = []
+    for path in paths:
+        name, count = path.stem, 1
+        while name in taken:
+            name = path.name if count == 1 else f"{path.name}-{count}"
+            count += 1
+        taken.add(name)
+        folders.append(base / name)
+    return folders
+
+
+def _run_one(path: Path, folder: Path, options: Options) -> int:
+    """Reads, derives, writes and reports on one file; the exit code it deserves."""
+    system = read_description(path)
+    if system is None:
+        return BAD_INPUT
+    try:
+        return _derive(path, system, folder, options)
+    except OSError as error:
+        print(f"{path}: the reports cannot be written: {error}", file=sys.stderr)
+    except MemoryError:
+        print(f"{path}: out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
+    except Exception as error:
+        # A defect of ours must not cost the rest of the batch; say what it was and go on.
+        print(f"{path}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
+    return FAILED
+
+
+def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
+    from mbsym.analysis import PROBLEMS, Analysis
+    from mbsym.report.targets import TARGETS
+
+    started = time.perf_counter()
+    analysis = Analysis(system, options.problems, options.terms)
+    with _progress(options.quiet) as say:
+        for number in analysis.problems:
+            say(f"{path.name}: problem {number}, {PROBLEMS[number].title}")
+            analysis.stage(number)
+        say(f"{path.name}: self-check")
+        failed = [check for check in analysis.checks if check.failed]
+        texts = {}
+        for name in options.formats:
+            say(f"{path.name}: writing {TARGETS[name].filename}")
+            texts[folder / TARGETS[name].filename] = TARGETS[name].render(analysis, analysis.problems)
+    for target, text in texts.items():
+        write_whole(target, text)
+    if not options.quiet:
+        _print_summary(analysis, path, list(texts), time.perf_counter() - started)
+    for check in failed:
+        print(f"{path}: SELF-CHECK FAILED: {check.name}: {check.detail}", file=sys.stderr)
+    return FAILED if failed else OK
+
+
+@contextmanager
+def _progress(quiet: bool) -> Iterator:
+    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    with console(stderr=True).status("") as status:
+        yield lambda text: status.update(text)
+
+
+def _print_summary(analysis: Analysis, path: Path, files: list[Path], seconds: float) -> None:
+    from mbsym.report.summary import summary
+    from mbsym_cli.show import show
+
+    show(summary(analysis, analysis.problems, files), path, seconds)

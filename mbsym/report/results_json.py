@@ -1,0 +1,190 @@
+"""``results.json``: every asked-for result as strings in Python syntax with the declared names."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mbsym.expressions.tree import text
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.names import free_name
+from mbsym.model.system import System
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
+from mbsym.report.conditions import CaseStatement, Statement, cases, statements
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The file's text."""
+    return json.dumps(results(analysis, problems), indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
+    """The file as nested lists and dictionaries of strings."""
+    from mbsym.analysis import PROBLEMS
+
+    system = analysis.system
+    found: dict[str, Any] = {
+        "system": {"name": system.name, "description": system.description},
+        "coordinates": list(system.coordinates),
+        "parameters": _parameters(system),
+        "checks": [vars(check) for check in analysis.checks],
+    }
+    unavailable: dict[str, str] = {}
+    for number in problems:
+        key = PROBLEMS[number].attribute
+        stage = analysis.stage(number)
+        if stage.failure is None:
+            found[key] = _SECTIONS[number](stage.value, system)
+        else:
+            unavailable[key] = stage.failure.reason
+    return found | {"unavailable": unavailable}
+
+
+def _parameters(system: System) -> list[dict[str, str | None]]:
+    return [
+        {
+            "name": item.name,
+            "sign": item.sign,
+            "value": None if item.value is None else text(item.value),
+            "meaning": item.meaning,
+        }
+        for item in system.parameters
+    ]
+
+
+def _column(values: Column) -> list[str]:
+    return [str(x) for x in values]
+
+
+def _matrix(values: Matrix) -> list[list[str]]:
+    return [_column(row) for row in values]
+
+
+def _kinematics(found: Kinematics, system: System) -> dict[str, Any]:
+    return {
+        "bodies": [
+            {
+                "name": body.name,
+                "rotation": _matrix(body.rotation),
+                "angular_velocity": _column(body.angular_velocity),
+                "velocity_origin": _column(body.velocity_origin),
+                "velocity_mass_centre": _column(body.velocity_mass_centre),
+            }
+            for body in found.bodies
+        ]
+    }
+
+
+def _energy(found: Energy, system: System) -> dict[str, Any]:
+    return {
+        "kinetic_energy": str(found.kinetic_energy),
+        "A2": _matrix(found.A2),
+        "A1": _column(found.A1),
+        "A0": str(found.A0),
+        "force_function": str(found.force_function),
+        "cyclic": list(found.cyclic),
+    }
+
+
+def _equations(found: Equations, system: System) -> dict[str, Any]:
+    return {"mass_matrix": _matrix(found.mass_matrix), "forcing": _column(found.forcing)}
+
+
+def _equilibrium(found: Equilibrium, system: System) -> dict[str, Any]:
+    return {
+        "satisfied": found.satisfied,
+        "conditions": _column(found.conditions),
+        "solved": {name: str(value) for name, value in found.solved},
+    }
+
+
+def _linearisation(found: Linearisation, system: System) -> dict[str, Any]:
+    return {
+        **_five(found),
+        "subsystems": [{"coordinates": list(part.coordinates), **_five(part)} for part in found.subsystems],
+        "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
+        "notation": {item.name: text(item.value) for item in system.notation},
+    }
+
+
+def _five(found: Any) -> dict[str, list[list[str]]]:
+    return {name: _matrix(getattr(found, name)) for name in "MDGKN"}
+
+
+def _stability(found: Stability, system: System) -> dict[str, Any]:
+    taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
+    lam = free_name("lam", taken)
+    parts = found.subsystems
+    wanted = [list(statements(part.factor.ring, part.theory.requirements)) for part in parts]
+    return {
+        "characteristic_polynomials": [polynomial_text(part.characteristic, lam) for part in parts],
+        "conditions": [statement_text(item) for items in wanted for item in items],
+        "condition_labels": [[item.label for item in items] for items in wanted],
+        "cases": [
+            [_case(case, {item.label for item in items}) for case in cases(part.factor.ring, part.theory.cases)]
+            for part, items in zip(parts, wanted, strict=True)
+        ],
+        "verdict": found.verdict.word,
+        "theorem": found.verdict.theorem,
+        "verdict_at_values": None if found.numerical is None else found.numerical.word,
+    }
+
+
+def polynomial_text(coefficients: Sequence[Formula], variable: str) -> str:
+    """sum of coefficient*variable**k, highest power first; the coefficients stay factored."""
+    written = []
+    for power, coefficient in reversed(list(enumerate(coefficients))):
+        if coefficient.is_zero:
+            continue
+        bare = variable if power == 1 else f"{variable}**{power}"
+        written.append(f"({coefficient})" if power == 0 else bare if coefficient == 1 else f"({coefficient})*{bare}")
+    return " + ".join(written) or "0"
+
+
+def statement_text(statement: Statement) -> str:
+    """``formula > 0``, or what is wrong with it."""
+    if statement.formula is None:
+        return f"{statement.label} {statement.relation} 0: {statement.note}"
+    return f"{statement.formula} {statement.relation} 0"
+
+
+def _case(case: CaseStatement, labels: set[str]) -> dict[str, Any]:
+    """Conditions that the list already holds are named by their labels."""
+
+    def short(item: Statement) -> str:
+        return f"{item.label} {item.relation} 0" if item.label in labels else statement_text(item)
+
+    return {
+        "all_of": [short(item) for item in case.all_of],
+        "any_of": [short(item) for item in case.any_of],
+        "verdict": case.word,
+        "theorem": case.theorem,
+    }
+
+
+def _integrals(found: tuple[Integral, ...], system: System) -> list[dict[str, str]]:
+    return [
+        {"name": item.name, "kind": item.kind, "of": item.of, "formula": str(item.formula), "status": item.status}
+        for item in found
+    ]
+
+
+_SECTIONS: dict[int, Callable[[Any, System], Any]] = {
+    1: _kinematics,
+    2: _energy,
+    3: _equations,
+    4: _equilibrium,
+    5: _linearisation,
+    6: _stability,
+    7: _integrals,
+}

@@ -1,0 +1,111 @@
+"""Code from a straight-line program: one assignment per instruction, what is used once written in its place.
+
+Code is made from here, never from expanded formulas: it is short, and it computes what the self-check has checked.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.algebra.program import Instruction, Node, Program
+
+#: Longer expressions are given a name even if they are used only once.
+WIDTH = 60
+
+_SUM, _PRODUCT, _ATOM = 1, 2, 3
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How a language writes what differs between languages.
+
+    ``quotient`` of two finished operands is ``a/b`` everywhere but in LaTeX; ``assigned(k)`` is the k-th local name.
+    """
+
+    call: Callable[[str, str], str]
+    local: Callable[[int], str]
+    number: Callable[[Fraction], str] = str
+    times: str = "*"
+
+
+@dataclass(frozen=True)
+class Listing:
+    """``assignments`` in order, and the outputs as expressions in them; ``inputs`` that occur, in order."""
+
+    assignments: tuple[tuple[str, str], ...]
+    results: tuple[str, ...]
+    inputs: tuple[str, ...]
+
+
+def listing(
+    program: Program, outputs: Iterable[Node], names: Mapping[str, str], dialect: Dialect, taken: Collection[str] = ()
+) -> Listing:
+    """Straight-line code for the outputs; ``names`` renames the inputs, locals avoid them and ``taken``."""
+    return _Writer(program, list(outputs), names, dialect, {*taken, *names.values()}).listing()
+
+
+class _Writer:
+    def __init__(
+        self, program: Program, outputs: list[Node], names: Mapping[str, str], dialect: Dialect, used: set[str]
+    ) -> None:
+        self.program = program
+        self.outputs = outputs
+        self.names = names
+        self.dialect = dialect
+        self.used = used
+        self.live = program.live(outputs)
+        self.written: dict[int, tuple[str, int]] = {}
+        self.assignments: list[tuple[str, str]] = []
+        self._count = 0
+
+    def listing(self) -> Listing:
+        uses = Counter(operand for number in self.live for operand in self.program.instructions[number].operands)
+        uses.update(node.number for node in self.outputs)
+        inputs = []
+        for number in self.live:
+            instruction = self.program.instructions[number]
+            text, precedence = self._text(instruction)
+            if instruction.operation == "input":
+                inputs.append(str(instruction.payload))
+            elif instruction.operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
+                name = self._fresh()
+                self.assignments.append((name, text))
+                text, precedence = name, _ATOM
+            self.written[number] = text, precedence
+        results = tuple(self.written[node.number][0] for node in self.outputs)
+        return Listing(tuple(self.assignments), results, tuple(inputs))
+
+    def _fresh(self) -> str:
+        while True:
+            self._count += 1
+            name = self.dialect.local(self._count)
+            if name not in self.used:
+                return name
+
+    def _text(self, instruction: Instruction) -> tuple[str, int]:
+        match instruction.operation, instruction.payload, instruction.operands:
+            case "input", str(name), _:
+                return self.names[name], _ATOM
+            case "constant", Fraction() as value, _:
+                whole = value.denominator == 1 and value >= 0
+                return self.dialect.number(value), _ATOM if whole else _SUM if value < 0 else _PRODUCT
+            case "add", _, (a, b):
+                return f"{self._operand(a, _SUM)} + {self._operand(b, _SUM)}", _SUM
+            case "subtract", _, (a, b):
+                return f"{self._operand(a, _SUM)} - {self._operand(b, _PRODUCT)}", _SUM
+            case "negative", _, (a,):
+                return f"-{self._operand(a, _PRODUCT)}", _SUM
+            case "multiply", _, (a, b):
+                return f"{self._operand(a, _PRODUCT)}{self.dialect.times}{self._operand(b, _ATOM)}", _PRODUCT
+            case "divide", _, (a, b):
+                return f"{self._operand(a, _PRODUCT)}/{self._operand(b, _ATOM)}", _PRODUCT
+            case function, _, (a,):
+                return self.dialect.call(function, self._operand(a, _SUM)), _ATOM
+        raise ValueError(f"no such operation: {instruction.operation}")
+
+    def _operand(self, number: int, wanted: int) -> str:
+        text, precedence = self.written[number]
+        return text if precedence >= wanted else f"({text})"

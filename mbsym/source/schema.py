@@ -1,0 +1,146 @@
+"""The JSON Schema of the YAML format, for editors that complete and check while one types.
+
+It knows shapes and keys; what names mean and what is physically possible, only :func:`mbsym.source.read` knows.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mbsym.source.keys import (
+    BODY,
+    INITIAL,
+    LOAD_MEANINGS,
+    LOADS,
+    MOTION,
+    PARAMETER,
+    POINT,
+    PRESCRIBED,
+    ROTATION,
+    SIGNS,
+    SYSTEM,
+)
+
+Schema = dict[str, Any]
+
+_NAME = "^[A-Za-z][A-Za-z0-9_]*$"
+
+
+def _reference(definition: str, description: str = "") -> Schema:
+    found: Schema = {"$ref": f"#/$defs/{definition}"}
+    return {**found, "description": description} if description else found
+
+
+def json_schema() -> Schema:
+    """The schema (draft 2020-12) of a description in YAML."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "mbsym description of a mechanical system",
+        **_record(SYSTEM, _system_values(), required=("mbsym", "name", "bodies")),
+        "$defs": _definitions(),
+    }
+
+
+def _record(keys: dict[str, str], values: dict[str, Schema], required: tuple[str, ...] = ()) -> Schema:
+    """A mapping with a fixed set of keys; a key is an expression unless ``values`` says otherwise."""
+    default = _reference("expression")
+    properties = {key: {**values.get(key, default), "description": meaning} for key, meaning in keys.items()}
+    schema: Schema = {"type": "object", "properties": properties, "additionalProperties": False}
+    return {**schema, "required": list(required)} if required else schema
+
+
+def _named(value: Schema) -> Schema:
+    """A mapping whose keys are names that the author chooses."""
+    return {"type": "object", "patternProperties": {_NAME: value}, "additionalProperties": False}
+
+
+def _system_values() -> dict[str, Schema]:
+    names = {"type": "array", "items": {"type": "string", "pattern": _NAME}, "uniqueItems": True}
+    expression = _reference("expression")
+    return {
+        "mbsym": {"enum": [1, "1"]},
+        "name": {"type": "string"},
+        "description": {"type": "string"},
+        "dimensionless time": expression,
+        "parameters": {"anyOf": [_named(_reference("parameter")), names]},
+        "prescribed": _named({"anyOf": [expression, _record(PRESCRIBED, _TEXTS, required=("rate",))]}),
+        "bodies": {"type": "array", "items": _reference("body"), "minItems": 1},
+        "loads": {"type": "array", "items": _reference("load")},
+        "relations": _named(expression),
+        "assumptions": {"type": "array", "items": {"type": "string"}},
+        "motion": _named({"anyOf": [expression, _record(MOTION, {})]}),
+        "notation": _named(expression),
+        "values": _named(expression),
+        "initial": _named({"anyOf": [expression, _record(INITIAL, {})]}),
+    }
+
+
+_TEXTS: dict[str, Schema] = {"meaning": {"type": "string"}}
+_BODY_NAME: Schema = {"type": ["string", "integer"]}
+
+
+def _definitions() -> dict[str, Schema]:
+    return {
+        "expression": {
+            "type": ["string", "number"],
+            "description": "numbers, names, + - * / **, parentheses, sin cos tan sqrt exp log atan sinh cosh tanh",
+        },
+        "vector": {"type": "array", "items": _reference("expression"), "minItems": 3, "maxItems": 3},
+        "parameter": {"anyOf": [{"enum": list(SIGNS)}, _reference("expression"), _parameter_record()]},
+        "body": _record(BODY, _body_values(), required=("name", "mass")),
+        "point": _record(POINT, {"body": _BODY_NAME, "point": _reference("vector")}, required=("body", "point")),
+        "load": {"oneOf": [_load(kind) for kind in LOADS], "description": "one kind of load with its data"},
+    }
+
+
+def _parameter_record() -> Schema:
+    """``sign`` may also be written as ``positive: true``."""
+    keys = {**PARAMETER, **{sign: "true, short for sign: " + sign for sign in SIGNS}}
+    return _record(keys, {**_TEXTS, "sign": {"enum": list(SIGNS)}, **{sign: {"const": True} for sign in SIGNS}})
+
+
+def _body_values() -> dict[str, Schema]:
+    vector = _reference("vector")
+    axes: Schema = {"type": "array", "items": {"enum": [0, 1, 2, 3]}, "maxItems": 3}
+    angles: Schema = {"type": "array", "items": _reference("expression"), "maxItems": 3}
+    matrix: Schema = {"type": "array", "items": vector, "minItems": 3, "maxItems": 3}
+    return {
+        "name": {"type": "string"},
+        "attached to": _BODY_NAME,
+        "rotation": _record(ROTATION, {"axes": axes, "angles": angles}, required=("axes", "angles")),
+        "connection point": vector,
+        "relative velocity": vector,
+        "mass centre": vector,
+        "inertia about": {"enum": ["joint", "mass centre", "mass center"]},
+        "inertia": {"anyOf": [vector, matrix]},
+        "coordinates": {"type": "array", "items": {"type": "string", "pattern": _NAME}},
+    }
+
+
+_REQUIRED = {
+    "newtonian gravity": ("constant", "centre", "about"),
+    "spring": ("stiffness",),
+    "damper": ("coefficient",),
+    "force": ("body", "point", "components", "axes"),
+    "torque": ("body", "components", "axes"),
+}
+
+
+def _load(kind: str) -> Schema:
+    vector = _reference("vector")
+    values: dict[str, Schema] = {
+        **dict.fromkeys(("vector", "direction", "components"), vector),
+        **dict.fromkeys(("body", "axes", "centre", "about", "reaction on"), _BODY_NAME),
+        "order": {"enum": [2]},
+        "coordinate": {"type": "string", "pattern": _NAME},
+        "between": {"type": "array", "items": _reference("point"), "minItems": 2, "maxItems": 2},
+        "point": vector,
+    }
+    if LOADS[kind]:
+        data = _record(LOADS[kind], values, required=_REQUIRED.get(kind, ()))
+    elif kind == "generalized force":
+        data = _named(_reference("expression"))
+    else:
+        data = _reference("expression")
+    entry = {kind: {**data, "description": LOAD_MEANINGS[kind]}}
+    return {"type": "object", "properties": entry, "required": [kind], "additionalProperties": False}

@@ -1,0 +1,172 @@
+"""A System as plain data in the order of the YAML format: what both writers spell out.
+
+Mappings are dictionaries, lists are lists, leaves are text; keys that say nothing (no turns, zero vectors) are left
+out, so that a written file is as short as a hand-written one.
+"""
+
+from __future__ import annotations
+
+from typing import Union
+
+from mbsym.expressions.tree import ZERO, Expression, text
+from mbsym.model.system import (
+    Body,
+    CoordinateDamper,
+    CoordinateSpring,
+    ForceFunction,
+    GeneralizedForce,
+    Inertia,
+    InitialValue,
+    Load,
+    MotionEntry,
+    NewtonianGravity,
+    Parameter,
+    Point,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    Prescribed,
+    Rayleigh,
+    System,
+    Torque,
+    UniformGravity,
+    Vector,
+)
+from mbsym.source.bodies import bare_name
+
+Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)
+
+_ZERO_VECTOR = (ZERO, ZERO, ZERO)
+
+
+def vector_shape(vector: Vector) -> list[Shape]:
+    return [text(component) for component in vector]
+
+
+def parameter_shape(parameter: Parameter) -> dict[str, Shape]:
+    shape: dict[str, Shape] = {"sign": parameter.sign}
+    if parameter.value is not None:
+        shape["value"] = text(parameter.value)
+    if parameter.meaning:
+        shape["meaning"] = parameter.meaning
+    return shape
+
+
+def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
+    shape: dict[str, Shape] = {"rate": text(prescribed.rate)}
+    if prescribed.initial is not None:
+        shape["initial"] = text(prescribed.initial)
+    if prescribed.meaning:
+        shape["meaning"] = prescribed.meaning
+    return shape
+
+
+def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
+    """One body; its coordinates are left out where the reader infers exactly them."""
+    shape: dict[str, Shape] = {"name": body.name, "attached to": body.attached_to}
+    if body.rotation.axes:
+        axes: list[Shape] = [str(axis) for axis in body.rotation.axes]
+        shape["rotation"] = {"axes": axes, "angles": [text(angle) for angle in body.rotation.angles]}
+    if body.connection_point != _ZERO_VECTOR:
+        shape["connection point"] = vector_shape(body.connection_point)
+    if body.relative_velocity is not None:
+        shape["relative velocity"] = vector_shape(body.relative_velocity)
+    if body.mass_centre != _ZERO_VECTOR:
+        shape["mass centre"] = vector_shape(body.mass_centre)
+    shape["mass"] = text(body.mass)
+    if body.inertia is not None:
+        shape["inertia about"] = body.inertia.about
+        shape["inertia"] = inertia_shape(body.inertia)
+    if body.coordinates != inferred:
+        shape["coordinates"] = list(body.coordinates)
+    return shape
+
+
+def inertia_shape(inertia: Inertia) -> list[Shape]:
+    """Three principal moments where the products are zero, else three rows."""
+    rows = inertia.tensor
+    if all(rows[row][column] == ZERO for row in range(3) for column in range(3) if row != column):
+        return [text(rows[index][index]) for index in range(3)]
+    return [vector_shape(row) for row in rows]
+
+
+def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
+    """For each body the coordinates that a reader would infer if no body listed its own that it could infer."""
+    declared = {parameter.name for parameter in system.parameters}
+    declared |= {prescribed.name for prescribed in system.prescribed}
+    bare = [
+        tuple(dict.fromkeys(name for angle in body.rotation.angles if (name := bare_name(angle)) is not None))
+        for body in system.bodies
+    ]
+    listed = [body.coordinates != names for body, names in zip(system.bodies, bare, strict=True)]
+    for body, is_listed in zip(system.bodies, listed, strict=True):
+        declared |= set(body.coordinates) if is_listed else set()
+    inferred = []
+    for names in bare:
+        new = tuple(name for name in names if name not in declared)
+        declared |= set(new)
+        inferred.append(new)
+    return inferred
+
+
+def load_shape(load: Load) -> tuple[str, Shape]:
+    """The kind of a load and its data."""
+    match load:
+        case NewtonianGravity(constant, centre, about, order):
+            return "newtonian gravity", {
+                "constant": text(constant),
+                "centre": centre,
+                "about": about,
+                "order": str(order),
+            }
+        case UniformGravity(acceleration):
+            return "uniform gravity", {"vector": vector_shape(acceleration)}
+        case CoordinateSpring(coordinate, stiffness, rest):
+            spring: dict[str, Shape] = {"coordinate": coordinate, "stiffness": text(stiffness)}
+            return "spring", spring if rest == ZERO else {**spring, "rest": text(rest)}
+        case PointSpring(first, second, stiffness, length):
+            return "spring", {
+                "between": [_point(first), _point(second)],
+                "stiffness": text(stiffness),
+                "length": text(length),
+            }
+        case CoordinateDamper(coordinate, coefficient):
+            return "damper", {"coordinate": coordinate, "coefficient": text(coefficient)}
+        case PointDamper(first, second, coefficient):
+            return "damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
+        case ForceFunction(expression, spelled):
+            return spelled, text(expression)
+        case Rayleigh(expression):
+            return "rayleigh", text(expression)
+        case GeneralizedForce(components):
+            return "generalized force", {name: text(value) for name, value in components}
+        case PointForce(point, components, axes):
+            return "force", {**_point(point), "components": vector_shape(components), "axes": axes}
+        case Torque(body, components, axes, reaction_on):
+            torque: dict[str, Shape] = {"body": body, "components": vector_shape(components), "axes": axes}
+            return "torque", torque if reaction_on is None else {**torque, "reaction on": reaction_on}
+    raise TypeError(f"not a load: {load!r}")
+
+
+def _point(point: Point) -> dict[str, Shape]:
+    return {"body": point.body, "point": vector_shape(point.position)}
+
+
+def motion_shape(entry: MotionEntry) -> Shape:
+    if entry.rate == ZERO:
+        return text(entry.value)
+    return {"value": text(entry.value), "rate": text(entry.rate)}
+
+
+def initial_shape(entry: InitialValue) -> Shape:
+    if entry.velocity is None and entry.position is not None:
+        return text(entry.position)
+    shape: dict[str, Shape] = {}
+    for key, value in (("position", entry.position), ("velocity", entry.velocity)):
+        if value is not None:
+            shape[key] = text(value)
+    return shape
+
+
+def assumption_text(left: Expression, relation: str, right: Expression) -> str:
+    return f"{text(left)} {relation} {text(right)}"

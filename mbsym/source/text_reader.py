@@ -1,0 +1,387 @@
+"""The editor's plain text to the placed tree, in the shape that the YAML reader gives.
+
+A file is lines: ``label: value`` or ``label = value``, headings without a value (``Body description (2)``,
+``Parameters``), rows of a tensor below its label, comments after ``#``.  Labels are those of the paper's Figure 3,
+in any case.  Vectors stand in ``( )`` or ``{ }``; records are ``positive; value = 2; meaning = length``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints, Span
+from mbsym.source.keys import ALIASES, VERSION
+from mbsym.source.labels import (
+    ASSUMPTIONS,
+    BETWEEN,
+    BODY,
+    HEADER,
+    LOAD_BODIES,
+    LOAD_EXPRESSION,
+    LOAD_TYPE,
+    LOAD_VECTORS,
+    SECTIONS,
+    SPELLINGS,
+)
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
+from mbsym.source.scope import closest
+
+_HEADING = re.compile(r"(body|load) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
+_OPENING = {"(": ")", "{": "}"}
+
+
+def looks_like_text(text: str) -> bool:
+    """Whether the first line that says something is a label of the editor."""
+    for line in _lines(text):
+        label = _label_of(line)[0]
+        word = _word(label.text if label else line.text)
+        return word in HEADER or word in SECTIONS or bool(_HEADING.match(line.text))
+    return False
+
+
+def read_text(text: str, complaints: Complaints) -> Node | None:
+    """The placed tree of an editor text (already normalised), or None with complaints."""
+    lines = list(_lines(text))
+    if not lines:
+        complaints.error("empty", "there is no description in this file")
+        return None
+    return _TextReader(complaints).document(lines)
+
+
+def _lines(text: str) -> Iterator[Scalar]:
+    """Lines that say something, without comments and surrounding blanks, each in its place."""
+    for number, line in enumerate(text.split("\n"), start=1):
+        whole = Scalar(line, Span(number, 1, max(1, len(line))))
+        content = whole.part(0, _comment_start(line))
+        if content.text:
+            yield content
+
+
+def _comment_start(line: str) -> int:
+    """Where the comment begins: at a ``#`` outside of quotes."""
+    quoted, escaped = False, False
+    for position, character in enumerate(line):
+        if escaped:
+            escaped = False
+        elif character == "\\" and quoted:
+            escaped = True
+        elif character == '"':
+            quoted = not quoted
+        elif character == "#" and not quoted:
+            return position
+    return len(line)
+
+
+def _label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
+    """``label: value`` cut at its first colon or equals sign; no label where there is neither."""
+    match = re.search(r"[:=]", line.text)
+    if match is None:
+        return None, line
+    return line.part(0, match.start()), line.part(match.end(), len(line.text))
+
+
+def _word(text: str) -> str:
+    word = " ".join(text.lower().split())
+    return SPELLINGS.get(word, word)
+
+
+@dataclass(slots=True)
+class _Block:
+    """A heading with the lines below it."""
+
+    heading: Scalar
+    lines: list[Scalar] = field(default_factory=list)
+
+
+class _TextReader:
+    """Blocks to entries of the top-level mapping."""
+
+    def __init__(self, complaints: Complaints) -> None:
+        self.complaints = complaints
+        self.names: dict[str, str] = {}  # of bodies, by number
+
+    def document(self, lines: list[Scalar]) -> Mapping:
+        header, blocks = self.blocks(lines)
+        start = Span(lines[0].span.line, 1)
+        entries = [Entry(Scalar("mbsym", start, literal=False), Scalar(VERSION, start, literal=False))]
+        entries += self.header(header)
+        bodies = [block for block in blocks if self.kind(block) == "body"]
+        loads = [block for block in blocks if self.kind(block) == "load"]
+        self.check_numbers(bodies)
+        self.check_numbers(loads)
+        self.check_count(header, len(bodies))
+        self.names = {str(number): _name_in(block) for number, block in enumerate(bodies, start=1)}
+        entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
+        entries += _list_entry("bodies", bodies, self.body)
+        entries += _list_entry("loads", loads, self.load)
+        return Mapping(tuple(entries), start)
+
+    def blocks(self, lines: list[Scalar]) -> tuple[list[Scalar], list[_Block]]:
+        header: list[Scalar] = []
+        blocks: list[_Block] = []
+        for line in lines:
+            if _HEADING.match(line.text) or _word(line.text.rstrip(":")) in (*SECTIONS, ASSUMPTIONS):
+                blocks.append(_Block(line))
+            elif blocks:
+                blocks[-1].lines.append(line)
+            else:
+                header.append(line)
+        return header, blocks
+
+    def kind(self, block: _Block) -> str:
+        match = _HEADING.match(block.heading.text)
+        return match.group(1).lower() if match else "section"
+
+    def error(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
+        self.complaints.error(code, message, span, hint)
+
+    def check_numbers(self, blocks: list[_Block]) -> None:
+        """Blocks are numbered 1, 2, 3, ... in the order of the file."""
+        for number, block in enumerate(blocks, start=1):
+            match = _HEADING.match(block.heading.text)
+            if match is not None and int(match.group(2)) != number:
+                span = block.heading.place(match.start(2), match.end(2))
+                self.error("bad-number", f"this is description number {number}", span, "number them 1, 2, 3, ...")
+
+    def check_count(self, header: list[Scalar], count: int) -> None:
+        for line in header:
+            label, value = _label_of(line)
+            if label is not None and _word(label.text) == "number of bodies" and value.text != str(count):
+                self.error("body-count", f"{count} bodies are described", value.span)
+
+    def labelled(self, line: Scalar, known: Iterable[str], what: str) -> tuple[Scalar, str, Scalar] | None:
+        """A label out of a known set (or taken for what it resembles): its scalar, its normal form, the value."""
+        label, value = _label_of(line)
+        word = _word(label.text if label is not None else line.text)
+        if label is not None and word in known:
+            return label, word, value
+        span = line.span if label is None else label.span
+        shown = line.text if label is None else label.text
+        guess = closest(word, known)
+        hint = f"did you mean '{guess}'?" if guess else f"the labels are: {', '.join(known)}"
+        self.error("unknown-key", f"unknown label {ascii_safe(shown)} in {what}", span, hint)
+        return None if guess is None or label is None else (label, guess, value)
+
+    # --- header and sections -----------------------------------------------------------------------------------------
+
+    def header(self, lines: list[Scalar]) -> list[Entry]:
+        entries = []
+        for line in lines:
+            found = self.labelled(line, HEADER, "the header")
+            if found is None or found[1] == "number of bodies":
+                continue
+            label, word, value = found
+            free = word in ("mechanical system", "description")
+            entries.append(Entry(_key(label, HEADER[word]), self.unquoted(value) if free else value))
+        return entries
+
+    def section(self, block: _Block) -> Entry:
+        title = _word(block.heading.text.rstrip(":"))
+        if title == ASSUMPTIONS:
+            return Entry(_key(block.heading, "assumptions"), Sequence(tuple(block.lines), block.heading.span))
+        key, first = SECTIONS[title]
+        entries = []
+        for line in block.lines:
+            label, value = _label_of(line)
+            if label is None:
+                self.error("syntax", "here 'name = value' is wanted", line.span)
+                continue
+            entries.append(Entry(label, value if first is None else self.record(value, first)))
+        return Entry(_key(block.heading, key), Mapping(tuple(entries), block.heading.span))
+
+    def record(self, value: Scalar, first: str) -> Node:
+        """``a; key = b``: a mapping; a single bare value stays what it is."""
+        parts = list(_split(value, ";"))
+        if len(parts) == 1 and "=" not in parts[0].text:
+            return parts[0]
+        entries = []
+        for index, part in enumerate(parts):
+            label, rest = _label_of(part)
+            if label is None and index == 0:
+                entries.append(Entry(Scalar(first, part.span, literal=False), part))
+            elif label is None:
+                self.error("syntax", "here 'key = value' is wanted", part.span)
+            else:
+                word = _word(label.text)
+                entries.append(Entry(_key(label, word), self.unquoted(rest) if word == "meaning" else rest))
+        return Mapping(tuple(entries), value.span)
+
+    def unquoted(self, value: Scalar) -> Scalar:
+        """The text between double quotes, if there are any."""
+        if not value.text.startswith('"'):
+            return value
+        match = re.match(r'"((?:[^"\\]|\\.)*)"\Z', value.text)
+        if match is None:
+            self.error("syntax", "this quote is not closed, or something follows it", value.span)
+            return value
+        return Scalar(re.sub(r"\\(.)", r"\1", match.group(1)), value.span, literal=False)
+
+    # --- bodies ------------------------------------------------------------------------------------------------------
+
+    def body(self, block: _Block) -> Mapping:
+        """The entries of a body; axes and angles together are its rotation, rows follow their label."""
+        entries: list[Entry] = []
+        rotation: list[Entry] = []
+        lines = block.lines
+        position = 0
+        while position < len(lines):
+            found = self.labelled(lines[position], BODY, block.heading.text)
+            position += 1
+            if found is None:
+                continue
+            label, word, value = found
+            key = _key(label, BODY[word])
+            if word == "tensor of inertia" and not value.text:
+                rows = _rows(lines, position)
+                position += len(rows)
+                entries.append(Entry(key, Sequence(tuple(self.row(row) for row in rows), label.span)))
+            elif key.text in ("axes", "angles"):
+                rotation.append(Entry(key, self.items(value)))
+            else:
+                entries.append(Entry(key, self.body_value(key.text, value)))
+        if rotation:
+            entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
+        return Mapping(tuple(entries), block.heading.span)
+
+    def body_value(self, key: str, value: Scalar) -> Node:
+        if key == "attached to":
+            return self.body_reference(value)
+        if key in ("name", "mass", "inertia about"):
+            return value
+        return self.items(value)
+
+    def body_reference(self, value: Scalar) -> Scalar:
+        """Bodies are referred to by number; the tree knows them by name."""
+        name = self.names.get(value.text)
+        return value if name is None else Scalar(name, value.span, literal=False)
+
+    def row(self, line: Scalar) -> Node:
+        """A row of a tensor: ``a, b, c``, ``(a, b, c)``, or three words without commas."""
+        if line.text[:1] in _OPENING and line.text[-1:] == _OPENING[line.text[0]] and _encloses(line.text):
+            return self.items(line)
+        parts = list(_split(line, ","))
+        if len(parts) == 1 and len(line.text.split()) == 3:
+            parts = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]
+        return Sequence(tuple(parts), line.span)
+
+    def items(self, value: Scalar) -> Node:
+        """``(a, b, c)`` or ``{a, b, c}``."""
+        text = value.text
+        if text[:1] not in _OPENING or not _encloses(text):
+            return value
+        inner = value.part(1, len(text) - 1)
+        return Sequence(tuple(_split(inner, ",")) if inner.text else (), value.span)
+
+    # --- loads -------------------------------------------------------------------------------------------------------
+
+    def load(self, block: _Block) -> Mapping:
+        """``{kind: data}`` from the lines below ``Load description (1)``."""
+        found = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
+        kinds = [value for label, value in found if _word(label.text) == LOAD_TYPE]
+        if len(kinds) != 1:
+            how = "no 'Type of load'" if not kinds else "a second 'Type of load'"
+            place = block.heading.span if not kinds else kinds[1].span
+            self.error("missing-key" if not kinds else "repeated-key", f"this load has {how}", place)
+            return Mapping((), block.heading.span)
+        data = [(label, value) for label, value in found if _word(label.text) != LOAD_TYPE]
+        if ALIASES.get(kinds[0].text, kinds[0].text) == "generalized force":
+            value: Node = Mapping(tuple(Entry(label, value) for label, value in data), kinds[0].span)
+        elif len(data) == 1 and _word(data[0][0].text) == LOAD_EXPRESSION:
+            value = data[0][1]
+        else:
+            value = self.load_data(data, kinds[0].span)
+        return Mapping((Entry(kinds[0], value),), block.heading.span)
+
+    def load_line(self, line: Scalar) -> tuple[Scalar | None, Scalar]:
+        label, value = _label_of(line)
+        if label is None:
+            self.error("syntax", "here 'label: value' is wanted", line.span)
+        return label, value
+
+    def load_data(self, data: list[tuple[Scalar, Scalar]], span: Span) -> Mapping:
+        """Labels to keys; the first and second points of a spring or damper become its ``between``."""
+        entries: list[Entry] = []
+        points: tuple[list[Entry], list[Entry]] = ([], [])
+        for label, value in data:
+            word = _word(label.text)
+            if word in BETWEEN:
+                which, key = BETWEEN[word]
+                points[which].append(Entry(_key(label, key), self.load_value(word, value)))
+            else:
+                entries.append(Entry(_key(label, word), self.load_value(word, value)))
+        if any(points):
+            pair = [Mapping(tuple(point), point[0].key.span if point else span) for point in points]
+            entries.append(Entry(Scalar("between", span, literal=False), Sequence(tuple(pair), span)))
+        return Mapping(tuple(entries), span)
+
+    def load_value(self, word: str, value: Scalar) -> Node:
+        if word in LOAD_BODIES:
+            return self.body_reference(value)
+        return self.items(value) if word in LOAD_VECTORS else value
+
+
+def _key(label: Scalar, key: str) -> Scalar:
+    return Scalar(key, label.span, literal=False)
+
+
+def _name_in(block: _Block) -> str:
+    for line in block.lines:
+        label, value = _label_of(line)
+        if label is not None and _word(label.text) == "name":
+            return " ".join(value.text.split())
+    return ""
+
+
+def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping]) -> list[Entry]:
+    if not blocks:
+        return []
+    first = blocks[0].heading
+    return [Entry(_key(first, key), Sequence(tuple(read(block) for block in blocks), first.span))]
+
+
+def _rows(lines: list[Scalar], position: int) -> list[Scalar]:
+    rows = []
+    for line in lines[position : position + 3]:
+        label, _ = _label_of(line)
+        if label is not None:
+            break
+        rows.append(line)
+    return rows
+
+
+def _encloses(text: str) -> bool:
+    """Whether the bracket that opens a text closes at its very end."""
+    depth = 0
+    for position, character in enumerate(text):
+        if character in _OPENING:
+            depth += 1
+        elif character in _OPENING.values():
+            depth -= 1
+            if depth == 0:
+                return position == len(text) - 1
+    return False
+
+
+def _split(value: Scalar, separator: str) -> Iterator[Scalar]:
+    """Pieces between separators that stand outside of brackets and quotes."""
+    depth, start, quoted, escaped = 0, 0, False, False
+    for position, character in enumerate(value.text):
+        if escaped:
+            escaped = False
+        elif character == "\\" and quoted:
+            escaped = True
+        elif character == '"':
+            quoted = not quoted
+        elif quoted:
+            continue
+        elif character in _OPENING:
+            depth += 1
+        elif character in _OPENING.values():
+            depth -= 1
+        elif character == separator and depth == 0:
+            yield value.part(start, position)
+            start = position + 1
+    yield value.part(start, len(value.text))

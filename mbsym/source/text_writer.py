@@ -1,0 +1,133 @@
+"""A System as the plain text of the description editor, with the labels of the paper's Figure 3."""
+
+from __future__ import annotations
+
+from mbsym.expressions.tree import ZERO, text
+from mbsym.model.system import Body, System, Vector
+from mbsym.source.shape import (
+    Shape,
+    assumption_text,
+    initial_shape,
+    load_shape,
+    motion_shape,
+    parameter_shape,
+    prescribed_shape,
+)
+
+_ROWS = (0, 1, 2)
+
+
+def to_text(system: System) -> str:
+    """The description of a system as editor text; reading it again gives an equal system."""
+    lines = [f"Mechanical system: {_free(system.name)}"]
+    if system.description:
+        lines.append(f"Description: {_free(system.description)}")
+    lines.append(f"Number of bodies: {len(system.bodies)}")
+    if system.time_scale is not None:
+        lines.append(f"Dimensionless time: {text(system.time_scale)}")
+    lines += _section("Parameters", {one.name: _record(parameter_shape(one), "sign") for one in system.parameters})
+    motions = {one.name: _record(prescribed_shape(one), "rate") for one in system.prescribed}
+    lines += _section("Prescribed motions", motions)
+    numbers = {"0": "0", **{body.name: str(number) for number, body in enumerate(system.bodies, start=1)}}
+    for number, body in enumerate(system.bodies, start=1):
+        lines += ["", f"Body description ({number})", *_body(body, numbers)]
+    for number, load in enumerate(system.loads, start=1):
+        lines += ["", f"Load description ({number})", *_load(*load_shape(load), numbers)]
+    lines += _section("Relations", {one.name: text(one.value) for one in system.relations})
+    motion = {one.coordinate: _record(motion_shape(one), "value") for one in system.motion}
+    lines += _section("Unperturbed motion", motion)
+    lines += _section("Notation", {one.name: text(one.value) for one in system.notation})
+    if system.assumptions:
+        written = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
+        lines += ["", "Assumptions", *(f"  {one}" for one in written)]
+    initial = {one.coordinate: _record(initial_shape(one), "position") for one in system.initial}
+    lines += _section("Initial state", initial)
+    return "\n".join(lines) + "\n"
+
+
+def _section(title: str, entries: dict[str, str]) -> list[str]:
+    return ["", title, *(f"  {name} = {value}" for name, value in entries.items())] if entries else []
+
+
+def _record(shape: Shape, first: str) -> str:
+    """``positive; value = 2; meaning = length``: the first value stands without its key."""
+    if not isinstance(shape, dict):
+        return str(shape)
+    parts = []
+    for index, (key, value) in enumerate(shape.items()):
+        written = _free(str(value)) if key == "meaning" else str(value)
+        parts.append(written if index == 0 and key == first else f"{key} = {written}")
+    return "; ".join(parts)
+
+
+def _free(value: str) -> str:
+    """Text for people: in double quotes where it could be taken for something else."""
+    if value and value == value.strip() and not any(mark in value for mark in ';"#\\'):
+        return value
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _body(body: Body, numbers: dict[str, str]) -> list[str]:
+    """All labels of Figure 3, zeros included, as the editor shows them."""
+    axes = [str(axis) for axis in body.rotation.axes]
+    angles = [text(angle) for angle in body.rotation.angles]
+    unused = ["0"] * (3 - len(axes))
+    lines = [
+        f"  Name: {body.name}",
+        f"  Previous body number: {numbers[body.attached_to]}",
+        f"  Body mass: {text(body.mass)}",
+        f"  Radius vector of connection point: {_vector(body.connection_point)}",
+        f"  Radius vector of mass center: {_vector(body.mass_centre)}",
+    ]
+    if body.relative_velocity is not None:
+        lines.append(f"  Vector of relative linear velocity: {_vector(body.relative_velocity)}")
+    lines += [
+        f"  Numbers of rotation axes: {_braces(axes + unused)}",
+        f"  Rotation angles: {_braces(angles + unused)}",
+    ]
+    if body.inertia is not None:
+        lines.append(f"  Inertia about: {body.inertia.about}")
+    rows = body.inertia.tensor if body.inertia is not None else ((ZERO,) * 3,) * 3
+    lines.append("  Tensor of inertia:")
+    lines += [f"    {text(rows[row][0])}, {text(rows[row][1])}, {text(rows[row][2])}" for row in _ROWS]
+    lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
+    return lines
+
+
+def _vector(vector: Vector) -> str:
+    return "(" + ", ".join(text(component) for component in vector) + ")"
+
+
+def _braces(items: list[str]) -> str:
+    return "{" + ", ".join(items) + "}"
+
+
+def _load(kind: str, shape: Shape, numbers: dict[str, str]) -> list[str]:
+    lines = [f"  Type of load: {kind}"]
+    if not isinstance(shape, dict):
+        return [*lines, f"  Expression: {shape}"]
+    for key, value in shape.items():
+        if key == "between":
+            lines += _points(value, numbers)
+        elif kind != "generalized force" and key in ("body", "centre", "about", "axes", "reaction on"):
+            lines.append(f"  {key.capitalize()}: {numbers[str(value)]}")
+        elif kind == "generalized force":
+            lines.append(f"  {key} = {value}")
+        else:
+            lines.append(f"  {key.capitalize()}: {_value(value)}")
+    return lines
+
+
+def _points(points: Shape, numbers: dict[str, str]) -> list[str]:
+    assert isinstance(points, list)
+    lines = []
+    for which, point in zip(("First", "Second"), points, strict=True):
+        assert isinstance(point, dict)
+        lines.append(f"  {which} body: {numbers[str(point['body'])]}")
+        lines.append(f"  {which} point: {_value(point['point'])}")
+    return lines
+
+
+def _value(value: Shape) -> str:
+    return f"({', '.join(str(item) for item in value)})" if isinstance(value, list) else str(value)

@@ -1,0 +1,84 @@
+"""A System as YAML, in the order and the style in which people write it."""
+
+from __future__ import annotations
+
+import re
+
+from mbsym.expressions.tree import text
+from mbsym.model.system import System
+from mbsym.source.keys import VERSION
+from mbsym.source.shape import (
+    Shape,
+    assumption_text,
+    body_shape,
+    inferred_coordinates,
+    initial_shape,
+    load_shape,
+    motion_shape,
+    parameter_shape,
+    prescribed_shape,
+)
+
+_PLAIN = re.compile(r"[A-Za-z0-9(./-][A-Za-z0-9 _.()*/+'<>=!-]*\Z")
+_DANGEROUS_STARTS = ("- ", "---", "...")
+
+
+def to_yaml(system: System) -> str:
+    """The description of a system; reading it again gives an equal system."""
+    lines = [f"mbsym: {VERSION}", f"name: {_scalar(system.name)}"]
+    if system.description:
+        lines.append(f"description: {_scalar(system.description)}")
+    lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
+    lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _bodies(system)
+    lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
+    lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})
+    lines += _mapping("motion", {one.coordinate: motion_shape(one) for one in system.motion})
+    lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})
+    assumptions = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
+    lines += _list("assumptions", [_scalar(one) for one in assumptions])
+    if system.time_scale is not None:
+        lines += ["", f"dimensionless time: {_scalar(text(system.time_scale))}"]
+    lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
+    return "\n".join(lines) + "\n"
+
+
+def _mapping(title: str, entries: dict[str, Shape]) -> list[str]:
+    if not entries:
+        return []
+    return ["", f"{title}:", *(f"  {key}: {_flow(value)}" for key, value in entries.items())]
+
+
+def _list(title: str, items: list[str]) -> list[str]:
+    return ["", f"{title}:", *(f"  - {item}" for item in items)] if items else []
+
+
+def _bodies(system: System) -> list[str]:
+    lines = ["", "bodies:"]
+    for number, (body, inferred) in enumerate(zip(system.bodies, inferred_coordinates(system), strict=True)):
+        if number:
+            lines.append("")
+        for index, (key, value) in enumerate(body_shape(body, inferred).items()):
+            lines.append(f"  {' ' if index else '-'} {key}: {_flow(value)}")
+    return lines
+
+
+def _load(kind: str, value: Shape) -> str:
+    return f"{kind}: {_flow(value)}"
+
+
+def _flow(value: Shape) -> str:
+    match value:
+        case dict():
+            return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
+        case list():
+            return "[" + ", ".join(_flow(item) for item in value) + "]"
+    return _scalar(value)
+
+
+def _scalar(value: str) -> str:
+    """Plain where every YAML reader agrees on it, else in double quotes."""
+    if _PLAIN.match(value) and not value.startswith(_DANGEROUS_STARTS) and value == value.strip() and value != "-":
+        return value
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
