@@ -2,14 +2,13 @@
 # make demo     sets up an environment and runs the satellite of the paper
 # make test     sets up and runs the tests
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
-# make systems  runs every shipped system, one line each
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo bench systems clean
+.PHONY: all lint types test demo bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -37,9 +36,6 @@ demo: $(READY)
 
 bench: $(READY)
 	$(BIN)/python tests/bench/run.py
-
-systems: $(READY)
-	$(BIN)/mbsym run systems --brief
 
 clean:
 	rm -rf $(VENV) reports build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

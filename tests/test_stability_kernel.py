@@ -453,6 +453,21 @@ def test_identical_gyroscopic_blocks_are_semisimple() -> None:
     assert any("simple elementary divisors" in remark for remark in found.remarks)
 
 
+def test_from_degree_four_on_the_discriminant_is_not_enough() -> None:
+    """mu^4 + 2 mu^3 + 5 mu^2 + 3 mu + 3: positive coefficients, positive discriminant, and two complex pairs."""
+    companion = [[0, 0, 0, 3], [-1, 0, 0, 3], [0, -1, 0, 5], [0, 0, -1, 2]]
+    # The negative of a companion matrix, so that det(mu + A) is the polynomial.
+    a = np.array(companion)
+    half = [[F(int(x), 2) for x in row] for row in (a + a.T)], [[F(int(x), 2) for x in row] for row in (a - a.T)]
+    system = linear(NONE, M=np.eye(4, dtype=int).tolist(), K=half[0], N=half[1])
+    found = analyse(system, signs(NONE))
+    assert [number(c) for c in found.polynomial[::2]] == [3, 3, 5, 2, 1]
+    assert len(found.factors) == 1
+    assert number(requirement(found, "discriminant")) > 0
+    assert [r.label for r in found.requirements][-3:] == ["subdiscriminant 2", "subdiscriminant 3", "discriminant"]
+    assert found.verdict.word == verdict_at(system, {}).verdict.word == "unstable"
+
+
 def test_zero_stiffness_is_a_border() -> None:
     for matrices in ({"K": [[0]]}, {"K": [[0]], "D": [[1]]}):
         assert at_once(conservative=True, M=[[1]], **matrices) == ("undecided", "undecided")

@@ -17,8 +17,8 @@ Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 Coefficients = tuple[Polynomial, ...]
 Matrix = Sequence[Sequence[Polynomial]]
 
-#: Products of terms that one determinant may cost (some seconds).
-BUDGET = 30_000_000
+#: Products of terms that one determinant may cost (about a second): what is larger nobody reads.
+BUDGET = 4_000_000
 
 
 class TooLargeError(Exception):
@@ -215,6 +215,8 @@ def _bezoutian(p: Coefficients, q: Coefficients) -> list[list[Polynomial]]:
     """B with (p(x) q(y) - p(y) q(x))/(x - y) = sum B_ij x^i y^j; p and q of equal length n + 1, B is n x n."""
     n = len(p) - 1
     zero = p[0] * 0
+    if sum(map(len, p)) * sum(map(len, q)) > BUDGET:
+        raise TooLargeError("a discriminant with too many terms")
     b = [[zero] * n for _ in range(n)]
     for i in range(n):
         for j in range(i, n):

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
 
@@ -24,6 +25,9 @@ class Carrier:
     def __call__(self, x: Polynomial) -> Scalar:
         """sum of coefficient * product of powers of generators."""
         algebra = self.algebra
+        if isinstance(algebra, Rationals):
+            used = x.degrees()
+            return x(*(self._generator(k) if used[k] > 0 else algebra.zero for k in range(len(used))))
         total = algebra.zero
         for monomial, coefficient in x.terms():
             term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))

@@ -173,7 +173,7 @@ class Signs:
         for factor in kept:
             product *= factor
         if len(kept) > 1:  # an assumption may be about the product
-            overall = self._possible(product, -1)
+            overall = self._as_a_whole(product, ANY, -1)
             if 1 not in overall:
                 return self._decided(False)
             if overall == POSITIVE:
@@ -234,8 +234,15 @@ class Signs:
         for factor, exponent in powers:
             result = _product(result, _power(self._irreducible(factor, after), exponent))
         if len(result) > 1 and len(powers) > 1:
-            result &= self._by_assumptions(p, after)
+            result = self._as_a_whole(p, result, after)
         return self._consistent(result)
+
+    def _as_a_whole(self, p: Polynomial, result: SignSet, after: int) -> SignSet:
+        """An assumption may be about a product whose factors have unknown signs."""
+        if after >= 0:
+            return result & self._by_assumptions(p, after)
+        small, q = self._restricted(p)
+        return result if result == small._observed(q) else result & small._by_assumptions(q, after)
 
     @cached_property
     def _answers(self) -> dict[tuple[str, int], SignSet]:

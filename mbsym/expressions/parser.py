@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
+from math import ceil
 
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.place import Complaints, Span
@@ -33,8 +34,9 @@ MAX_NESTING = 50
 #: A literal has at most so many digits before and after the point (``1e-60`` is the smallest).
 MAX_DIGITS = 60
 
-#: Numerator and denominator of an exponent.
+#: The size of an exponent, and the denominator of a fractional one.
 MAX_EXPONENT = 64
+MAX_DENOMINATOR = 1_000
 
 #: Bound of the size of any number that evaluating the tree can produce, counted as in :func:`_weight`.
 MAX_WEIGHT = 5_000
@@ -237,8 +239,9 @@ class _Parser:
             self.complain("bad-exponent", "an exponent must be a rational number", start, end)
             return Number(Fraction(1))
         value = form.constant
-        if abs(value.numerator) > MAX_EXPONENT or value.denominator > MAX_EXPONENT:
-            self.complain("bad-exponent", f"an exponent is at most {MAX_EXPONENT} in size", start, end)
+        if abs(value) > MAX_EXPONENT or value.denominator > MAX_DENOMINATOR:
+            bounds = f"at most {MAX_EXPONENT} in size, a fraction of at most {MAX_DENOMINATOR} parts"
+            self.complain("bad-exponent", f"an exponent is {bounds}", start, end)
             raise _Refused
         return Number(value, self.span_of(start, end))
 
@@ -375,5 +378,5 @@ def _weight(node: Expression, operands: list[int]) -> int:
         case Number(value):
             return 1 + value.numerator.bit_length() // 16 + value.denominator.bit_length() // 16
         case Operation("**", _, Number(exponent)):
-            return operands[0] * max(1, abs(exponent.numerator))
+            return operands[0] * max(1, ceil(abs(exponent)))
     return max(1, sum(operands))

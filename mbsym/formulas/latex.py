@@ -14,7 +14,7 @@ from itertools import pairwise
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
 from mbsym.formulas.shape import Factor, Product, Sum, present
 
@@ -109,7 +109,8 @@ _NAMES: WeakKeyDictionary[Ring, LatexNames] = WeakKeyDictionary()
 
 
 def latex_names(ring: Ring) -> LatexNames:
-    """The ring's renaming, made once."""
+    """The ring's renaming, made once; a part of a ring has the names of the whole."""
+    ring = ring.whole if isinstance(ring, ParameterRing) else ring
     if ring not in _NAMES:
         kinds = ("coordinate", "prescribed", "parameter")
         _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])

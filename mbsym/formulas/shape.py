@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
@@ -91,7 +91,7 @@ class _Presenter:
     """Makes the shapes of one ring's polynomials, and remembers them."""
 
     def __init__(self, ring: Ring) -> None:
-        self.ring = ring
+        self.ring = proxy(ring)  # the table of presenters must not keep its rings alive
         names = [g.name for g in ring.generators if g.kind in ("coordinate", "prescribed", "time", "parameter")]
         self._declared = {name: place for place, name in enumerate(names)}
         self._levels: dict[int, int] = {}

@@ -6,10 +6,11 @@ injective renaming.  Numbers are exact quotients; decimals of a description such
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
@@ -62,6 +63,10 @@ class WolframNames:
             return "Pi"
         return name if name == "t" else self.table[name]
 
+    def listed(self, names: Iterable[str], suffix: str = "") -> str:
+        """``{a[t], b[t]}``."""
+        return "{" + ", ".join(self[name] + suffix for name in names) + "}"
+
 
 #: What the report itself defines.
 RESERVED = (
@@ -75,7 +80,8 @@ _NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()
 
 
 def wolfram_names(ring: Ring) -> WolframNames:
-    """The ring's renaming, made once."""
+    """The ring's renaming, made once; a part of a ring has the names of the whole."""
+    ring = ring.whole if isinstance(ring, ParameterRing) else ring
     if ring not in _NAMES:
         _NAMES[ring] = WolframNames(ring)
     return _NAMES[ring]
@@ -92,7 +98,7 @@ class WolframPrinter(InfixPrinter):
         self.names = wolfram_names(ring)
 
     def call(self, function: str, argument: str) -> str:
-        return f"{_function(function)}[{argument}]"
+        return wolfram_call(function, argument)
 
     def symbol(self, generator: Generator) -> str:
         moving = generator.kind in ("coordinate", "prescribed", *_PRIMES)
@@ -101,8 +107,9 @@ class WolframPrinter(InfixPrinter):
         return self.names[declared_name(generator)]
 
 
-def _function(name: str) -> str:
-    return _FUNCTIONS.get(name, name.capitalize())
+def wolfram_call(function: str, argument: str) -> str:
+    """A function of one argument, known by Python's name."""
+    return f"{_FUNCTIONS.get(function, function.capitalize())}[{argument}]"
 
 
 def wolfram_expression(expression: Expression, names: WolframNames) -> str:
@@ -113,13 +120,20 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
         case Name(name):
             return names[name]
         case Negative(operand):
-            return f"-({wolfram_expression(operand, names)})"
+            return f"-{_operand(operand, names)}"
         case Call(function, argument):
-            return f"{_function(function)}[{wolfram_expression(argument, names)}]"
+            return wolfram_call(function, wolfram_expression(argument, names))
         case Operation(operator, left, right):
             sign = "^" if operator == "**" else operator
-            return f"({wolfram_expression(left, names)}){sign}({wolfram_expression(right, names)})"
+            return f"{_operand(left, names)}{sign}{_operand(right, names)}"
     raise TypeError(f"not an expression: {expression!r}")
+
+
+def _operand(expression: Expression, names: WolframNames) -> str:
+    """In brackets unless it is a name, a call or a natural number."""
+    written = wolfram_expression(expression, names)
+    simple = isinstance(expression, Name | Call) or written.isdigit()
+    return written if simple else f"({written})"
 
 
 def wolfram_number(value: Fraction) -> str:

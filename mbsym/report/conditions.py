@@ -56,7 +56,7 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
     return [
         CaseStatement(
             tuple(statements(ring, case.all_of)),
-            tuple(statements(ring, case.any_of)),
+            tuple(statements(ring, [r for r in case.any_of if not r.never])),
             case.verdict.word,
             case.verdict.theorem,
             case.verdict.explanation,

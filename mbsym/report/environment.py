@@ -1,4 +1,4 @@
-"""Jinja with delimiters that LaTeX, Wolfram and Python leave alone: ``\\VAR{...}``, ``\\BLOCK{...}``, ``%% statement``."""
+"""Jinja with delimiters that LaTeX, Wolfram and Python leave alone: ``\\VAR{...}``, ``\\BLOCK{...}``."""
 
 from __future__ import annotations
 
@@ -21,8 +21,6 @@ def rendered(template: str, filters: Mapping[str, Callable[..., Any]], **values:
         variable_end_string="}",
         comment_start_string=r"\#{",
         comment_end_string="}",
-        line_statement_prefix="%%",
-        line_comment_prefix="%#",
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,

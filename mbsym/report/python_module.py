@@ -7,15 +7,16 @@ import keyword
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.tree import text
+from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, text
 from mbsym.formulas.names import injective
 from mbsym.mechanics.variables import program_environment
-from mbsym.model.system import System, rational
+from mbsym.model.system import Prescribed, System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
 from mbsym.report.straight_line import Dialect, Listing, listing
@@ -30,11 +31,12 @@ RESERVED = {
     "forcing", "rhs", "energy", "linear_matrices",
 }  # fmt: skip
 
+_NUMPY = {"atan": "arctan"}
 DIALECT = Dialect(
     call=lambda function, argument: f"np.{_NUMPY.get(function, function)}({argument})",
     local=lambda count: f"s{count}",
+    angle=lambda function, name: f"{function}_{name}",
 )
-_NUMPY = {"atan": "arctan"}
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,12 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         {},
         system=system,
         title=plain(system.name),
-        description=plain(system.description),
+        description=fill(plain(system.description), 110),
         n=n,
         defaults=[(item.name, _default(item.value)) for item in system.parameters],
         meanings=[(item.name, plain(item.meaning)) for item in system.parameters if item.meaning],
         relations=[(item.name, text(item.value)) for item in system.relations],
-        prescribed=[(item.name, *map(_optional_text, (item.initial, item.rate))) for item in system.prescribed],
+        prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         mass=writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
         upper=upper,
         forcing=writer.function(code.program, code.forcing),
@@ -83,15 +85,20 @@ def plain(words: str) -> str:
     return " ".join(words.replace("\\", "/").replace('"', "'").split())
 
 
-def _optional_text(value: object) -> str:
-    return "0" if value is None else text(value)  # type: ignore[arg-type]
+def prescribed_value(item: Prescribed) -> Expression:
+    """initial + rate*t."""
+    return add(item.initial or ZERO, multiply(item.rate, Name("t")))
 
 
-def _default(value: object) -> str:
-    """An exact number as Python reads it, or None: nothing is made up."""
-    number = rational(value)  # type: ignore[arg-type]
-    if number is None:
+def _default(value: Expression | None) -> str:
+    """A number as Python reads it, or None: nothing is made up."""
+    if value is None:
         return "None"
+    number = rational(value)
+    if number is None:
+        program = Program()
+        node = Lowering(program, {"pi": program.input("pi")})(value)
+        return listing(program, [node], {"pi": "np.pi"}, DIALECT).results[0]
     return str(number.numerator) if number.denominator == 1 else _decimal(number)
 
 
@@ -133,10 +140,7 @@ class _Module:
         program = Program()
         lower = Lowering(program, program_environment(self.system, program))
         wanted = [item for item in self.system.prescribed if item.name in used]
-        values = []
-        for item in wanted:
-            moved = lower(item.rate) * program.input("t")
-            values.append(moved if item.initial is None else lower(item.initial) + moved)
+        values = [lower(prescribed_value(item)) for item in wanted]
         found = listing(program, values, self.names, DIALECT, RESERVED | taken)
         named = tuple((self.names[item.name], x) for item, x in zip(wanted, found.results, strict=True))
         return Listing((*found.assignments, *named), (), found.inputs)

@@ -125,13 +125,13 @@ def _stability(found: Stability, system: System) -> dict[str, Any]:
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
     lam = free_name("lam", taken)
     parts = found.subsystems
-    wanted = [list(statements(part.factor.ring, part.theory.requirements)) for part in parts]
+    wanted = [list(statements(part.ring, part.theory.requirements)) for part in parts]
     return {
         "characteristic_polynomials": [polynomial_text(part.characteristic, lam) for part in parts],
         "conditions": [statement_text(item) for items in wanted for item in items],
         "condition_labels": [[item.label for item in items] for items in wanted],
         "cases": [
-            [_case(case, {item.label for item in items}) for case in cases(part.factor.ring, part.theory.cases)]
+            [_case(case, {item.label for item in items}) for case in cases(part.ring, part.theory.cases)]
             for part, items in zip(parts, wanted, strict=True)
         ],
         "verdict": found.verdict.word,

@@ -22,13 +22,15 @@ _SUM, _PRODUCT, _ATOM = 1, 2, 3
 class Dialect:
     """How a language writes what differs between languages.
 
-    ``quotient`` of two finished operands is ``a/b`` everywhere but in LaTeX; ``assigned(k)`` is the k-th local name.
+    ``call`` applies a function, known by Python's name; ``local`` is the k-th local name; ``angle`` names the sine or
+    cosine of a name, if the language has a nice way.
     """
 
     call: Callable[[str, str], str]
     local: Callable[[int], str]
     number: Callable[[Fraction], str] = str
     times: str = "*"
+    angle: Callable[[str, str], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -71,14 +73,21 @@ class _Writer:
             if instruction.operation == "input":
                 inputs.append(str(instruction.payload))
             elif instruction.operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
-                name = self._fresh()
+                name = self._fresh(instruction)
                 self.assignments.append((name, text))
                 text, precedence = name, _ATOM
             self.written[number] = text, precedence
         results = tuple(self.written[node.number][0] for node in self.outputs)
         return Listing(tuple(self.assignments), results, tuple(inputs))
 
-    def _fresh(self) -> str:
+    def _fresh(self, instruction: Instruction) -> str:
+        """A local name: ``cos_theta`` where that says it, else the next number."""
+        if self.dialect.angle is not None and instruction.operation in ("sin", "cos"):
+            argument = self.written[instruction.operands[0]][0]
+            name = self.dialect.angle(instruction.operation, argument)
+            if argument in self.names.values() and name not in self.used:
+                self.used.add(name)
+                return name
         while True:
             self._count += 1
             name = self.dialect.local(self._count)

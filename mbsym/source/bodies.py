@@ -7,14 +7,16 @@ from dataclasses import dataclass
 
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import ZERO, Expression, Name, Negative, is_number
+from mbsym.expressions.tree import ZERO, Expression, Name, Negative, is_number, subtract
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
+from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, did_you_mean, why_no_name
 
 MAX_BODIES = 100
+MAX_COORDINATES = 6
 MAX_BODY_NAME = 80
 
 _BODY_NAME = re.compile(r"[^\W\d_][\w ./-]*\Z")
@@ -76,7 +78,11 @@ def _declare_listed(draft: Draft, reading: Reading) -> None:
     node = draft.fields.get("coordinates")
     if node is None:
         return
-    for item in reading.items(node, "'coordinates'"):
+    items = reading.items(node, "'coordinates'")
+    if len(items) > MAX_COORDINATES:
+        reading.error("too-large", f"a joint introduces at most {MAX_COORDINATES} coordinates", node.span)
+        return
+    for item in items:
         scalar = reading.scalar(item, "a coordinate")
         if scalar is not None and reading.scope.declare(scalar.text, "coordinate", scalar.span):
             draft.coordinates.append(scalar)
@@ -190,8 +196,8 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     if len(axes) > 3:
         reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
     if len(angles) != len(axes):
-        counts = f"{len(axes)} axes, {len(angles)} angles"
-        reading.error("wrong-shape", f"each axis has an angle; here are {counts}", angles_node.span)
+        message = f"each axis has its angle: {len(axes)} wanted, not {len(angles)}"
+        reading.error("wrong-shape", message, angles_node.span)
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):
@@ -247,7 +253,8 @@ def _tensor(node: Node, reading: Reading) -> Tensor:
     for row in range(3):
         for column in range(row):
             below = items[row]
-            if len(reading.complaints.errors) == errors and rows[row][column] != rows[column][row]:
+            difference = subtract(rows[row][column], rows[column][row])
+            if len(reading.complaints.errors) == errors and vanishes(difference) is False:
                 assert isinstance(below, Sequence)
                 entries = f"{row + 1},{column + 1} and {column + 1},{row + 1}"
                 message = f"a tensor of inertia is symmetric: entries {entries} differ"

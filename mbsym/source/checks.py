@@ -8,12 +8,20 @@ from fractions import Fraction
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
     ZERO,
+    Call,
     Expression,
     Name,
+    Negative,
+    Operation,
     add,
     differentiate,
+    divide,
     multiply,
     names,
+    negative,
+    number,
+    power,
+    substitute,
     subtract,
     text,
 )
@@ -28,6 +36,9 @@ from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import vanishes
 from mbsym.source.reading import Reading
+
+#: Values that differ by less than one part in so many are taken for rounded ones.
+_ROUNDED = 1_000
 
 
 def check_body(system: System, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
@@ -46,11 +57,13 @@ def known_values(system: System) -> dict[str, Fraction]:
         value = None if parameter.value is None else number_of(parameter.value, {})
         if value is not None:
             values[parameter.name] = value
-    for _ in system.relations:  # each round settles at least the next relation of any chain
-        for relation in system.relations:
-            value = None if relation.name in values else number_of(relation.value, values)
+    waiting = {one.name: one.value for one in system.relations if one.name not in values}
+    needs = {name: names(value) for name, value in waiting.items()}
+    while ready := [name for name in waiting if needs[name] <= values.keys()]:
+        for name in ready:
+            value = number_of(waiting.pop(name), values)
             if value is not None:
-                values[relation.name] = value
+                values[name] = value
     return values
 
 
@@ -104,11 +117,29 @@ def _rates(system: System) -> dict[str, Expression]:
 
 
 def time_derivative(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
-    """The chain rule over the names that change with time."""
-    total: Expression = ZERO
-    for name in sorted(names(expression) & rates.keys()):
-        total = add(total, multiply(differentiate(expression, name), rates[name]))
-    return total
+    """The total derivative, in one pass whatever the number of names that change with time."""
+    match expression:
+        case Name(name):
+            return rates.get(name, ZERO)
+        case Negative(operand):
+            return negative(time_derivative(operand, rates))
+        case Operation("+", left, right):
+            return add(time_derivative(left, rates), time_derivative(right, rates))
+        case Operation("-", left, right):
+            return subtract(time_derivative(left, rates), time_derivative(right, rates))
+        case Operation("*", left, right):
+            first = multiply(time_derivative(left, rates), right)
+            return add(first, multiply(left, time_derivative(right, rates)))
+        case Operation("/", left, right):
+            second = multiply(left, time_derivative(right, rates))
+            return subtract(divide(time_derivative(left, rates), right), divide(second, power(right, number(2))))
+        case Operation(operator, base, exponent):
+            outer = differentiate(Operation(operator, Name("u"), exponent), "u")
+            return multiply(substitute(outer, {"u": base}), time_derivative(base, rates))
+        case Call(function, argument):
+            outer = differentiate(Call(function, Name("u")), "u")
+            return multiply(substitute(outer, {"u": argument}), time_derivative(argument, rates))
+    return ZERO
 
 
 # --- masses and inertias ---------------------------------------------------------------------------------------------
@@ -181,9 +212,13 @@ def _check_relation_values(system: System, reading: Reading) -> None:
     values = known_values(system)
     for relation in system.relations:
         left, right = values.get(relation.name), number_of(relation.value, values)
-        if left is not None and right is not None and left != right:
-            message = f"the given values break this relation: {_decimal(left)} is not {_decimal(right)}"
+        if left is None or right is None or left == right:
+            continue
+        message = f"the given values break this relation: {_decimal(left)} is not {_decimal(right)}"
+        if abs(left - right) > abs(right) / _ROUNDED:
             reading.error("conflicting-values", message, relation.span)
+        else:
+            reading.complaints.warning("rounded-value", message, relation.span, "leave the value of the left side out")
 
 
 def _check_assumption_values(system: System, reading: Reading) -> None:

@@ -65,14 +65,16 @@ def _sign_of(value: Fraction) -> str:
 def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
     fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **dict.fromkeys(SIGNS, "")})
     value = fields.expression("value", NUMBER)
-    parameter = Parameter(name, _sign(fields, reading), value, fields.text("meaning"), span)
+    number = rational(value)
+    sign = _sign(fields, reading) or ("real" if number is None else _sign_of(number))
+    parameter = Parameter(name, sign, value, fields.text("meaning"), span)
     if value is not None:
         _check_sign(parameter, fields.key_span("value"), reading)
     return parameter
 
 
-def _sign(fields: Fields, reading: Reading) -> str:
-    """``sign: positive`` or ``positive: true``, once."""
+def _sign(fields: Fields, reading: Reading) -> str | None:
+    """``sign: positive`` or ``positive: true``, once; None where nothing is said."""
     given = fields.get("sign")
     sign = None if given is None else reading.word(given, "a sign", SIGNS)
     for word in SIGNS:
@@ -83,7 +85,7 @@ def _sign(fields: Fields, reading: Reading) -> str:
             reading.error("conflicting-keys", f"a second sign: '{word}'", fields.key_span(word))
         elif reading.word(flag, f"'{word}'", ("true",)) is not None:
             sign = word
-    return sign or "real"
+    return sign
 
 
 def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:

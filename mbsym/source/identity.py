@@ -16,7 +16,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, walk
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, walk
 
 _PRIME = 2**127 - 1
 _POINTS = 2
@@ -33,12 +33,28 @@ def vanishes(expression: Expression, replaced: Mapping[str, Expression] | None =
 
     ``replaced`` gives the names that are functions of other names (relations between parameters, without circles).
     """
-    replaced = replaced or {}
+    replaced = _needed(expression, replaced or {})
     try:
         scales = _denominators([expression, *replaced.values()])
         return all(_FieldPoint(seed, scales, replaced).value(expression) == 0 for seed in range(_POINTS))
     except (_NotRational, RecursionError):
         return _vanishes_in_floats(expression, replaced)
+
+
+def _needed(expression: Expression, replaced: Mapping[str, Expression]) -> dict[str, Expression]:
+    """The replacements that matter for an expression, each after those that it uses itself."""
+    ordered: dict[str, Expression] = {}
+    opened: set[str] = set()
+    pending = sorted(names(expression) & replaced.keys())
+    while pending:
+        name = pending[-1]
+        before = names(replaced[name]) & replaced.keys() - ordered.keys() - opened
+        opened.add(name)
+        if before:
+            pending += sorted(before)
+        else:
+            ordered[pending.pop()] = replaced[name]
+    return ordered
 
 
 def _denominators(expressions: Iterable[Expression]) -> dict[str, int]:
@@ -66,6 +82,8 @@ class _FieldPoint:
         self.scales = scales
         self.replaced = replaced
         self.known: dict[str, int] = {}
+        for name, value in replaced.items():
+            self.known[name] = self.value(value)
 
     def random(self, what: str) -> int:
         return random.Random(f"{self.seed} {what}").randrange(1, _PRIME)
@@ -97,8 +115,7 @@ class _FieldPoint:
 
     def name(self, name: str) -> int:
         if name not in self.known:
-            relation = self.replaced.get(name)
-            self.known[name] = self.random("value " + name) if relation is None else self.value(relation)
+            self.known[name] = self.random("value " + name)
         return self.known[name]
 
     def power(self, base: int, exponent: Fraction) -> int:
@@ -151,8 +168,8 @@ class _FieldPoint:
 def _vanishes_in_floats(expression: Expression, replaced: Mapping[str, Expression]) -> bool | None:
     verdicts = []
     for seed in range(4):
-        point = _FloatPoint(seed, replaced)
         try:
+            point = _FloatPoint(seed, replaced)
             value, size = point.value(expression), point.largest
         except (ArithmeticError, ValueError, TypeError, RecursionError):
             continue
@@ -166,8 +183,10 @@ class _FloatPoint:
 
     def __init__(self, seed: int, replaced: Mapping[str, Expression]) -> None:
         self.seed = seed
-        self.replaced = replaced
         self.largest = 1.0
+        self.known: dict[str, float] = {}
+        for name, value in replaced.items():
+            self.known[name] = self.value(value)
 
     def value(self, expression: Expression) -> float:
         value = self.evaluated(expression)
@@ -183,10 +202,7 @@ class _FloatPoint:
             case Name("pi"):
                 return math.pi
             case Name(name):
-                relation = self.replaced.get(name)
-                if relation is not None:
-                    return self.value(relation)
-                return random.Random(f"{self.seed} {name}").uniform(0.4, 1.4)
+                return self.name(name)
             case Negative(operand):
                 return -self.value(operand)
             case Operation("**", base, exponent):
@@ -202,3 +218,8 @@ class _FloatPoint:
             case Call(function, argument):
                 return float(getattr(math, function)(self.value(argument)))
         raise ValueError
+
+    def name(self, name: str) -> float:
+        if name not in self.known:
+            self.known[name] = random.Random(f"{self.seed} {name}").uniform(0.4, 1.4)
+        return self.known[name]

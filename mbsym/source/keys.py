@@ -24,7 +24,7 @@ SYSTEM = {
 }
 
 PARAMETER = {
-    "sign": "one of " + ", ".join(SIGNS),
+    "sign": "one of " + ", ".join(SIGNS) + "; when left out, the sign of the value, or real without one",
     "value": "a numerical value, used where numbers are wanted",
     "meaning": "what it is, for reports",
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.source.keys import (
+    ALIASES,
     BODY,
     INITIAL,
     LOAD_MEANINGS,
@@ -42,9 +43,10 @@ def json_schema() -> Schema:
 
 
 def _record(keys: dict[str, str], values: dict[str, Schema], required: tuple[str, ...] = ()) -> Schema:
-    """A mapping with a fixed set of keys; a key is an expression unless ``values`` says otherwise."""
+    """A mapping with a fixed set of keys (other spellings included), each an expression unless ``values`` says more."""
     default = _reference("expression")
     properties = {key: {**values.get(key, default), "description": meaning} for key, meaning in keys.items()}
+    properties |= {other: properties[key] for other, key in ALIASES.items() if key in keys}
     schema: Schema = {"type": "object", "properties": properties, "additionalProperties": False}
     return {**schema, "required": list(required)} if required else schema
 
@@ -118,7 +120,7 @@ def _body_values() -> dict[str, Schema]:
 
 
 _REQUIRED = {
-    "newtonian gravity": ("constant", "centre", "about"),
+    "newtonian gravity": ("constant", "about"),
     "spring": ("stiffness",),
     "damper": ("coefficient",),
     "force": ("body", "point", "components", "axes"),
@@ -142,5 +144,12 @@ def _load(kind: str) -> Schema:
         data = _named(_reference("expression"))
     else:
         data = _reference("expression")
-    entry = {kind: {**data, "description": LOAD_MEANINGS[kind]}}
-    return {"type": "object", "properties": entry, "required": [kind], "additionalProperties": False}
+    spellings = [kind, *(other for other, key in ALIASES.items() if key == kind)]
+    entry = {spelling: {**data, "description": LOAD_MEANINGS[kind]} for spelling in spellings}
+    return {
+        "type": "object",
+        "properties": entry,
+        "additionalProperties": False,
+        "minProperties": 1,
+        "maxProperties": 1,
+    }

@@ -67,7 +67,8 @@ class Scope:
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
         if not self.is_name(name, span):
-            self.kinds.setdefault(name, kind)  # one complaint about it is enough
+            if not name.endswith(("_dot", "_ddot")):
+                self.kinds.setdefault(name, kind)  # one complaint about it is enough
             return False
         if name in self.kinds:
             taken = _KINDS[self.kinds[name]]

@@ -201,7 +201,8 @@ class _TextReader:
         for index, part in enumerate(parts):
             label, rest = _label_of(part)
             if label is None and index == 0:
-                entries.append(Entry(Scalar(first, part.span, literal=False), part))
+                key = "value" if first == "sign" and part.text[:1].isdigit() else first
+                entries.append(Entry(Scalar(key, part.span, literal=False), part))
             elif label is None:
                 self.error("syntax", "here 'key = value' is wanted", part.span)
             else:
@@ -277,7 +278,7 @@ class _TextReader:
 
     # --- loads -------------------------------------------------------------------------------------------------------
 
-    def load(self, block: _Block) -> Mapping:
+    def load(self, block: _Block) -> Mapping | None:
         """``{kind: data}`` from the lines below ``Load description (1)``."""
         found = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
         kinds = [value for label, value in found if _word(label.text) == LOAD_TYPE]
@@ -285,7 +286,7 @@ class _TextReader:
             how = "no 'Type of load'" if not kinds else "a second 'Type of load'"
             place = block.heading.span if not kinds else kinds[1].span
             self.error("missing-key" if not kinds else "repeated-key", f"this load has {how}", place)
-            return Mapping((), block.heading.span)
+            return None
         data = [(label, value) for label, value in found if _word(label.text) != LOAD_TYPE]
         if ALIASES.get(kinds[0].text, kinds[0].text) == "generalized force":
             value: Node = Mapping(tuple(Entry(label, value) for label, value in data), kinds[0].span)
@@ -335,11 +336,13 @@ def _name_in(block: _Block) -> str:
     return ""
 
 
-def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping]) -> list[Entry]:
+def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping | None]) -> list[Entry]:
     if not blocks:
         return []
     first = blocks[0].heading
-    return [Entry(_key(first, key), Sequence(tuple(read(block) for block in blocks), first.span))]
+    return [
+        Entry(_key(first, key), Sequence(tuple(item for item in map(read, blocks) if item is not None), first.span))
+    ]
 
 
 def _rows(lines: list[Scalar], position: int) -> list[Scalar]:

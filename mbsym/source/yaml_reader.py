@@ -33,7 +33,7 @@ def read_yaml(text: str, complaints: Complaints) -> Node | None:
     except _Refused:
         return None
     except yaml.MarkedYAMLError as error:
-        complaints.error("syntax", _problem(error), _mark_span(error.problem_mark or error.context_mark), _hint(error))
+        complaints.error("syntax", _problem(error), _mark_span(text, error), _hint(error))
     except yaml.YAMLError as error:
         complaints.error("syntax", f"this is not YAML: {str(error).splitlines()[0]}")
     return None
@@ -70,8 +70,12 @@ def _hint(error: yaml.MarkedYAMLError) -> str | None:
     return None
 
 
-def _mark_span(mark: Any) -> Span | None:
-    return None if mark is None else Span(mark.line + 1, mark.column + 1)
+def _mark_span(text: str, error: yaml.MarkedYAMLError) -> Span | None:
+    mark = error.problem_mark or error.context_mark
+    if mark is None:
+        return None
+    line, column = _inside(text.split("\n"), mark)
+    return Span(line + 1, column + 1)
 
 
 class _Composer:
@@ -131,12 +135,12 @@ class _Composer:
 
     def scalar(self, event: Any) -> Scalar:
         """A scalar and whether its text stands in the file as it is (plain or simply quoted, on one line)."""
-        first, last = event.start_mark, event.end_mark
+        line, start = _inside(self.lines, event.start_mark)
+        last_line, end = _inside(self.lines, event.end_mark)
         quote = 1 if event.style in ("'", '"') else 0
-        one_line = first.line == last.line
-        raw = self.lines[first.line][first.column + quote : last.column - quote] if one_line else None
+        raw = self.lines[line][start + quote : end - quote] if line == last_line else None
         if raw == event.value:
-            return Scalar(event.value, Span(first.line + 1, first.column + 1 + quote, max(1, len(event.value))))
+            return Scalar(event.value, Span(line + 1, start + 1 + quote, max(1, len(event.value))))
         return Scalar(event.value, self.span(event), literal=False)
 
     def refuse_fineries(self, event: Any) -> None:
@@ -153,16 +157,23 @@ class _Composer:
 
     def span(self, event: Any) -> Span:
         """From the beginning of an event to its end, or to the end of its first line."""
-        first, last = event.start_mark, event.end_mark
-        line = self.lines[first.line] if first.line < len(self.lines) else ""
-        end = last.column if last.line == first.line else len(line.rstrip())
-        return Span(first.line + 1, first.column + 1, max(1, end - first.column))
+        return self.between(event.start_mark, event.end_mark)
+
+    def between(self, first: Any, last: Any) -> Span:
+        line, start = _inside(self.lines, first)
+        last_line, end = _inside(self.lines, last)
+        stop = end if last_line == line else len(self.lines[line].rstrip())
+        return Span(line + 1, start + 1, max(1, stop - start))
 
     def collection_span(self, start: Any, end: Any, first: Span | None) -> Span:
         """A collection in brackets is underlined from bracket to bracket, another one at its first word."""
         if not start.flow_style and first is not None:
             return first
-        begin, last = start.start_mark, end.end_mark
-        line = self.lines[begin.line] if begin.line < len(self.lines) else ""
-        stop = last.column if last.line == begin.line else len(line.rstrip())
-        return Span(begin.line + 1, begin.column + 1, max(1, stop - begin.column))
+        return self.between(start.start_mark, end.end_mark)
+
+
+def _inside(lines: list[str], mark: Any) -> tuple[int, int]:
+    """Line and column of a mark, from 0; what the scanner places behind the end is brought back to the end."""
+    if mark.line < len(lines):
+        return mark.line, min(mark.column, len(lines[mark.line]))
+    return len(lines) - 1, len(lines[-1])

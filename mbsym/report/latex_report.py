@@ -1,0 +1,274 @@
+"""``report.tex``: an appendix that compiles as it stands with plain pdflatex and amsmath."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_matrix, latex_names, latex_text
+from mbsym.formulas.names import free_name
+from mbsym.formulas.shape import Factor, present
+from mbsym.problems.linearisation import Subsystem
+from mbsym.report.conditions import cases, statements
+from mbsym.report.environment import rendered
+from mbsym.report.python_module import prescribed_value
+from mbsym.report.straight_line import Dialect, listing
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: Matrices estimated wider than this (in ems) are written entry by entry.
+WIDEST = 40
+#: Longer formulas are left to the machine-readable files: nobody reads them, and TeX's memory is finite.
+LONGEST = 6000
+
+_FUNCTIONS = {"atan": "arctan", "log": "ln"}
+
+
+def _call(function: str, argument: str) -> str:
+    if function == "sqrt":
+        return f"\\sqrt{{{argument}}}"
+    return f"\\{_FUNCTIONS.get(function, function)}({argument})"
+
+
+def _exact(value: Fraction) -> str:
+    return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+DIALECT = Dialect(call=_call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The file's text."""
+    names = latex_names(analysis.ring)
+    system = analysis.system
+    stages = {number: analysis.stage(number) for number in problems}
+    found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
+    taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
+    taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
+    return rendered(
+        "report.tex.j2",
+        {
+            "tex": escaped,
+            "name": lambda name: str(names[name]),
+            "dotted": lambda name: names[name].accented("dot"),
+            "math": formula,
+            "expression": lambda value: expression(value, names),
+            "matrix": matrix,
+            "row": row,
+            "entries": entries,
+            "sum": polynomial,
+            "label": label,
+            "index": index,
+            "displays": displays,
+            "prose": prose,
+            "zero": lambda values: all(x.is_zero for x in values),
+        },
+        system=system,
+        numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
+        prescribed_value=prescribed_value,
+        found=found,
+        problems=problems,
+        failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
+        code=_code(analysis, names) if 3 in stages and 3 not in found else None,
+        statements=statements,
+        cases=cases,
+        relations=_RELATIONS,
+        variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
+        checks=analysis.checks,
+    )
+
+
+_RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq"}
+
+# --- text ---
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+    "^": r"\^{}", "~": r"\~{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': "''",
+}  # fmt: skip
+
+
+def escaped(words: str) -> str:
+    """Plain text; characters that plain pdflatex cannot set become question marks."""
+    return "".join(_SPECIAL.get(c, c if c < "\u0100" else "?") for c in " ".join(words.split()))
+
+
+def prose(words: str) -> str:
+    """Words of the stability kernel, with lambda as a symbol."""
+    return re.sub(r"\blambda(\\\^\{\}2)?", lambda m: r"$\lambda^2$" if m[1] else r"$\lambda$", escaped(words))
+
+
+def label(words: str) -> str:
+    """v6 as a coefficient's symbol, other labels as text."""
+    opposite = re.fullmatch(r"-\((.*)\)", words)
+    if opposite is not None:
+        return "-" + label(opposite[1])
+    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", words)
+    if match is None:
+        return f"\\text{{{escaped(words)}}}"
+    raised = f"^{{({match[4]})}}" if match[4] else ""
+    return f"{match[1]}_{{{match[2]}}}{raised}"
+
+
+# --- formulas ---
+
+
+def formula(value: Formula) -> str:
+    """A formula that may be broken; one that is too long for paper is only counted."""
+    if value.terms > LONGEST:
+        return f"\\text{{({value.terms} terms: see the machine-readable files)}}"
+    return latex_text(value.ring, value.polynomial, breaks=True)
+
+
+def width(latex: str) -> float:
+    """A rough estimate in ems."""
+    letters = re.sub(r"\\(frac|left|right|bigl|bigr|Bigl|Bigr|dot|ddot|mathrm|mathit|penalty\d+)", "", latex)
+    functions = len(re.findall(r"\\(sin|cos|exp|ln)", letters))
+    symbols = re.sub(r"\\[A-Za-z]+|[A-Za-z0-9]", "x", letters)
+    return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
+
+
+def matrix(value: Matrix) -> str:
+    """A pmatrix, or nothing if that would be too wide."""
+    if any(x.terms > 60 for row in value for x in row):
+        return ""
+    rows = _texts(value)
+    columns = [max(map(width, column)) for column in zip(*rows, strict=True)]
+    return latex_matrix(rows) if sum(columns) + 1.2 * len(columns) <= WIDEST else ""
+
+
+def displays(part: Subsystem, k: object) -> list[str]:
+    """The matrices of a subsystem that are not zero and not too wide, side by side where they fit."""
+    lines: list[str] = []
+    room = 0.0
+    for name in "MDGKN":
+        value: Matrix = getattr(part, name)
+        text = "" if value.is_zero else matrix(value)
+        if not text:
+            continue
+        needed = sum(max(map(width, column)) + 1.2 for column in zip(*_texts(value), strict=True)) + 6
+        shown = f"{name}{index(k)} = {text}"
+        if needed <= room:
+            lines[-1] += f",\\quad {shown}"
+        else:
+            lines.append(shown)
+            room = WIDEST
+        room -= needed
+    return lines
+
+
+def index(k: object) -> str:
+    return f"_{{{k}}}" if k else ""
+
+
+def _texts(value: Matrix) -> list[list[str]]:
+    return [[x.latex() for x in row] for row in value]
+
+
+def row(values: Column) -> str:
+    """Components side by side, or nothing if that would be too wide."""
+    written = [x.latex() if x.terms <= 30 else "" for x in values]
+    fits = all(written) and sum(map(width, written)) <= WIDEST
+    return ",\\; ".join(written) if fits else ""
+
+
+def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:
+    """(index, entry) of what is not zero; of a symmetric matrix the upper half."""
+    n = len(value.rows)
+    comma = "," if n > 9 else ""
+    return [
+        (f"{i + 1}{comma}{j + 1}", entry)
+        for i, row in enumerate(value)
+        for j, entry in enumerate(row)
+        if not entry.is_zero and (j >= i or not symmetric)
+    ]
+
+
+def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
+    """sum of coefficient*variable^k, highest power first."""
+    written: list[str] = []
+    for power, coefficient in reversed(list(enumerate(coefficients))):
+        if coefficient.is_zero:
+            continue
+        raised = "" if power == 0 else f" {variable}" if power == 1 else f" {variable}^{{{power}}}"
+        text = formula(coefficient)
+        shape = present(coefficient.ring, coefficient.polynomial)
+        if raised and text in ("1", "-1"):
+            text = text[:-1]
+        elif raised and len(shape.terms) > 1:
+            text = LatexPrinter(coefficient.ring, breaks=True).factor(Factor(shape))
+        written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
+    return "".join(written) or "0"
+
+
+def expression(value: Expression, names: LatexNames) -> str:
+    """An expression of the description, as it stands."""
+    return _expression(value, names)[0]
+
+
+def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
+    """(text, precedence): 1 sum, 2 product, 3 power, 4 atom."""
+    match value:
+        case Number(number):
+            return _number(number), 4 if number >= 0 else 1
+        case Name("pi"):
+            return r"\pi", 4
+        case Name(name):
+            base, _, dots = name.rpartition("_")
+            if dots in ("dot", "ddot") and base:
+                return names[base].accented(dots), 4
+            return str(names[name]), 4
+        case Negative(operand):
+            return "-" + _bracketed(operand, 2, names), 1
+        case Call(function, argument):
+            return _call(function, expression(argument, names)), 4
+        case Operation("/", left, right):
+            return f"\\frac{{{expression(left, names)}}}{{{expression(right, names)}}}", 4
+        case Operation("**", base, exponent):
+            return f"{_bracketed(base, 4, names)}^{{{expression(exponent, names)}}}", 3
+        case Operation("*", left, right):
+            return f"{_bracketed(left, 2, names)} {_bracketed(right, 2, names)}", 2
+        case Operation(sign, left, right):
+            return f"{_bracketed(left, 1, names)} {sign} {_bracketed(right, 2 if sign == '-' else 1, names)}", 1
+    raise TypeError(f"not an expression: {value!r}")
+
+
+def _bracketed(value: Expression, wanted: int, names: LatexNames) -> str:
+    text, precedence = _expression(value, names)
+    return text if precedence >= wanted else f"({text})"
+
+
+def _number(value: Fraction) -> str:
+    if value.denominator == 1:
+        return str(value.numerator)
+    shown = repr(float(value))
+    if "e" not in shown and Fraction(shown) == value:
+        return shown
+    return f"\\frac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+def _code(analysis: Analysis, names: LatexNames) -> Any:
+    """Mass matrix and forcing as a straight-line program."""
+    system, programs = analysis.system, analysis.programs
+    symbols = {name: str(names[name]) for name in programs.environment if name != "pi"} | {"pi": r"\pi"}
+    for name in system.coordinates:
+        symbols[name + "_dot"] = names[name].accented("dot")
+        symbols[name + "_ddot"] = names[name].accented("ddot")
+    n = len(system.coordinates)
+    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    nodes = [programs.mass_matrix[i][j] for i, j in upper]
+    body = listing(programs.program, [*nodes, *programs.forcing], symbols, DIALECT)
+    comma = "," if n > 9 else ""
+    lines = [f"{name} = {text}" for name, text in body.assignments]
+    lines += [f"M_{{{i + 1}{comma}{j + 1}}} = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
+    lines += [f"f_{{{i + 1}}} = {text}" for i, text in enumerate(_tail(body.results, len(upper)))]
+    return lines
+
+
+def _tail(items: Iterable[str], start: int) -> list[str]:
+    return list(items)[start:]

@@ -1,0 +1,149 @@
+"""What a run found, as plain data for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mbsym.formulas.formula import Matrix
+from mbsym.problems.checks import Check
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
+from mbsym.report.conditions import statements
+from mbsym.report.results_json import statement_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: Conditions longer than this are counted, not printed.
+LONGEST = 100
+
+
+@dataclass(frozen=True)
+class Line:
+    """One problem: what was derived, in a few lines; where nothing was (not ``available``) they say why."""
+
+    number: int
+    title: str
+    lines: tuple[str, ...]
+    seconds: float
+    available: bool
+
+
+@dataclass(frozen=True)
+class Summary:
+    system: str
+    coordinates: tuple[str, ...]
+    problems: tuple[Line, ...]
+    checks: tuple[Check, ...]
+    files: tuple[Path, ...]
+
+
+def summary(analysis: Analysis, problems: Sequence[int], files: Iterable[Path]) -> Summary:
+    """Derived problems with sizes and seconds, the self-check, and where the files are."""
+    return Summary(
+        system=analysis.system.name,
+        coordinates=analysis.system.coordinates,
+        problems=tuple(_line(analysis, number) for number in problems),
+        checks=analysis.checks,
+        files=tuple(files),
+    )
+
+
+def _line(analysis: Analysis, number: int) -> Line:
+    from mbsym.analysis import PROBLEMS
+
+    stage = analysis.stage(number)
+    title = PROBLEMS[number].title
+    if stage.failure is not None:
+        lines = [f"no result: {stage.failure.reason}", *([stage.failure.hint] if stage.failure.hint else [])]
+        return Line(number, title, tuple(lines), stage.seconds, False)
+    return Line(number, title, tuple(_DESCRIPTIONS[number](stage.value)), stage.seconds, True)
+
+
+def _kinematics(found: Kinematics) -> Iterator[str]:
+    yield counted(len(found.bodies), "body", "bodies")
+
+
+def _energy(found: Energy) -> Iterator[str]:
+    kinetic, force = found.kinetic_energy.terms, found.force_function.terms
+    yield f"T: {counted(kinetic, 'term')}, U: {counted(force, 'term')}"
+    if found.cyclic:
+        yield f"cyclic: {', '.join(found.cyclic)}"
+
+
+def _equations(found: Equations) -> Iterator[str]:
+    n = len(found.forcing)
+    terms = sum(x.terms for x in found.forcing)
+    size = counted(found.mass_matrix.terms, "term")
+    yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
+
+
+def _equilibrium(found: Equilibrium) -> Iterator[str]:
+    if found.satisfied:
+        yield "the unperturbed motion satisfies the equations identically"
+    elif found.impossible:
+        yield "the unperturbed motion cannot satisfy the equations"
+    for condition in found.conditions:
+        yield shortened(f"{condition} = 0", condition.terms)
+
+
+def _linearisation(found: Linearisation) -> Iterator[str]:
+    present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
+    yield f"matrices that are not zero: {', '.join(present)}"
+    if len(found.subsystems) > 1:
+        yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
+
+
+def _is_zero(matrix: Matrix) -> bool:
+    return matrix.is_zero
+
+
+def _stability(found: Stability) -> Iterator[str]:
+    for part in found.subsystems:
+        yield f"{', '.join(part.coordinates)}: {_verdict(part.theory.verdict)}"
+        for item in statements(part.ring, part.theory.requirements):
+            size = 0 if item.formula is None else item.formula.terms
+            yield f"  {item.label}: {shortened(statement_text(item), size)}"
+    if len(found.subsystems) > 1:
+        yield f"whole system: {_verdict(found.verdict)}"
+    if found.numerical is not None:
+        yield f"at the given values: {_verdict(found.numerical)}"
+
+
+def _verdict(verdict: Any) -> str:
+    return verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+
+
+def _integrals(found: tuple[Integral, ...]) -> Iterator[str]:
+    for item in found:
+        yield f"{item.name}: {item.status}"
+    if not found:
+        yield "none of the kinds that are looked for"
+
+
+_DESCRIPTIONS: dict[int, Callable[[Any], Iterator[str]]] = {
+    1: _kinematics,
+    2: _energy,
+    3: _equations,
+    4: _equilibrium,
+    5: _linearisation,
+    6: _stability,
+    7: _integrals,
+}
+
+
+def counted(n: int, one: str, many: str = "") -> str:
+    return f"{n} {one if n == 1 else many or one + 's'}"
+
+
+def shortened(text: str, terms: int) -> str:
+    """The text, or how long it is."""
+    return text if len(text) <= LONGEST else f"({counted(terms, 'term')}; see the reports)"

@@ -1,0 +1,137 @@
+"""``report.wl``: the results as definitions in the Wolfram Language, ready for NDSolve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mbsym.algebra.program import Node
+from mbsym.expressions.tree import Expression
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.names import free_name
+from mbsym.formulas.wolfram import (
+    WolframNames,
+    wolfram_call,
+    wolfram_expression,
+    wolfram_names,
+    wolfram_number,
+    wolfram_text,
+)
+from mbsym.model.system import System
+from mbsym.report.conditions import Statement, statements
+from mbsym.report.environment import rendered
+from mbsym.report.python_module import prescribed_value
+from mbsym.report.straight_line import Dialect, Listing, listing
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+DIALECT = Dialect(
+    call=wolfram_call,
+    local=lambda count: f"s{count}",
+    number=wolfram_number,
+)
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The file's text."""
+    names = wolfram_names(analysis.ring)
+    stages = {number: analysis.stage(number) for number in problems}
+    found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
+    used = {names[name] for name in names.table}
+    return rendered(
+        "report.wl.j2",
+        {
+            "wl": lambda formula: wolfram_text(formula.ring, formula.polynomial),
+            "expression": lambda value: wolfram_expression(value, names),
+            "list": listed,
+            "entries": entries,
+            "string": string,
+            "comment": comment,
+            "condition": condition,
+        },
+        system=analysis.system,
+        names=names,
+        found=found,
+        failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
+        code=_code(analysis) if 3 in stages and 3 not in found else None,
+        prescribed=[(names[item.name], prescribed_value(item)) for item in analysis.system.prescribed],
+        statements=statements,
+        polynomial=polynomial,
+        variable=free_name("\\[Lambda]", used),
+        initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
+        checks=analysis.checks,
+    )
+
+
+def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Expression]]:
+    """What the description gives; nothing is made up for the rest."""
+    for item in system.initial:
+        if item.position is not None:
+            yield f"{names[item.coordinate]}[0]", item.position
+        if item.velocity is not None:
+            yield f"{names[item.coordinate]}'[0]", item.velocity
+
+
+def entries(items: Iterable[str], break_: str) -> str:
+    """Entries of a row, on one line if they are short."""
+    written = list(items)
+    return (", " if sum(map(len, written)) < 100 else "," + break_).join(written)
+
+
+def string(words: str) -> str:
+    """A string literal, in ASCII."""
+    escaped = words.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(map(_ascii, escaped)) + '"'
+
+
+def _ascii(character: str) -> str:
+    if " " <= character <= "~":
+        return character
+    return f"\\:{ord(character):04x}" if ord(character) < 0x10000 else "?"
+
+
+def comment(words: str) -> str:
+    """Text that may stand in a comment."""
+    plain = "".join(c if " " <= c <= "~" else "?" for c in " ".join(words.split()))
+    return plain.replace("(*", "( *").replace("*)", "* )")
+
+
+def listed(items: Iterable[str], between: str = ", ") -> str:
+    return "{" + between.join(items) + "}"
+
+
+def condition(statement: Statement) -> str:
+    """An inequality, or a string that says why there is none."""
+    if statement.formula is None:
+        return string(f"{statement.label} {statement.relation} 0: {statement.note}")
+    return f"{statement.formula.wolfram()} {statement.relation} 0"
+
+
+def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
+    """sum of coefficient*variable^k, highest power first; the coefficients stay factored."""
+    written = []
+    for power, coefficient in reversed(list(enumerate(coefficients))):
+        if not coefficient.is_zero:
+            factor = f"({coefficient.wolfram()})"
+            written.append(factor if power == 0 else f"{factor}*{variable}^{power}")
+    return " + ".join(written) or "0"
+
+
+def _code(analysis: Analysis) -> dict[str, Any]:
+    """Mass matrix and forcing as straight-line code over plain symbols."""
+    system, programs = analysis.system, analysis.programs
+    names = wolfram_names(analysis.ring)
+    inputs = {name: names[name] for name in programs.environment}
+    nodes: list[Node] = [x for row in programs.mass_matrix for x in row]
+    n = len(system.coordinates)
+    body: Listing = listing(programs.program, [*nodes, *programs.forcing], inputs, DIALECT)
+    prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
+    return {
+        "positions": [names[name] + "_" for name in system.coordinates],
+        "velocities": [names[name] + "_" for name in system.velocities],
+        "body": body,
+        "prescribed": prescribed,
+        "mass": [body.results[i * n : (i + 1) * n] for i in range(n)],
+        "forcing": body.results[n * n :],
+    }

@@ -1,0 +1,120 @@
+"""Shared by the tests: the reference data, and a reader of published formulas into a system's exact ring."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from flint import arb, ctx, fmpq
+
+import mbsym
+from mbsym.algebra.base import Lowering
+from mbsym.analysis import Analysis
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import Expression, number, substitute
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.variables import ring_environment
+from mbsym.model.system import System
+
+TESTS = Path(__file__).parent
+SHIPPED = TESTS.parent / "systems"
+OWN = TESTS / "systems"
+
+
+def reference(name: str) -> Any:
+    """The content of a file of reference data."""
+    return json.loads((TESTS / "references" / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def parsed(text: str) -> Expression:
+    """The tree of an expression that has no mistakes."""
+    complaints = Complaints()
+    tree = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, end - start))
+    assert tree is not None, [item.message for item in complaints.items]
+    return tree
+
+
+class Exact:
+    """Published formulas as members of a system's ring, where ``==`` means that the difference is proved zero."""
+
+    def __init__(self, analysis: Analysis) -> None:
+        self.ring = analysis.ring
+        self.lower = Lowering(self.ring, ring_environment(analysis.system, self.ring))
+
+    def __call__(self, text: str, **meanings: str) -> Formula:
+        """The formula of ``text``; ``meanings`` stand for names of the text and may use those given before them."""
+        known: dict[str, Expression] = {}
+        for name, meaning in meanings.items():
+            known[name] = substitute(parsed(meaning), known)
+        return Formula(self.ring, self.lower(substitute(parsed(text), known)))
+
+    def same(self, formula: Formula) -> Formula:
+        """A formula of another ring of the same system (that of the parameters alone), here."""
+        x, total = formula.polynomial, self.ring.zero
+        if formula.ring is self.ring:
+            return formula
+        for monomial, coefficient in x.terms():
+            term = self.ring.context.constant(coefficient)
+            for index, exponent in enumerate(monomial):
+                if exponent:
+                    known = formula.ring.generators[index]
+                    term = term * self.ring.generator(known.kind, known.name) ** int(exponent)
+            total = total + term
+        return Formula(self.ring, total)
+
+    def ratio(self, ours: Formula, theirs: Formula) -> Fraction | None:
+        """The number k with ours = k theirs, exactly; None if there is none."""
+        mine, other = self.ring.fraction(self.same(ours).polynomial), self.ring.fraction(theirs.polynomial)
+        assert mine[1] == other[1] == [], "a polynomial is expected"
+        content, rest = divmod(mine[0], other[0])
+        if not rest.is_zero() or not content.is_constant():
+            return None
+        value = content.leading_coefficient() if content else fmpq(0)
+        return Fraction(int(value.p), int(value.q))
+
+
+def with_values(system: System, values: Mapping[str, int | str | Fraction]) -> System:
+    """The system with (some) other numerical values of parameters."""
+    given = {name: number(Fraction(value)) for name, value in values.items()}
+    assert given.keys() <= set(system.parameter_names)
+    return replace(system, parameters=tuple(replace(p, value=given.get(p.name, p.value)) for p in system.parameters))
+
+
+def at_values(path: Path, **values: int | str | Fraction) -> Analysis:
+    """The analysis of a description at (some) other numerical values."""
+    return Analysis(with_values(mbsym.load(path).system, values))
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    kept, ctx.prec = ctx.prec, bits
+    try:
+        yield
+    finally:
+        ctx.prec = kept
+
+
+def ball(value: str | Fraction | int) -> arb:
+    """An exact decimal or fraction as a ball of the working precision."""
+    exact = Fraction(value)
+    return arb(fmpq(exact.numerator, exact.denominator))
+
+
+def agrees(value: arb, text: str, digits: int) -> bool:
+    """Whether a ball lies within ``digits`` significant digits of the printed number."""
+    expected = ball(text)
+    bound = abs(expected) * ball(Fraction(1, 10**digits))
+    return bool(abs(value - expected) <= bound) if expected != 0 else bool(abs(value) < ball(Fraction(1, 10**digits)))
+
+
+def total(formulas: Iterable[Formula]) -> Formula:
+    """Their sum."""
+    items = list(formulas)
+    ring = items[0].ring
+    return Formula(ring, ring.reduce(sum((x.polynomial for x in items), ring.zero)))

@@ -1,0 +1,133 @@
+"""The expression parser: exact numbers, the grammar, printing back, bounds."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation, text
+
+
+def parse(written: str) -> tuple[Expression | None, Complaints]:
+    complaints = Complaints()
+    return parse_expression(written, complaints, lambda start, end: Span(1, start + 1, max(1, end - start))), complaints
+
+
+def good(written: str) -> Expression:
+    tree, complaints = parse(written)
+    assert tree is not None, complaints
+    assert not complaints
+    return tree
+
+
+@pytest.mark.parametrize(
+    ("written", "value"),
+    [("0.1", "1/10"), ("1e-3", "1/1000"), (".5", "1/2"), ("2.", "2"), ("12.50E+1", "125"), ("007", "7"), ("0e9", "0")],
+)
+def test_numbers_are_exact(written: str, value: str) -> None:
+    assert good(written) == Number(Fraction(value))
+
+
+@pytest.mark.parametrize(
+    ("written", "grouped"),
+    [
+        ("-x**2", "-(x**2)"),
+        ("a - b - c", "(a - b) - c"),
+        ("a/b/c", "(a/b)/c"),
+        ("a/b*c", "(a/b)*c"),
+        ("-a*b", "(-a)*b"),
+        ("a*-b", "a*(-b)"),
+        ("a + b*c**2", "a + (b*(c**2))"),
+        ("x**-1", "x**(-1)"),
+        ("+x", "x"),
+    ],
+)
+def test_precedence_is_that_of_python(written: str, grouped: str) -> None:
+    assert good(written) == good(grouped)
+
+
+def test_exponents_are_folded_to_one_rational_number() -> None:
+    assert good("x**(1/2)") == Operation("**", Name("x"), Number(Fraction(1, 2)))
+    assert good("x**2**3") == Operation("**", Name("x"), Number(Fraction(8)))
+
+
+def test_spans_cover_what_they_name() -> None:
+    tree = good("a + sin(bb)*c")
+    assert isinstance(tree, Operation)
+    assert tree.span == Span(1, 1, 13)
+    assert tree.right.span == Span(1, 5, 9)
+
+
+leaves = st.one_of(
+    st.sampled_from(["x", "theta_dot", "pi", "J1"]).map(Name),
+    st.decimals(min_value=0, max_value=10**9, places=6).map(lambda value: Number(Fraction(value))),
+)
+exponents = st.fractions(min_value=-9, max_value=9, max_denominator=9).map(Number)
+
+
+def _grow(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]:
+    return st.one_of(
+        inner.map(Negative),
+        st.builds(Operation, st.sampled_from("+-*/"), inner, inner),
+        st.builds(Operation, st.just("**"), inner, exponents),
+        st.builds(Call, st.sampled_from(FUNCTIONS), inner),
+    )
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.recursive(leaves, _grow, max_leaves=12))
+def test_parsing_what_was_printed_gives_the_same_tree(tree: Expression) -> None:
+    parsed, complaints = parse(text(tree))
+    if parsed is None:  # only for a reason: a zero divisor, or powers of powers of powers
+        assert {item.code for item in complaints} <= {"division-by-zero", "too-long"}
+        return
+    assert parsed == tree
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(alphabet="ab1.2e+-*/()^, sincoθ\x00'_", max_size=40))
+def test_any_text_gives_a_tree_or_complaints(written: str) -> None:
+    tree, complaints = parse(written)
+    assert (tree is None) == bool(complaints.errors)
+    if tree is not None:
+        assert good(text(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    ("written", "code"),
+    [
+        ("9**9**9**9", "bad-exponent"),
+        ("(" * 100_000, "too-long"),
+        ("(" * 10_000, "too-deep"),
+        ("-" * 10_000 + "x", "too-deep"),
+        ("x" + "+x" * 9_000, "too-deep"),
+        ("x*(" * 6_000 + "x" + ")" * 6_000, "too-long"),
+        ("1" * 5_000, "bad-number"),
+        ("1e-999999999999", "bad-number"),
+        ("(((((9**64)**64)**64)**64)**64)/((((9**64)**64)**64)**64)", "too-long"),
+        ("sin(" * 3_000 + "x" + ")" * 3_000, "too-deep"),
+        ("__import__('os')", "bad-character"),
+        ("().__class__", "bad-character"),
+        ("()", "bad-expression"),
+        ("lambda: 0", "bad-character"),
+        ("x if x else y", "bad-expression"),
+        ("open(x)", "unknown-function"),
+        ("x // 2", "bad-expression"),
+        ("x % 2", "bad-character"),
+        ("x\ty\0", "bad-character"),
+    ],
+)
+def test_hostile_texts_are_refused_at_once(written: str, code: str) -> None:
+    tree, complaints = parse(written)
+    assert tree is None
+    assert code in {item.code for item in complaints}
+
+
+def test_long_sums_may_be_grouped() -> None:
+    group = "(" + " + ".join(["x"] * 100) + ")"
+    assert good(" + ".join([group] * 10))

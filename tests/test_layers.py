@@ -1,0 +1,68 @@
+"""The layers of the design: imports point downwards only, and light commands stay light."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import mbsym
+
+ROOT = Path(mbsym.__file__).parent
+COMMANDS = ROOT.parent / "cli"
+
+#: What each layer may import besides itself, bottom first.
+BELOW = {
+    "expressions": "",
+    "algebra": "expressions",
+    "model": "expressions",
+    "source": "expressions model",
+    "formulas": "expressions algebra",
+    "mechanics": "expressions algebra model",
+    "problems": "expressions algebra model mechanics formulas",
+    "analysis": "expressions algebra model mechanics formulas problems",
+    "report": "expressions algebra model mechanics formulas problems analysis",
+    "__init__": "source analysis",
+    "cli": "expressions algebra model source mechanics formulas problems analysis report __init__",
+}
+MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
+HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib")
+
+
+def layer_of(path: Path) -> str:
+    """``mechanics`` for mbsym/mechanics/loads/free.py, ``analysis`` for mbsym/analysis.py."""
+    return "cli" if path.is_relative_to(COMMANDS) else path.relative_to(ROOT).with_suffix("").parts[0]
+
+
+def imported(tree: ast.AST) -> Iterator[str]:
+    """The layers that a module imports, anywhere in it."""
+    for node in ast.walk(tree):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute"
+            assert node.module is not None
+            names = [f"{node.module}.{alias.name}" if node.module == "mbsym" else node.module for alias in node.names]
+        for name in names:
+            top, *rest = name.split(".")
+            if top == "mbsym":
+                yield rest[0] if rest and rest[0] in BELOW else "__init__"
+            elif top in ("mbsym_cli", "cli"):
+                yield "cli"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT.parent)))
+def test_imports_point_downwards(path: Path) -> None:
+    layer = layer_of(path)
+    upwards = set(imported(ast.parse(path.read_text(encoding="utf-8")))) - {layer, *BELOW[layer].split()}
+    assert not upwards, f"{layer} imports {', '.join(sorted(upwards))}"
+
+
+@pytest.mark.parametrize("name", ["mbsym", "mbsym.source", "mbsym_cli.main"])
+def test_reading_a_description_loads_nothing_heavy(name: str) -> None:
+    program = f"import sys, {name}; print(*[m for m in {HEAVY} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []

@@ -1,0 +1,642 @@
+"""Negative controls: a mistake planted in one place must make the self-check of the right result fail.
+
+Each mistake is a piece of the source of one function, replaced; the function is then compiled again in its module.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import json
+import sys
+import textwrap
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.mechanics.loads.interface import Kind
+from mbsym.mechanics.loads.kinds import KINDS
+
+KINEMATICS, ENERGY, EQUATIONS, PROGRAM, EQUILIBRIUM, LINEARISATION = ALL = (
+    "kinematics",
+    "kinetic energy",
+    "equations of motion",
+    "straight-line program",
+    "equilibrium",
+    "linearisation",
+)
+DYNAMICS = (EQUATIONS, PROGRAM)
+
+# --- systems in which every term counts ---
+
+PARAMETERS = "m1 m2 m3 l A B C E k k2 b b2 g Omega F T R nu".split()
+TENSOR = [["A", "E", 0], ["E", "B", 0], [0, 0, "C"]]
+
+#: A cart, an arm on a universal joint, a bead that slides along the arm and is turned by a motor; every load but orbits.
+MACHINE = {
+    "mbsym": 1,
+    "name": "machine",
+    "parameters": PARAMETERS,
+    "prescribed": {"chi": "Omega"},
+    "bodies": [
+        {"name": "cart", "attached to": 0, "connection point": ["x", 0, 0], "mass": "m1", "coordinates": ["x"]},
+        {
+            "name": "arm",
+            "attached to": "cart",
+            "rotation": {"axes": [1, 2], "angles": ["p", "-q"]},
+            "connection point": [0, "l", "sin(x)"],
+            "mass centre": [0, 1, "l"],
+            "mass": "m2",
+            "inertia about": "joint",
+            "inertia": TENSOR,
+        },
+        {
+            "name": "bead",
+            "attached to": "arm",
+            "rotation": {"axes": [1], "angles": ["chi"]},
+            "connection point": [1, 0, "r"],
+            "mass centre": ["l", 2, 0],
+            "mass": "m3",
+            "inertia about": "mass centre",
+            "inertia": TENSOR,
+            "coordinates": ["r"],
+        },
+    ],
+    "loads": [
+        {"uniform gravity": {"vector": ["g", 0, "-2*g"]}},
+        {"spring": {"coordinate": "r", "stiffness": "k", "rest": "l"}},
+        {"damper": {"coordinate": "q", "coefficient": "b"}},
+        {
+            "spring": {
+                "between": [{"body": 0, "point": [1, "l", 0]}, {"body": "bead", "point": [0, 0, 1]}],
+                "stiffness": "k2",
+                "length": 0,
+            }
+        },
+        {
+            "damper": {
+                "between": [{"body": "cart", "point": [0, 1, 0]}, {"body": "bead", "point": [1, 0, 0]}],
+                "coefficient": "b2",
+            }
+        },
+        {"potential": "k*(p - q)**2/2"},
+        {"rayleigh": "b*(p_dot - q_dot)**2/2"},
+        {"generalized force": {"x": "F - b*x_dot*q"}},
+        {"force": {"body": "bead", "point": [0, "l", 1], "components": ["F", 0, "2*F"], "axes": "bead"}},
+        {"torque": {"body": "bead", "components": [0, "T", "T"], "axes": "cart", "reaction on": "arm"}},
+    ],
+}
+
+#: The same without the motor on a spinning shaft, moving steadily: coordinates at rest, the shaft at the rate Omega.
+SPINNING = {
+    "mbsym": 1,
+    "name": "spinning machine",
+    "parameters": PARAMETERS,
+    "bodies": [
+        {
+            "name": "shaft",
+            "attached to": 0,
+            "rotation": {"axes": [3], "angles": ["phi"]},
+            "mass": 0,
+            "inertia about": "joint",
+            "inertia": [0, 0, "C"],
+        },
+        {
+            "name": "arm",
+            "attached to": "shaft",
+            "rotation": {"axes": [1, 2], "angles": ["p", "-q"]},
+            "connection point": [0, "l", 1],
+            "mass centre": [0, 1, "l"],
+            "mass": "m2",
+            "inertia about": "joint",
+            "inertia": TENSOR,
+        },
+        {
+            "name": "bead",
+            "attached to": "arm",
+            "connection point": [1, "l*sin(r)", "r"],
+            "mass centre": ["l", 2, 0],
+            "mass": "m3",
+            "coordinates": ["r"],
+        },
+    ],
+    "loads": [
+        {"uniform gravity": {"vector": [0, 0, "-g"]}},
+        {"spring": {"coordinate": "r", "stiffness": "k", "rest": "l"}},
+        {"damper": {"coordinate": "q", "coefficient": "b"}},
+        {"force": {"body": "bead", "point": [0, "l", 1], "components": ["F", 0, "2*F"], "axes": "bead"}},
+    ],
+    "motion": {"phi": {"value": 0, "rate": "Omega"}, "p": "T", "q": 0, "r": 0},
+}
+
+#: A body whose expansion point moves freely in the plane of its orbit, so that even its distance is a coordinate.
+ORBITING = {
+    "mbsym": 1,
+    "name": "free orbit",
+    "parameters": PARAMETERS,
+    "bodies": [
+        {
+            "name": "orbit",
+            "attached to": 0,
+            "connection point": ["r*sin(u)", "r*cos(u)", 0],
+            "rotation": {"axes": [3], "angles": ["-u"]},
+            "mass": 0,
+            "coordinates": ["r", "u"],
+        },
+        {
+            "name": "body",
+            "attached to": "orbit",
+            "rotation": {"axes": [1, 2], "angles": ["p", "q"]},
+            "connection point": [1, 0, "l"],
+            "mass centre": [0, "l", 2],
+            "mass": "m1",
+            "inertia about": "joint",
+            "inertia": TENSOR,
+        },
+    ],
+    "loads": [{"newtonian gravity": {"constant": "nu", "centre": 0, "about": "orbit", "order": 2}}],
+}
+
+SYSTEMS = {
+    "machine": (MACHINE, (1, 2, 3)),
+    "spinning": (SPINNING, (1, 2, 3, 4, 5)),
+    "orbiting": (ORBITING, (1, 2, 3)),
+}
+
+
+def analysed(name: str) -> Analysis:
+    description, problems = SYSTEMS[name]
+    return mbsym.loads(json.dumps(description, indent=1), problems)
+
+
+def failing(name: str) -> set[str]:
+    return {check.name for check in analysed(name).checks if check.failed}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_without_a_mistake_nothing_fails(name: str) -> None:
+    checks = analysed(name).checks
+    assert {check.outcome for check in checks} == {"exact"}
+    assert {check.name for check in checks} == set(ALL if name == "spinning" else ALL[:4])
+
+
+# --- planting ---
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """In ``where`` (module:function or module:Class.method below mbsym), ``right`` becomes ``wrong``."""
+
+    what: str
+    where: str
+    right: str
+    wrong: str
+    system: str
+    caught: tuple[str, ...]
+
+
+def plant(monkeypatch: pytest.MonkeyPatch, mistake: Mistake) -> None:
+    module_name, qualified = mistake.where.split(":")
+    module = importlib.import_module(f"mbsym.{module_name}")
+    *outer, name = qualified.split(".")
+    owner: Any = getattr(module, outer[0]) if outer else module
+    original = getattr(owner, name)
+    source = textwrap.dedent(inspect.getsource(original))
+    assert source.count(mistake.right) == 1, f"{mistake.where} has changed: {mistake.right} must occur once"
+    scope = dict(vars(module))
+    exec("from __future__ import annotations\n" + source.replace(mistake.right, mistake.wrong), scope)
+    replacement = scope[name]
+    if outer:
+        monkeypatch.setattr(owner, name, replacement)
+        return
+    scope.update({name: replacement})
+    for other in [m for key, m in sys.modules.items() if key.split(".")[0] == "mbsym"]:
+        for key, value in list(vars(other).items()):
+            if value is original:
+                monkeypatch.setattr(other, key, replacement)
+    for load, kind in KINDS.items():
+        changed = {
+            field.name: replacement for field in dataclasses.fields(Kind) if getattr(kind, field.name) is original
+        }
+        if changed:
+            monkeypatch.setitem(KINDS, load, dataclasses.replace(kind, **changed))
+
+
+RECURSIONS = "mechanics.kinematics:Scene._motion"
+CAUGHT = [
+    Mistake(
+        "a sign in the cross product",
+        "algebra.base:Algebra.cross",
+        "(u[2], -u[0])",
+        "(u[2], u[0])",
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "turns in reversed order",
+        "mechanics.kinematics:Scene._turns",
+        "in body.rotation.turns()",
+        "in reversed(list(body.rotation.turns()))",
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "active for passive rotations",
+        "mechanics.frames:_turn",
+        "((c, s), (v[i], v[j]))",
+        "((c, -s), (v[i], v[j]))",
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "the sign of the sine when turning forwards",
+        "mechanics.frames:turn_forward",
+        "turn.axis, turn.sine",
+        "turn.axis, -turn.sine",
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "the sign of the sine when turning back",
+        "mechanics.frames:turn_back",
+        "-turn.sine",
+        "turn.sine",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "omega_k for omega_j, as the paper prints it",
+        RECURSIONS,
+        "cross(parent_spin, offset)",
+        "cross(spin, offset)",
+        "machine",
+        (KINEMATICS, ENERGY, EQUATIONS),
+    ),
+    Mistake(
+        "the velocity of a sliding joint",
+        RECURSIONS,
+        "algebra.add(carried, sliding)",
+        "carried",
+        "machine",
+        (KINEMATICS, ENERGY, EQUATIONS),
+    ),
+    Mistake(
+        "an angle's rate taken before its turn",
+        RECURSIONS,
+        "algebra.add(turn_forward(algebra, turn, spin), rate)",
+        "turn_forward(algebra, turn, algebra.add(spin, axis_vector(algebra, turn.axis % 3 + 1, turn.rate)))",
+        "machine",
+        (KINEMATICS, ENERGY, EQUATIONS),
+    ),
+    Mistake(
+        "prescribed motions forgotten in rates",
+        "mechanics.variables:time_derivative",
+        "| {item.name: item.rate for item in system.prescribed}",
+        "",
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "the derivative of the sine",
+        "expressions.tree:_derivative_of_function",
+        'return Call("cos", argument)',
+        'return Call("sin", argument)',
+        "machine",
+        (KINEMATICS, ENERGY, *DYNAMICS),
+    ),
+    Mistake(
+        "the mixed term of the kinetic energy",
+        "mechanics.energy:_body_energy",
+        "algebra.number(2) * algebra.dot(velocity, swing)",
+        "algebra.dot(velocity, swing)",
+        "machine",
+        (ENERGY, EQUATIONS),
+    ),
+    Mistake(
+        "the wrong point of a tensor in the kinetic energy",
+        "mechanics.energy:_body_energy",
+        "velocity = motion.velocity_origin if about_joint else motion.velocity_mass_centre",
+        "velocity = motion.velocity_mass_centre",
+        "machine",
+        (ENERGY, EQUATIONS),
+    ),
+    # --- the Newton-Euler recursion ---
+    Mistake(
+        "the Coriolis term 2 w x r' dropped",
+        "mechanics.newton_euler:_Accelerations._step",
+        "algebra.scale(algebra.number(2), algebra.cross(spin, sliding))",
+        "algebra.zero_vector",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "Coriolis without its factor",
+        "mechanics.newton_euler:_Accelerations._step",
+        "algebra.number(2)",
+        "algebra.number(1)",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "the centripetal term dropped",
+        "mechanics.newton_euler:_Accelerations._step",
+        "algebra.cross(spin, algebra.cross(spin, motion.offset))",
+        "algebra.zero_vector",
+        "spinning",
+        (PROGRAM, EQUILIBRIUM),
+    ),
+    Mistake(
+        "the cross term w x x' e of an angular acceleration",
+        "mechanics.newton_euler:_Accelerations._step",
+        ", algebra.cross(spin, rate))",
+        ", algebra.zero_vector)",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "the gyroscopic moment dropped",
+        "mechanics.newton_euler:_inertia_wrench",
+        "algebra.cross(spin, algebra.apply(motion.inertia, spin))",
+        "algebra.zero_vector",
+        "spinning",
+        (PROGRAM, EQUILIBRIUM),
+    ),
+    Mistake(
+        "the lever of a tensor about the joint",
+        "mechanics.newton_euler:_inertia_wrench",
+        "origin if about_joint else at_centre",
+        "at_centre",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "the moment that a force has about the previous joint",
+        "mechanics.newton_euler:_Joints.projections",
+        "algebra.cross(motion.offset, carried)",
+        "algebra.zero_vector",
+        "spinning",
+        (PROGRAM, EQUILIBRIUM, LINEARISATION),
+    ),
+    Mistake(
+        "the rate of an angle -q in a projection",
+        "mechanics.newton_euler:_Joints._project",
+        "lower(differentiate(turn.angle, name))",
+        "algebra.one",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "prescribed motions that do not stand still in the mass matrix",
+        "mechanics.programs:programs",
+        "frozen=True",
+        "frozen=False",
+        "machine",
+        (PROGRAM,),
+    ),
+    # --- loads ---
+    Mistake(
+        "the sign of a spring's force function",
+        "mechanics.loads.springs:_spring_force_function",
+        "Fraction(-1, 2)",
+        "Fraction(1, 2)",
+        "spinning",
+        (EQUATIONS, EQUILIBRIUM),
+    ),
+    Mistake(
+        "the sign of a spring's force",
+        "mechanics.loads.springs:_spring_action",
+        "-pull",
+        "pull",
+        "spinning",
+        (PROGRAM, EQUILIBRIUM),
+    ),
+    Mistake(
+        "the sign of a damper",
+        "mechanics.loads.springs:_damper_action",
+        "-scene.algebra.times",
+        "scene.algebra.times",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "a spring between points that repels",
+        "mechanics.loads.springs:_point_spring_action",
+        "pair.action(algebra.scale(algebra.reduce(factor), pair.span))",
+        "pair.action(algebra.scale(algebra.reduce(-factor), pair.span))",
+        "machine",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "a dashpot between points that pushes",
+        "mechanics.loads.springs:_point_damper_action",
+        "subtract(speeds[1], speeds[0])",
+        "subtract(speeds[0], speeds[1])",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "no reaction at the other end of a spring",
+        "mechanics.loads.springs:_Pair.action",
+        "(pull, opposite)",
+        "(pull, pull)",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "the sign of a potential",
+        "mechanics.loads.free:_force_function",
+        "-value if",
+        "value if",
+        "machine",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "the sign of a dissipation function",
+        "mechanics.loads.free:_rayleigh_action",
+        "-scene.lower",
+        "scene.lower",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "a follower force that does not follow",
+        "mechanics.loads.applied:_force_action",
+        "load.axes, load.point.body",
+        '"0", load.point.body',
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "a torque without its reaction",
+        "mechanics.loads.applied:_torque_action",
+        "(load.reaction_on, opposite)",
+        "(None, opposite)",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "the moment of a force about the connection point",
+        "mechanics.loads.interface:force_at",
+        "cross(point, force)",
+        "cross(force, point)",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "the height of a joint in uniform gravity",
+        "mechanics.loads.gravity:_uniform_force_function",
+        "algebra.dot(field[parent], motion.offset)",
+        "algebra.zero",
+        "machine",
+        (EQUATIONS,),
+    ),
+    # --- Newtonian gravity ---
+    Mistake(
+        "the trace term of gravity dropped",
+        "mechanics.loads.gravity:_newtonian_force_function",
+        "second + algebra.times(half, trace)",
+        "second",
+        "orbiting",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "the trace of the mass centre's moment dropped",
+        "mechanics.loads.gravity:_newtonian_force_function",
+        " - algebra.times(half, algebra.dot(c, c))",
+        "",
+        "orbiting",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "the linear term U_1 of gravity dropped",
+        "mechanics.loads.gravity:_newtonian_force_function",
+        "orbit.first - algebra.times(orbit.square, along)",
+        "orbit.first",
+        "orbiting",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "Theta_O for Theta_C: Steiner's term with the wrong sign",
+        "mechanics.loads.gravity:central_inertia",
+        "motion.inertia[i][j] - algebra",
+        "motion.inertia[i][j] + algebra",
+        "orbiting",
+        DYNAMICS,
+    ),
+    Mistake(
+        "the gravity torque reversed",
+        "mechanics.loads.gravity:_newtonian_action",
+        "algebra.cross(e, algebra.apply(tensor, e))",
+        "algebra.cross(algebra.apply(tensor, e), e)",
+        "orbiting",
+        (PROGRAM,),
+    ),
+    Mistake(
+        "the constant pull dropped from the force of gravity",
+        "mechanics.loads.gravity:_newtonian_action",
+        "along - orbit.square",
+        "along",
+        "orbiting",
+        (PROGRAM,),
+    ),
+    # --- Lagrange's equations ---
+    Mistake(
+        "-dT/dq omitted",
+        "problems.equations:equations",
+        "ring.derivative(lagrangian, name)",
+        "ring.derivative(energy.force_function.polynomial, name)",
+        "spinning",
+        (EQUATIONS, EQUILIBRIUM, LINEARISATION),
+    ),
+    Mistake(
+        "prescribed motions dropped from the convective derivative",
+        "problems.equations:convective_rate",
+        "total + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))",
+        "total",
+        "machine",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "one coordinate dropped from the convective derivative",
+        "problems.equations:convective_rate",
+        "in scene.system.coordinates",
+        "in scene.system.coordinates[1:]",
+        "machine",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "the moments dropped from the generalised forces",
+        "mechanics.generalized:generalized_forces",
+        " + ring.dot(wrench.moment, spin)",
+        "",
+        "machine",
+        (EQUATIONS,),
+    ),
+    Mistake(
+        "the derivative of a cosine in the ring",
+        "algebra.ring:Ring._declare_angles",
+        "c: -self._gens[s] * factor",
+        "c: self._gens[s] * factor",
+        "machine",
+        (EQUATIONS,),
+    ),
+    # --- linearisation ---
+    Mistake(
+        "a coefficient in the cosine of a jet",
+        "algebra.jet:Jets._turned",
+        "Fraction(1, 2)",
+        "Fraction(1, 3)",
+        "spinning",
+        (LINEARISATION,),
+    ),
+    Mistake(
+        "the slope of a jet's sine",
+        "algebra.jet:Jets._turned",
+        "s * small_cosine + c * u",
+        "s * small_cosine - c * u",
+        "spinning",
+        (EQUILIBRIUM, LINEARISATION),
+    ),
+    Mistake(
+        "the gyroscopic matrix transposed in one route",
+        "problems.linearisation:by_quadratisation",
+        "mixed[i][j] - mixed[j][i]",
+        "mixed[j][i] - mixed[i][j]",
+        "spinning",
+        (LINEARISATION,),
+    ),
+    Mistake(
+        "G and N exchanged in one route",
+        "problems.linearisation:by_quadratisation",
+        "_assemble(scene, equilibrium, mass, velocity, position,",
+        "_assemble(scene, equilibrium, mass, position, velocity,",
+        "spinning",
+        (LINEARISATION,),
+    ),
+    Mistake(
+        "diagonal second derivatives without their factor",
+        "problems.linearisation:_second",
+        "value * 2 if",
+        "value if",
+        "spinning",
+        (LINEARISATION,),
+    ),
+    Mistake(
+        "velocities forgotten among the applied forces",
+        "problems.linearisation:by_quadratisation",
+        "velocity[i][j] - force.first.get(n + j, ring.zero)",
+        "velocity[i][j]",
+        "spinning",
+        (LINEARISATION,),
+    ),
+]
+
+
+@pytest.mark.parametrize("mistake", CAUGHT, ids=lambda mistake: mistake.what)
+def test_a_planted_mistake_is_caught(monkeypatch: pytest.MonkeyPatch, mistake: Mistake) -> None:
+    plant(monkeypatch, mistake)
+    assert failing(mistake.system) >= set(mistake.caught)

@@ -1,0 +1,320 @@
+"""The shipped systems, the two spellings, files that cannot be read, and texts that wish us ill."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mbsym.expressions.place import Complaint, Span
+from mbsym.expressions.tree import text as written
+from mbsym.model.system import CoordinateSpring, Inertia, PointForce, System, UniformGravity, rational
+from mbsym.source import json_schema, load, read, render, to_text, to_yaml
+from mbsym.source.placed import MAX_TEXT
+
+SYSTEMS = sorted((Path(__file__).parent.parent / "systems").glob("*.yaml"))
+EVERYTHING = Path(__file__).parent / "everything.yaml"
+GOOD = [*SYSTEMS, EVERYTHING]
+
+
+def good(text: str, filename: str = "x.yaml") -> System:
+    system, complaints = read(text, filename)
+    assert system is not None, [render(item, text, filename) for item in complaints]
+    return system
+
+
+def loaded(path: Path) -> System:
+    return good(path.read_text(encoding="utf-8"), path.name)
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_a_good_file_is_read_without_complaint(path: Path) -> None:
+    system, complaints, text = load(path)
+    assert system is not None
+    assert not complaints
+    assert text.startswith("# ")
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_both_spellings_lose_nothing(path: Path) -> None:
+    system = loaded(path)
+    assert good(to_yaml(system)) == system
+    assert good(to_text(system), "x.txt") == system
+    assert good(to_text(system), "<string>") == system
+    assert to_yaml(good(to_text(good(to_yaml(system))), "x.txt")) == to_yaml(system)
+    assert to_text(good(to_yaml(system))) == to_text(system)
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+@pytest.mark.parametrize("rewritten", [False, True])
+def test_the_schema_accepts_good_files(path: Path, rewritten: bool) -> None:
+    text = to_yaml(loaded(path)) if rewritten else path.read_text(encoding="utf-8")
+    jsonschema.Draft202012Validator(json_schema()).validate(yaml.safe_load(text))
+
+
+def test_the_schema_is_a_schema_and_refuses_unknown_keys() -> None:
+    jsonschema.Draft202012Validator.check_schema(json_schema())
+    bad = {"mbsym": 1, "name": "x", "bodies": [{"name": "a", "mas": 1}]}
+    assert list(jsonschema.Draft202012Validator(json_schema()).iter_errors(bad))
+
+
+def test_the_editor_text_of_the_satellite_is_the_same_system() -> None:
+    system, complaints, _ = load(Path(__file__).parent.parent / "systems" / "satellite.txt")
+    assert not complaints
+    assert system == loaded(SYSTEMS[0].parent / "satellite.yaml")
+
+
+def test_the_satellite_is_the_one_of_the_paper() -> None:
+    system = loaded(SYSTEMS[0].parent / "satellite.yaml")
+    assert system.coordinates == ("psi", "theta", "phi", "delta", "sigma")
+    assert [body.rotation.axes for body in system.bodies] == [(3,), (2, 3, 1), (3, 1), ()]
+    assert system.path("point mass") == ("0", "orbital frame", "satellite", "rod", "point mass")
+    assert {one.name: one.sign for one in system.parameters}["r"] == "nonnegative"
+    assert [one.name for one in system.notation] == ["a", "b", "c", "d", "f", "alpha", "gamma", "p1", "p2"]
+    assert not any("gamma > 0" in f"{written(one.left)} {one.relation} 0" for one in system.assumptions)
+
+
+def test_figure_3_in_other_clothes() -> None:
+    """Labels in any case, other brackets, rows without commas, American and British spelling, bodies by number."""
+    text = """MECHANICAL SYSTEM = one body # a comment
+number of bodies = 1
+parameters
+  Jx = 1
+  Jy = 2
+  Jz = 3 ; meaning = "the third; # moment"
+body description ( 1 )
+  name = body
+  previous body number = 0
+  body mass: 2
+  radius vector of mass centre: {0, 0, 0}
+  inertia about: mass centre
+  tensor of inertia
+"""
+    text = text.replace("tensor of inertia\n", "tensor of inertia:\n    Jx 0 0\n    (0, Jy, 0)\n    0, 0, Jz\n")
+    text += "  numbers of rotation axes: {2, 3, 1}\n  rotation angles: (psi, theta, phi)\n"
+    system = good(text, "figure3.txt")
+    assert system.coordinates == ("psi", "theta", "phi")
+    assert system.parameters[2].meaning == "the third; # moment"
+    inertia = system.bodies[0].inertia
+    assert isinstance(inertia, Inertia)
+    assert [written(inertia.tensor[index][index]) for index in range(3)] == ["Jx", "Jy", "Jz"]
+
+
+def test_scalars_are_what_stands_in_the_file() -> None:
+    """No 1:30 = 90, no octal, no booleans; numbers are exact."""
+    text = "mbsym: 1\nname: no\nparameters: {y: 1e-3, n: 0o7}\nbodies:\n  - {name: on, attached to: 0, mass: 010}\n"
+    system, complaints = read(text, "x.yaml")
+    assert system is None
+    assert [item.code for item in complaints] == ["bad-word"]
+    system = good(text.replace("0o7", "0.10"))
+    assert system.name == "no"
+    assert [rational(one.value) for one in system.parameters] == [Fraction(1, 1000), Fraction(1, 10)]
+    assert rational(system.bodies[0].mass) == 10
+
+
+def test_defaults_and_short_forms() -> None:
+    text = """mbsym: 1
+name: short
+parameters: [k, g, P]
+bodies:
+  - {name: a, mass: 1, rotation: {axes: [3, 0, 0], angles: [-x, 0, 0]}}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - force: {body: a, point: [0, 0, 0], components: [-P, 0, 0], axes: a}
+assumptions: ["-1 < k < 1"]
+"""
+    system = good(text)
+    body, (spring, gravity, force) = system.bodies[0], system.loads
+    assert body.attached_to == "0"
+    assert body.coordinates == ("x",)
+    assert body.rotation.axes == (3,)
+    assert isinstance(spring, CoordinateSpring)
+    assert rational(spring.rest) == 0
+    assert isinstance(gravity, UniformGravity)
+    assert written(gravity.acceleration[1]) == "-g"
+    assert isinstance(force, PointForce)
+    assert force.axes == "a"
+    assert [(written(one.left), one.relation, written(one.right)) for one in system.assumptions] == [
+        ("-1", "<", "k"),
+        ("k", "<", "1"),
+    ]
+
+
+# --- files and texts that cannot be read -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [
+        (b"", "empty"),
+        (b"\n\n# only a comment\n", "empty"),
+        (b"\x00\x01\x02", "unreadable"),
+        (b"mbsym: 1\nname: \xff\xfe\n", "not-utf8"),
+        (b"a: 1\n" * 1_000_000, "too-large"),
+        (b"a" * (MAX_TEXT + 1), "too-large"),
+        (b"\x1b[2J", "control-character"),
+    ],
+)
+def test_files_that_are_no_text(tmp_path: Path, content: bytes, code: str) -> None:
+    for name in ("x.yaml", "x.txt", "x"):
+        path = tmp_path / name
+        path.write_bytes(content)
+        system, complaints, _ = load(path)
+        assert system is None
+        assert [item.code for item in complaints] == [code]
+
+
+def test_files_that_are_not_there(tmp_path: Path) -> None:
+    for path in (tmp_path / "absent.yaml", tmp_path, Path("a\0b")):
+        system, complaints, text = load(path)
+        assert (system, text) == (None, "")
+        assert [item.code for item in complaints] == ["unreadable"]
+
+
+HOSTILE = {
+    "nested lists": "[" * 90 + "]" * 90,
+    "open brackets": "[" * 100_000,
+    "nested dashes": "- " * 100_000,
+    "nested mappings": "".join(" " * depth + "a:\n" for depth in range(500)),
+    "nested questions": "? " * 50_000,
+    "laughs": "a: &a [x, x]\n"
+    + "".join(f"{c}: &{c} [*{p}, *{p}]\n" for p, c in zip("abcdefgh", "bcdefghi", strict=True)),
+    "keys": "".join(f"key{number}: 1\n" for number in range(20_000)),
+    "parameters": "mbsym: 1\nparameters:\n" + "".join(f"  p{number}: x\n" for number in range(20_000)),
+    "unknown names": "mbsym: 1\nname: x\nbodies:\n" + "- {name: a, mass: nobody}\n" * 5_000,
+    "surrogate": "mbsym: 1\nname: \ud800\n",
+    "one long line": "name: " + "x" * 200_000,
+    "python tag": "!!python/object/apply:os.system ['true']",
+    "text": "Mechanical system: x\n" + "Parameters\n" * 20_000,
+    "text bodies": "Mechanical system: x\n" + "".join(f"Body description ({n})\n" for n in range(9_000)),
+    "text brackets": "Mechanical system: x\nBody description (1)\n  Rotation angles: " + "(" * 100_000,
+    "text quotes": 'Mechanical system: "' + '\\"' * 50_000,
+    "byte order mark and old line ends": "\ufeffmbsym: 1\rname: x\r",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_texts_end_in_complaints(name: str) -> None:
+    for filename in ("x.yaml", "x.txt", "<string>"):
+        system, complaints = read(HOSTILE[name], filename)
+        assert system is None
+        assert complaints.errors
+        assert len(complaints.items) <= 201
+        assert all(len(render(item, HOSTILE[name], filename)) < 5_000 for item in complaints)
+
+
+def _sum(names: list[str]) -> str:
+    while len(names) > 1:
+        names = [f"({first}*{second})" for first, second in zip(names[::2], names[1::2], strict=False)]
+    return names[0]
+
+
+def test_good_but_monstrous_files_are_read_in_bounded_time() -> None:
+    """Chains of relations that double their size at each step, and long vectors with their derivatives."""
+    chain = "".join(f"  a{n}: a{n + 1}*sqrt(a{n + 1})\n" for n in range(400))
+    names = "".join(f"  a{n}: real\n" for n in range(401))
+    moved = _sum(["cos(x)", "a1"] * 256)
+    text = f"mbsym: 1\nname: x\nparameters:\n{names}relations:\n{chain}values: {{a400: 2}}\nbodies:\n"
+    for number in range(4):
+        rotation = f"{{axes: [3], angles: [{'0' if number else 'x'}]}}"
+        text += f"- {{name: b{number}, attached to: 0, mass: a0, rotation: {rotation},"
+        text += f" connection point: [{moved}, {moved}, 0], relative velocity: [{moved}, 0, 0]}}\n"
+    system, complaints = read(text, "x.yaml")
+    assert system is not None, "a difference that cannot be evaluated (the numbers overflow) is not judged"
+    system, complaints = read(
+        text.replace("a0*sqrt(a1)", "a1").replace("*sqrt(", "+(").replace("{a400: 2}", "{}"), "x.yaml"
+    )
+    assert system is None
+    assert [item.code for item in complaints] == ["relative-velocity"] * 8
+
+
+def test_too_many_complaints_are_cut_off() -> None:
+    text = "mbsym: 1\nname: x\nbodies:\n" + "- {name: a, mass: nobody}\n" * 90 + "loads:\n" + "- x\n" * 90
+    _, complaints = read(text, "x.yaml")
+    assert complaints.items[-1].code == "too-many"
+
+
+EXAMPLES = [path.read_text(encoding="utf-8") for path in GOOD]
+EXAMPLES += [to_text(loaded(path)) for path in GOOD]
+TOKENS = [*"[]{}:#\n\t\"'0(),é", "- ", "&a ", "*a", "!!x ", "---\n", "**"]
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> str:
+    """A good file with characters, tokens or lines deleted, doubled, exchanged or put in."""
+    text = draw(st.sampled_from(EXAMPLES))
+    for _ in range(draw(st.integers(1, 3))):
+        start = draw(st.integers(0, max(0, len(text) - 1)))
+        length = draw(st.sampled_from([0, 1, 1, 5, 30]))
+        piece = text[start : start + length]
+        token = draw(st.sampled_from([*TOKENS, piece, piece + piece, "", draw(st.text(max_size=3))]))
+        if draw(st.booleans()):
+            text = text[:start] + token + text[start + length :]
+        else:
+            lines = text.split("\n")
+            index = draw(st.integers(0, len(lines) - 1))
+            lines[index : index + 1] = draw(st.sampled_from([[], [lines[index]] * 2, [token], [lines[index][2:]]]))
+            text = "\n".join(lines)
+    return text
+
+
+@settings(max_examples=250, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(mutated(), st.sampled_from(["x.yaml", "x.txt", "<string>"]))
+def test_mutations_give_a_system_or_complaints(text: str, filename: str) -> None:
+    system, complaints = read(text, filename)
+    assert (system is None) == bool(complaints.errors)
+    lines = len(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
+    for item in complaints:
+        assert item.span is None or 1 <= item.span.line <= lines
+        assert all(line.isprintable() for line in render(item, text, filename).split("\n"))
+    if system is not None:
+        assert good(to_yaml(system)) == system
+        assert good(to_text(system), "x.txt") == system
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.one_of(st.text(max_size=200), st.binary(max_size=200).map(lambda data: data.decode("latin-1"))))
+def test_noise_gives_complaints(text: str) -> None:
+    for filename in ("x.yaml", "x.txt", "<string>"):
+        system, complaints = read(text, filename)
+        assert system is None
+        assert complaints.errors
+
+
+# --- rendering -------------------------------------------------------------------------------------------------------
+
+
+def test_a_complaint_is_rendered_with_its_line() -> None:
+    complaint = Complaint("unknown-name", "unknown name 'thetta'", Span(2, 15, 6), "did you mean 'theta'?")
+    assert render(complaint, "a\n angles: [psi, thetta]\n", "s.yaml").split("\n") == [
+        "s.yaml:2:15: error[unknown-name]: unknown name 'thetta'",
+        "   2 |  angles: [psi, thetta]",
+        "     |               ^^^^^^",
+        "  hint: did you mean 'theta'?",
+    ]
+
+
+def test_rendering_escapes_and_cuts() -> None:
+    rendered = render(Complaint("x", "bad \x1b[2J", Span(1, 5_001, 3)), "\x1b" * 5_000 + "abc" + "y" * 5_000, "f\n")
+    assert "\x1b" not in rendered
+    assert "abc" in rendered
+    assert max(map(len, rendered.split("\n"))) < 140
+    assert render(Complaint("x", "gone", Span(99, 1)), "one line", "f") == "f:99:1: error[x]: gone"
+
+
+def test_reading_is_light() -> None:
+    """Nothing heavy is imported for reading a file, and a file cannot make us import anything."""
+    program = (
+        "import sys, mbsym.source; "
+        "print([m for m in ('sympy', 'flint', 'numpy', 'scipy', 'jinja2', 'click', 'rich') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,157 @@
+"""What a body can be (inertias, masses) and whether an expression is identically zero."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import Expression
+from mbsym.model.admissibility import (
+    NumberTensor,
+    about_mass_centre,
+    inertia_violation,
+    number_of,
+    second_moments,
+    surely_negative,
+)
+from mbsym.source import read
+from mbsym.source.identity import vanishes
+
+coordinates = st.integers(-9, 9).map(Fraction)
+points = st.tuples(coordinates, coordinates, coordinates)
+clouds = st.lists(st.tuples(st.integers(1, 9).map(Fraction), points), min_size=1, max_size=6)
+
+
+def expression(text: str) -> Expression:
+    tree = parse_expression(text, Complaints(), lambda start, end: Span(1, start + 1, end - start))
+    assert tree is not None
+    return tree
+
+
+def inertia_of(cloud: list[tuple[Fraction, tuple[Fraction, Fraction, Fraction]]]) -> NumberTensor:
+    """J = sum m (r.r 1 - r r^T), straight from the definition."""
+
+    def entry(row: int, column: int) -> Fraction:
+        return sum(
+            (mass * ((sum(x * x for x in r) if row == column else 0) - r[row] * r[column]) for mass, r in cloud),
+            Fraction(0),
+        )
+
+    first, second, third = ((entry(row, 0), entry(row, 1), entry(row, 2)) for row in range(3))
+    return first, second, third
+
+
+@settings(max_examples=100, deadline=None)
+@given(clouds)
+def test_point_masses_are_admissible_about_any_point(cloud: list) -> None:
+    mass = sum((one for one, _ in cloud), Fraction(0))
+    centre = tuple(sum((one * r[axis] for one, r in cloud), Fraction(0)) / mass for axis in range(3))
+    tensor = inertia_of(cloud)
+    moved = [(one, tuple(r[axis] - centre[axis] for axis in range(3))) for one, r in cloud]
+    assert inertia_violation(tensor) is None
+    assert about_mass_centre(tensor, mass, centre) == inertia_of(moved)
+    assert inertia_violation(about_mass_centre(tensor, mass, centre)) is None
+
+
+@settings(max_examples=50, deadline=None)
+@given(clouds)
+def test_a_little_less_than_nothing_is_not_admissible(cloud: list) -> None:
+    """Second moments with a negative eigenvalue belong to no body: here all masses count as negative."""
+    tensor = inertia_of([(-mass, r) for mass, r in cloud])
+    if any(any(row) for row in tensor):
+        assert inertia_violation(tensor) is not None
+
+
+def test_second_moments_of_a_rod() -> None:
+    rod = ((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0),) * 3, (Fraction(0), Fraction(0), Fraction(1)))
+    assert [second_moments(rod)[axis][axis] for axis in range(3)] == [0, 1, 0]
+    assert inertia_violation(rod) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a*b + 1", 7),
+        ("a**-1", Fraction(1, 2)),
+        ("a/(b - 3)", None),
+        ("sqrt(a)", None),
+        ("c", None),
+        ("a**(1/2)", None),
+    ],
+)
+def test_numbers_where_there_are_numbers(text: str, value: Fraction | None) -> None:
+    assert number_of(expression(text), {"a": Fraction(2), "b": Fraction(3)}) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "negative"),
+    [("-m", True), ("-m*l**2", True), ("n", True), ("n*n", False), ("-m - l", True), ("l - m", False), ("n**3", True)],
+)
+def test_signs_that_declarations_force(text: str, negative: bool) -> None:
+    assert surely_negative(expression(text), {"m": "positive", "l": "positive", "n": "negative"}) is negative
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sin(x)**2 + cos(x)**2 - 1",
+        "sin(2*x) - 2*sin(x)*cos(x)",
+        "cos(x - y/3) - cos(x)*cos(y/3) - sin(x)*sin(y/3)",
+        "sin(x + pi/2) - cos(x)",
+        "cos(3*x/2) - 4*cos(x/2)**3 + 3*cos(x/2)",
+        "(a + b)**3 - a**3 - 3*a**2*b - 3*a*b**2 - b**3",
+        "1/(a - b) - (a + b)/(a**2 - b**2)",
+        "tan(x) - sin(x)/cos(x)",
+        "sqrt(a)**2 - a",
+        "exp(a + b) - exp(a)*exp(b)",
+        "sin(a*b)**2 + cos(a*b)**2 - 1",
+        "sinh(a)**2 - cosh(a)**2 + 1",
+    ],
+)
+def test_identities_hold_and_their_neighbours_do_not(text: str) -> None:
+    assert vanishes(expression(text)) is True
+    assert vanishes(expression(f"{text} + a/1000")) is False
+
+
+def test_identities_modulo_relations() -> None:
+    relations = {"nu": expression("omega**2*R**3"), "k": expression("nu/R**3")}
+    assert vanishes(expression("k - omega**2"), relations) is True
+    assert vanishes(expression("k - omega"), relations) is False
+
+
+def test_relations_are_followed_in_any_order() -> None:
+    relations = {"a": expression("b + c"), "b": expression("c**2"), "c": expression("d - 1"), "z": expression("a*b")}
+    assert vanishes(expression("z - a*c**2 + 0*b"), relations) is True
+    assert (
+        vanishes(expression("a + b + c + z - 2*(d - 1)**2 - 2*(d - 1) - ((d - 1)**2 + d - 1)*(d - 1)**2"), relations)
+        is True
+    )
+    assert vanishes(expression("a - b"), relations) is False
+
+
+def test_what_cannot_be_evaluated_is_not_judged() -> None:
+    assert vanishes(expression("log(-1 - a**2)")) is None
+
+
+@pytest.mark.parametrize(("velocity", "good"), [("v + x_dot*cos(x)", True), ("x_dot*cos(x)", False), ("v", False)])
+def test_relative_velocities_follow_prescribed_rates(velocity: str, good: bool) -> None:
+    text = f"""mbsym: 1
+name: velocity
+parameters: [v, w]
+prescribed: {{s: w}}
+bodies:
+  - name: a
+    mass: 1
+    connection point: [sin(x) + s, 0, 0]
+    relative velocity: [{velocity}, 0, 0]
+    coordinates: [x]
+relations: {{w: v}}
+"""
+    system, complaints = read(text, "x.yaml")
+    assert (system is not None) is good
+    assert [item.code for item in complaints] == ([] if good else ["relative-velocity"])
