@@ -1,9 +1,9 @@
 """Systems with published or closed-form answers (``references/``): what is derived equals them exactly.
 
-The answers are read from the reference files as they are written there ("2 g sin(alpha)/3", "qA''"); only where a file
-gives a rule in words is it transcribed.  Not here: the Cartesian pendulum of ``sympy_symbolic_small`` (a constraint with
-a multiplier), rolling disc and hoop of ``mgk_exact`` (nonholonomic), and the branched and massless-body cases of
-``rbdl_open_trees``, for which that file has no numbers.
+The answers are read from the reference files as they stand ("2 g sin(alpha)/3"); only where a file gives a rule in
+words is it transcribed.  Not here: the Cartesian pendulum of ``sympy_symbolic_small`` (a constraint with a multiplier),
+rolling disc and hoop of ``mgk_exact`` (nonholonomic), and the branched and massless-body cases of ``rbdl_open_trees``,
+for which that file has no numbers.
 """
 
 # ruff: noqa: SIM300
@@ -118,7 +118,9 @@ def test_reading_of_prose() -> None:
 
 # --- sympy_symbolic_small ---
 
-SMALL = {item["name"].split(",")[0].split(" (")[0]: item for item in reference("sympy_symbolic_small")["reference"]["items"]}
+SMALL = {
+    item["name"].split(",")[0].split(" (")[0]: item for item in reference("sympy_symbolic_small")["reference"]["items"]
+}
 
 
 def test_disc_on_incline() -> None:
@@ -439,7 +441,7 @@ ZIEGLER = reference("ziegler")["reference"]
 def test_ziegler_matrices() -> None:
     a = mbsym.load(SHIPPED / "ziegler-damped.yaml")
     exact, linear = Exact(a), a.linearisation
-    assert linear.M == matrix(exact, ZIEGLER["M"] and [[str(x) for x in row] for row in ZIEGLER["M"]], "m*l**2")
+    assert linear.M == matrix(exact, [[str(x) for x in row] for row in ZIEGLER["M"]], "m*l**2")
     assert linear.D == matrix(exact, ZIEGLER["D"])
     assert linear.G.is_zero
     stiffness = [
@@ -510,7 +512,10 @@ def test_ziegler_critical_load_with_damping() -> None:
 def test_ziegler_damped_verdicts(b: str) -> None:
     """b = 1e-8 must give 41/28, not the undamped 2.086; on the border nothing is called stable."""
     border = Fraction(41, 28) + Fraction(b) ** 2 / 2
-    for p, expected in ((border - Fraction(1, 10**20), "asymptotically stable"), (border + Fraction(1, 10**20), "unstable")):
+    for p, expected in (
+        (border - Fraction(1, 10**20), "asymptotically stable"),
+        (border + Fraction(1, 10**20), "unstable"),
+    ):
         assert word(at_values(SHIPPED / "ziegler-damped.yaml", m=1, l=1, k=1, b1=b, b2=b, P=p)) == expected
     on_border = word(at_values(SHIPPED / "ziegler-damped.yaml", m=1, l=1, k=1, b1=b, b2=b, P=border))
     assert on_border in ("undecided", "stable in first approximation only, critical")
@@ -538,7 +543,9 @@ def test_spring_pendulum_energies() -> None:
     assert not any(a.ring.depends_on(difference, name) for name in ("theta", "r"))
 
 
-@pytest.mark.parametrize("path", [SHIPPED / "spring-pendulum.yaml", OWN / "spring-pendulum-free.yaml"], ids=["given", "free"])
+@pytest.mark.parametrize(
+    "path", [SHIPPED / "spring-pendulum.yaml", OWN / "spring-pendulum-free.yaml"], ids=["given", "free"]
+)
 def test_spring_pendulum_frequencies(path: Any) -> None:
     """With r0 free the condition of existence is found and used in the matrices."""
     a = mbsym.load(path)
@@ -566,7 +573,8 @@ def test_spring_pendulum_condition_of_existence() -> None:
     ((name, value),) = found.solved
     assert name == "r0"
     assert value == r0
-    assert not any(a.ring.depends_on(x.polynomial, "r0") for m in a.linearisation.matrices for row in m for x in row)
+    free = a.ring.index("parameter", "r0")
+    assert all(x.polynomial.degrees()[free] <= 0 for m in a.linearisation.matrices for row in m for x in row)
 
 
 def test_spring_pendulum_resonance() -> None:
@@ -576,7 +584,8 @@ def test_spring_pendulum_resonance() -> None:
     i, j = linear.coordinates.index("r"), linear.coordinates.index("theta")
     detuning = Formula(
         a.ring,
-        linear.K[i, i].polynomial * linear.M[j, j].polynomial - 4 * linear.K[j, j].polynomial * linear.M[i, i].polynomial,
+        linear.K[i, i].polynomial * linear.M[j, j].polynomial
+        - 4 * linear.K[j, j].polynomial * linear.M[i, i].polynomial,
     )
     assert put(detuning, l0=exact("3*m*g/k")) == 0
     assert detuning == exact("m*(l0 + m*g/k)*(k*l0 - 3*m*g)")
@@ -613,6 +622,13 @@ def test_sleeping_top_on_both_sides_of_the_threshold(spin: str, expected: set[st
     assert not word(a).startswith(("stable", "asymptotically stable"))
     if expected == {"unstable"}:
         assert word(a) == "unstable"
+
+
+@pytest.mark.xfail(strict=True, reason="a cyclic coordinate that is a subsystem by itself makes the whole undecided")
+def test_sleeping_top_as_a_whole() -> None:
+    """The spin is cyclic and uncoupled in the first approximation; it must not hide the verdict on the axis."""
+    a = at_values(SHIPPED / "heavy-top.yaml", A=1, C=2, m=1, g=1, l=1, Omega="1.1")
+    assert word(a) == "gyroscopically stabilised only"
 
 
 @pytest.mark.parametrize("moments", [(1, 2, "2.5"), ("2.5", 2, 1)])
@@ -654,14 +670,18 @@ def test_gyroscopic_stabilisation_and_its_loss(g: str, d: Any, expected: set[str
         assert max(np.roots(coefficients[::-1]).real) == pytest.approx(printed, rel=1e-6)
 
 
+@pytest.mark.xfail(strict=True, reason="SubsystemStability.conditions shows 1 > 0 where d != 0 is left")
+def test_conditions_are_never_constants() -> None:
+    a = mbsym.load(OWN / "gyroscopic-pair.yaml")
+    assert not any(formula.polynomial.is_constant() for _, formula, _ in part(a, "x", "y").conditions)
+
+
 def test_rotating_shaft() -> None:
     a = mbsym.load(OWN / "rotating-shaft.yaml")
     exact = Exact(a)
     left, right = MGK["rotating_shaft"].split("stable iff")[1].split("<")
     (condition,) = part(a, "x", "y").conditions
     assert proportional(exact, condition[1], exact(f"di*(({prose(right)}) - ({prose(left)}))"))
-    for speed, expected in (("7.99", "asymptotically stable"), ("8.01", "unstable")):
+    critical = "stable in first approximation only, critical"
+    for speed, expected in (("7.99", "asymptotically stable"), ("8", critical), ("8.01", "unstable")):
         assert word(at_values(OWN / "rotating-shaft.yaml", w0=2, de="0.3", di="0.1", Omega=speed)) == expected
-    assert "stable" not in word(at_values(OWN / "rotating-shaft.yaml", w0=2, de="0.3", di="0.1", Omega=8)).split(" in ")[0] or (
-        word(at_values(OWN / "rotating-shaft.yaml", w0=2, de="0.3", di="0.1", Omega=8)) == "stable in first approximation only, critical"
-    )

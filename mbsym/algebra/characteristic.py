@@ -20,6 +20,9 @@ Matrix = Sequence[Sequence[Polynomial]]
 #: Products of terms that one determinant may cost (about a second): what is larger nobody reads.
 BUDGET = 4_000_000
 
+#: Terms of a characteristic polynomial that is still factored and judged in symbols.
+LONGEST = 12_000
+
 
 class TooLargeError(Exception):
     """A formula that is not written out, because it would be too long to compute or to read."""
@@ -63,7 +66,10 @@ def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
     if n == 0 or any(len(rows) != n or any(len(row) != n for row in rows) for rows in (m, c, k)):
         raise ValueError("M, C and K must be square matrices of one size")
     lam = _Variable(m[0][0].context())
-    return lam.coefficients(determinant(_pencil(lam, m, c, k)), 2 * n)
+    value = determinant(_pencil(lam, m, c, k))
+    if len(value) > LONGEST:
+        raise TooLargeError(f"a characteristic polynomial of {len(value)} terms")
+    return lam.coefficients(value, 2 * n)
 
 
 def is_semisimple(m: Matrix, c: Matrix, k: Matrix, factor: Coefficients, multiplicity: int) -> bool:

@@ -42,7 +42,7 @@ from mbsym.algebra.characteristic import (
     subdiscriminants,
 )
 from mbsym.algebra.roots import RootCount, count_roots, rational
-from mbsym.algebra.signs import Condition, Signs, conditions
+from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 
 Numbers = Any  # a flint.fmpq_mat
 
@@ -267,10 +267,12 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Stability:
 
 
 def _analyse(system: LinearSystem, signs: Signs) -> Stability:
+    raw = characteristic_polynomial(system.M, _add(system.D, system.G), _add(system.K, system.N))
     mass = definiteness(system.M, signs, "M")
     # A mass matrix is positive definite, so its minors may be used to judge everything else.
-    known = signs.assuming((r.polynomial, ">") for r in mass.requirements if not r.polynomial.is_constant())
-    raw = characteristic_polynomial(system.M, _add(system.D, system.G), _add(system.K, system.N))
+    # Long ones would cost the search for combinations more than they can give.
+    minors = [r.polynomial for r in mass.requirements]
+    known = signs.assuming((p, ">") for p in minors if not p.is_constant() and len(p) <= MOST_TERMS)
     start = Stability(
         kind=kind_of(system),
         characteristic=raw,
@@ -490,12 +492,25 @@ def _cases_with_zero_roots(
     unstable = _unstable(found.requirements, known)
     if not system.cyclic:
         return unstable, None
+    if _only_momenta(system):
+        return (Case((), (), _coasting()),), None
     if _momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=_drifting(c.verdict)) for c in reduced.cases), reduced
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
         return (Case(found.requirements, (), _drifting(_asymptotic())), *unstable), None
     return unstable, None
+
+
+def _only_momenta(system: LinearSystem) -> bool:
+    """Whether all coordinates are cyclic and nothing acts on them: M q'' = 0."""
+    idle = all(_is_zero(matrix) for matrix in (system.D, system.G, system.K, system.N))
+    return system.conservative and idle and len(system.cyclic) == system.size
+
+
+def _coasting() -> Verdict:
+    why = "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs."
+    return Verdict(STABLE_BUT_CYCLIC, "", why)
 
 
 def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
@@ -658,6 +673,8 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
         return PointVerdict(_judge(m, d, g, k, n, system.conservative), characteristic, roots)
     if roots.left + len(system.cyclic) == 2 * system.size:
         return PointVerdict(_drifting(_asymptotic()), characteristic, roots)
+    if _only_momenta(system):
+        return PointVerdict(_coasting(), characteristic, roots)
     if _momenta_are_constant(system):
         reduced = verdict_at(ignoring_cyclic(system), point)
         return PointVerdict(_drifting(reduced.verdict), characteristic, roots)
