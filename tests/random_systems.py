@@ -9,17 +9,16 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import Any
 from zlib import crc32
 
-from flint import arb, fmpq
+from flint import fmpq
 from hypothesis import strategies as st
 
 import mbsym
-from mbsym.algebra.base import NotRational, Scalar
+from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.point import Rationals
 from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import State
 
@@ -175,13 +174,13 @@ def systems(
         description["prescribed"] = {"chi": "Omega"}
     if loads and known:
         description["loads"] = draw(st.lists(all_loads(description), max_size=3))
+        if irrational:
+            description["loads"].append(draw(irrational_loads(description)))
         spelled = draw(st.sampled_from(["potential", "force function"]))  # a file spells it one way
         description["loads"] = [
             {spelled: next(iter(load.values()))} if {"potential", "force function"} & load.keys() else load
             for load in description["loads"]
         ]
-        if irrational:
-            description["loads"].append(draw(irrational_loads(description)))
     return description
 
 
@@ -346,21 +345,3 @@ def motion_numbers(analysis: Analysis, called: Callable[[str], str] = lambda nam
 
 def clone(description: Description) -> Description:
     return copy.deepcopy(description)
-
-
-__all__ = [
-    "Balls",
-    "Description",
-    "Fraction",
-    "NotRational",
-    "analysed",
-    "arb",
-    "clone",
-    "coordinates",
-    "motion_numbers",
-    "orbiting",
-    "resting",
-    "spinning",
-    "state",
-    "systems",
-]

@@ -624,7 +624,6 @@ def test_sleeping_top_on_both_sides_of_the_threshold(spin: str, expected: set[st
         assert word(a) == "unstable"
 
 
-@pytest.mark.xfail(strict=True, reason="a cyclic coordinate that is a subsystem by itself makes the whole undecided")
 def test_sleeping_top_as_a_whole() -> None:
     """The spin is cyclic and uncoupled in the first approximation; it must not hide the verdict on the axis."""
     a = at_values(SHIPPED / "heavy-top.yaml", A=1, C=2, m=1, g=1, l=1, Omega="1.1")
@@ -670,7 +669,6 @@ def test_gyroscopic_stabilisation_and_its_loss(g: str, d: Any, expected: set[str
         assert max(np.roots(coefficients[::-1]).real) == pytest.approx(printed, rel=1e-6)
 
 
-@pytest.mark.xfail(strict=True, reason="SubsystemStability.conditions shows 1 > 0 where d != 0 is left")
 def test_conditions_are_never_constants() -> None:
     a = mbsym.load(OWN / "gyroscopic-pair.yaml")
     assert not any(formula.polynomial.is_constant() for _, formula, _ in part(a, "x", "y").conditions)

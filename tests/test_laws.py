@@ -19,6 +19,7 @@ from random_systems import (
     orbiting,
     resting,
     spinning,
+    state,
     systems,
     vectors,
 )
@@ -27,6 +28,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
 from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import rational_states
 from mbsym.problems.checks import EXACT, NUMERICAL
 
@@ -185,6 +187,30 @@ def test_forces_are_gradients_of_force_functions(description: Description) -> No
         slope = ring.derivative(analysis.energy.force_function.polynomial, name)
         applied = analysis.equations.generalized_force[i].polynomial
         assert ring.is_zero(without[name] - with_loads[name] - slope - applied) is True
+
+
+@law
+@given(st.one_of(systems(driven=False), orbiting(), spinning()))
+def test_first_integrals_are_conserved(description: Description) -> None:
+    """dI/dt = 0 exactly along the Taylor series of a motion that obeys the equations."""
+    analysis = analysed(description, (3, 7))
+    assume(analysis.system.coordinates)
+    here = accelerated(analysis, state(analysis))
+    moving = Oracle(analysis.system, here).moving
+    carry = Carrier(analysis.ring, moving.algebra, moving.lower.environment)
+    for integral in analysis.integrals:
+        assert carry(integral.formula.polynomial).b == 0, integral
+
+
+def accelerated(analysis: Analysis, here: State) -> State:
+    """The state with the accelerations that the equations give it."""
+    carry = Carrier(analysis.ring, here.numbers, here.values)
+    names = analysis.system.coordinates
+    n = len(names)
+    mass = fmpq_mat(n, n, [carry(x) for row in analysis.equations.mass_matrix.polynomials for x in row])
+    assume(mass.det() != 0)
+    solved = mass.solve(fmpq_mat(n, 1, [carry(x.polynomial) for x in analysis.equations.forcing]))
+    return State(here.numbers, {**here.values, **{name + "_ddot": solved[i, 0] for i, name in enumerate(names)}})
 
 
 # --- what must not matter ---

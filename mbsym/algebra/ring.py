@@ -483,6 +483,10 @@ class ParameterRing(Ring):
         """A polynomial of the whole ring in these parameters only."""
         return x.project_to_context(self.context)
 
+    def lift(self, x: Polynomial) -> Polynomial:
+        """A polynomial of this ring in the whole ring."""
+        return x.project_to_context(self.whole.context)
+
 
 class _Evaluation:
     """Evaluates polynomials at ball values of the declared names; generators are computed on demand."""

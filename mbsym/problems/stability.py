@@ -60,17 +60,31 @@ class SubsystemStability:
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
-        """Coefficients of the primitive polynomial, from low to high powers of lambda."""
-        ring = self.ring
-        zero = (ring.zero,) * self.theory.zero_power
-        return tuple(Formula(ring, x) for x in (*zero, *self.theory.polynomial))
+        """Coefficients of the primitive polynomial, from low to high powers of lambda, in the system's ring."""
+        zero = (self.ring.zero,) * self.theory.zero_power
+        return tuple(self._formula(x) for x in (*zero, *self.theory.polynomial))
 
     @property
     def conditions(self) -> tuple[tuple[str, Formula, str], ...]:
-        """(label, polynomial, relation to 0) of every condition that is not known to hold."""
-        ring = self.ring
-        open_ = [r for r in self.theory.requirements if not r.always]
-        return tuple((r.label, Formula(ring, r.condition.polynomial), r.relation) for r in open_)
+        """(label, polynomial, relation to 0) of every condition that is not known to hold, in the system's ring.
+
+        Known-positive factors are dropped; one that cannot hold is given as it arose.
+        """
+        found = []
+        for wanted in self.theory.requirements:
+            condition = wanted.condition
+            if wanted.always:
+                continue
+            if condition.kind == "inequality":
+                found.append((wanted.label, self._formula(condition.polynomial), wanted.relation))
+            elif condition.kind != "nonzero":
+                found.append((wanted.label, self._formula(wanted.polynomial), wanted.relation))
+            found += [(wanted.label, self._formula(x), "!=") for x in condition.nonzero]
+        return tuple(found)
+
+    def _formula(self, x: Polynomial) -> Formula:
+        whole = self.factor.ring
+        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else x)
 
 
 @dataclass(frozen=True)

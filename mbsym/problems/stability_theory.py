@@ -493,7 +493,8 @@ def _cases_with_zero_roots(
     if not system.cyclic:
         return unstable, None
     if _only_momenta(system):
-        return (Case((), (), _coasting()),), None
+        by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+        return (Case(by_mass, (), _coasting()),), None
     if _momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=_drifting(c.verdict)) for c in reduced.cases), reduced

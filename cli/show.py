@@ -1,0 +1,53 @@
+"""The summary of a run on the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.padding import Padding
+from rich.text import Text
+
+from mbsym_cli.console import console
+
+if TYPE_CHECKING:
+    from mbsym.problems.checks import Check
+    from mbsym.report.summary import Line, Summary
+
+_COLOURS = {"exact": "green", "verified numerically": "green", "undecided": "yellow", "FAILED": "bold red"}
+
+
+def show(found: Summary, path: Path, seconds: float) -> None:
+    """Problems with what they gave and the seconds they took, the self-check, and where the files are."""
+    out = console()
+    out.print(Text.assemble((found.system, "bold"), (f"  {path}, {seconds:.2f} s", "dim")))
+    for line in found.problems:
+        _problem(line)
+    _checks(found.checks)
+    if found.files:
+        names = ", ".join(path.name for path in found.files)
+        out.print(Text.assemble("  files in ", (str(found.files[0].parent), "bold"), f": {names}"))
+
+
+def _problem(line: Line) -> None:
+    seconds = (f"  {line.seconds:.3f} s", "dim")
+    console().print(Text.assemble("  ", (f"{line.number} {line.title}", "bold cyan"), seconds))
+    for text in line.lines:
+        indent = 4 + len(text) - len(text.lstrip())
+        _indented(Text(text.strip(), style="" if line.available else "yellow"), indent)
+
+
+def _indented(text: Text, indent: int) -> None:
+    """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
+    out = console()
+    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)
+
+
+def _checks(checks: tuple[Check, ...]) -> None:
+    if not checks:
+        return
+    console().print(Text("  self-check: two independent routes each", style="bold cyan"))
+    width = max(len(check.name) for check in checks)
+    for check in checks:
+        outcome = f"{check.outcome} ({check.detail})" if check.detail else check.outcome
+        _indented(Text.assemble(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome])), 4)
