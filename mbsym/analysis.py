@@ -32,6 +32,14 @@ from mbsym.problems import (
     linearisation,
     stability,
 )
+from mbsym.problems.checks import Check
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
 
 
 @dataclass(frozen=True)
@@ -191,15 +199,15 @@ class Analysis:
     # --- the numbered problems ---
 
     @property
-    def kinematics(self) -> kinematics.Kinematics:
+    def kinematics(self) -> Kinematics:
         return self._result("kinematics", lambda: kinematics.kinematics(self.scene))
 
     @property
-    def energy(self) -> energy.Energy:
+    def energy(self) -> Energy:
         return self._result("energy", lambda: energy.energy(self.scene))
 
     @property
-    def equations(self) -> equations.Equations:
+    def equations(self) -> Equations:
         return self._result("equations", lambda: equations.equations(self.scene, self.energy))
 
     @property
@@ -211,18 +219,18 @@ class Analysis:
         return column(self.ring, [-x.value for x in residuals(self.expanded).values()])
 
     @property
-    def equilibrium(self) -> equilibrium.Equilibrium:
+    def equilibrium(self) -> Equilibrium:
         return self._result("equilibrium", self._equilibrium)
 
-    def _equilibrium(self) -> equilibrium.Equilibrium:
+    def _equilibrium(self) -> Equilibrium:
         forcing = [x.polynomial for x in self.residuals]
         return equilibrium.equilibrium(self.parameters_scene, forcing, self.signs)
 
     @property
-    def linearisation(self) -> linearisation.Linearisation:
+    def linearisation(self) -> Linearisation:
         return self._result("linearisation", self._linearisation)
 
-    def _linearisation(self) -> linearisation.Linearisation:
+    def _linearisation(self) -> Linearisation:
         if self.equilibrium.impossible:
             never = ", ".join(f"{item} = 0" for item in self.equilibrium.impossible)
             raise Unavailable("motion", NoResult(f"the given motion does not exist: {never} is impossible"))
@@ -233,27 +241,27 @@ class Analysis:
         return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
 
     @property
-    def stability(self) -> stability.Stability:
+    def stability(self) -> Stability:
         return self._result("stability", self._stability)
 
-    def _stability(self) -> stability.Stability:
+    def _stability(self) -> Stability:
         linear, energies = self.linearisation, self._optional("energy")
         cyclic = () if energies is None else energies.cyclic
         conserved = stability.conserves_energy(self.parameters_scene, energies)
         return stability.stability(self.parameters_scene, conserved, cyclic, linear, self.signs)
 
     @property
-    def integrals(self) -> tuple[integrals.Integral, ...]:
+    def integrals(self) -> tuple[Integral, ...]:
         return self._result("integrals", lambda: integrals.integrals(self.scene, self.energy, self.equations))
 
     # --- self-check ---
 
     @property
-    def checks(self) -> tuple[checks.Check, ...]:
+    def checks(self) -> tuple[Check, ...]:
         """Every result of the asked-for problems that has a second route, compared with it."""
         return self._result("checks", self._checks)
 
-    def _checks(self) -> tuple[checks.Check, ...]:
+    def _checks(self) -> tuple[Check, ...]:
         system, ring, done = self.system, self.ring, []
         closed = self._optional("equations") if 3 in self.problems else None
         if 1 in self.problems and (own := self._optional("kinematics")) is not None:
@@ -265,8 +273,8 @@ class Analysis:
         if 3 in self.problems and (own := self._optional("programs")) is not None:
             done.append(checks.check_program(system, ring, own))
         if closed is not None and 4 in self.problems and (own := self._optional("equilibrium")) is not None:
-            second = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
-            done.append(checks.check_residuals(ring, own.residuals, second.residuals))
+            again = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
+            done.append(checks.check_residuals(ring, own.residuals, again.residuals))
         if closed is not None and 5 in self.problems and (own := self._optional("linearisation")) is not None:
             second = linearisation.by_equations(self.scene, closed, self.equilibrium)
             done.append(checks.check_linearisation(ring, own, second))

@@ -134,8 +134,8 @@ PASSIVE = ("fixed", "driven", "driven slide")
 @st.composite
 def systems(
     draw: Draw,
-    most: int = 3,
-    most_coordinates: int = 4,
+    most: int = 4,
+    most_coordinates: int = 5,
     loads: bool = True,
     driven: bool = True,
     solid: bool = False,

@@ -149,16 +149,14 @@ def parameters(text_: str) -> Polynomial:
         ("-3*a*Jx + 3*a*K", "3*a*(K - Jx)"),
         ("a**2 + 2*a*b + b**2", "(a + b)**2"),
         ("(a + Jx)*(b + 3) - 4*K*(a + 1)", "(a + Jx)*(b + 3) - 4*K*(a + 1)"),
-        ("K + a*b**2/3 + a*b*Jx + a*Jx**2", "K + a*(b**2 + 3*b*Jx + 3*Jx**2)/3"),
+        ("b + a*Jx*(K + Jx) + a*K**2", "a*(Jx**2 + K*Jx + K**2) + b"),
     ],
 )
 def test_parameters_are_collected_and_factored(polynomial, text):
     found = parameters(polynomial)
     shown = python_text(RING, found)
     assert parameters(shown) == found
-    assert len(shown) == len(text)
-    if polynomial != "K + a*b**2/3 + a*b*Jx + a*Jx**2":
-        assert shown == text
+    assert shown == text
 
 
 def test_motion_is_collected_before_parameters():
@@ -254,17 +252,17 @@ def test_different_names_stay_different(names):
 
 def test_thirty_thousand_terms_are_printed():
     source = random.Random(1)
-    ring = Ring([f"q{k}" for k in range(6)], (), [f"m{k}" for k in range(6)], {f"q{k}": 1 for k in range(6)})
+    ring = Ring([f"q{k}" for k in range(6)], (), [f"m{k}" for k in range(8)], {f"q{k}": 1 for k in range(6)})
     kinds = ["sine", "cosine"]
     exponents = {}
     while len(exponents) < 30_000:
         monomial = [0] * len(ring.generators)
         monomial[ring.index("velocity", f"q{source.randrange(6)}")] += 1
         monomial[ring.index("velocity", f"q{source.randrange(6)}")] += 1
-        for k in range(5):
+        for k in range(6):
             monomial[ring.index(source.choice(kinds), f"q{k}")] = 1
-        monomial[ring.index("parameter", f"m{source.randrange(6)}")] += 1
-        monomial[ring.index("parameter", f"m{source.randrange(6)}")] += 1
+        monomial[ring.index("parameter", f"m{source.randrange(8)}")] += 1
+        monomial[ring.index("parameter", f"m{source.randrange(8)}")] += 1
         exponents[tuple(monomial)] = fmpq(source.randint(1, 5), 6)
     text = python_text(ring, ring.context.from_dict(exponents))
     assert text.count("(") == text.count(")")

@@ -6,6 +6,13 @@ with U the force function (U = -potential energy) of all loads that have one.  A
 cyclic if L does not contain it (its velocity may occur).
 
 Source: Banshchikov & Vetrov, eq. (1).
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> print(pendulum.energy.A2, pendulum.energy.force_function)
+    [[m*l**2 + J]] m*l*g*cos(theta)
 """
 
 from __future__ import annotations

@@ -7,6 +7,13 @@
 where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
 
 Source: Banshchikov & Vetrov, Problem 3.
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> pendulum.equations.forcing
+    (Formula(-b*theta_dot - m*l*g*sin(theta)),)
 """
 
 from __future__ import annotations

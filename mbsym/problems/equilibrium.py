@@ -6,6 +6,13 @@ that cannot vanish dropped.  A condition that a parameter enters linearly is sol
 with the solution.
 
 Source: Banshchikov & Vetrov, Problem 4.
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> pendulum.equilibrium.satisfied
+    True
 """
 
 from __future__ import annotations

@@ -12,6 +12,13 @@ An expression I(q, q', t) is an integral if dI/dt vanishes by virtue of the equa
 ``status`` is "proved" (an identity of the ring) or "verified numerically" (exact at random rational states).
 
 Source: Banshchikov & Vetrov (first integrals); the generalised energy is Jacobi's.
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/spring-pendulum.yaml")
+    >>> [(integral.name, integral.status) for integral in pendulum.integrals]
+    [('generalised energy', 'proved')]
 """
 
 from __future__ import annotations

@@ -9,6 +9,13 @@ For every body B_k attached to B_j, in the axes of body k:
     V_Ck = V_Ok + omega_k x r^k_Ck
 
 Source: Banshchikov & Vetrov, Problem 1 (which prints omega_k x r^j_Ok; r^j_Ok is fixed in body j, so it is omega_j).
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> pendulum.kinematics.body("pendulum").velocity_mass_centre
+    (Formula(l*theta_dot), Formula(0), Formula(0))
 """
 
 from __future__ import annotations

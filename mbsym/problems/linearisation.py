@@ -10,6 +10,15 @@ with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (ci
 
 Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
 tau = w t: M stays, D and G are divided by w, K and N by w^2.
+
+Source: Banshchikov & Vetrov, Problem 5 and eq. (3).
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> print(pendulum.linearisation.M, pendulum.linearisation.D, pendulum.linearisation.K)
+    [[m*l**2 + J]] [[b]] [[m*l*g]]
 """
 
 from __future__ import annotations

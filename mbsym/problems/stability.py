@@ -14,6 +14,13 @@ gyroscopically stabilised only; stable in first approximation only, critical; un
 parameters it comes as cases, and at numerical values it is decided exactly.
 
 Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
+    >>> pendulum.stability.verdict.word, pendulum.stability.verdict.theorem
+    ('asymptotically stable', 'Kelvin-Chetaev')
 """
 
 from __future__ import annotations

@@ -1,0 +1,184 @@
+"""The command line: exit codes, what is written and what is not, batches, problem selection, explanations."""
+
+from __future__ import annotations
+
+import doctest
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym.analysis import PROBLEMS
+from mbsym_cli import files
+from mbsym_cli.main import COMMANDS, main
+
+ROOT = Path(__file__).parent.parent
+SYSTEMS = ROOT / "systems"
+PENDULUM = SYSTEMS / "simple-pendulum.yaml"
+
+
+def mbsym(*words: object) -> Result:
+    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+
+
+def test_run_writes_all_reports(tmp_path: Path) -> None:
+    done = mbsym("run", PENDULUM, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"report.tex", "report.wl", "model.py", "results.json"}
+    assert "self-check" in done.stdout
+    assert "exact" in done.stdout
+
+
+def test_format_and_problems_choose(tmp_path: Path) -> None:
+    done = mbsym("run", PENDULUM, "--out", tmp_path, "--format", "json", "--problems", "1-2,4")
+    assert done.exit_code == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["results.json"]
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert {"kinematics", "energy", "equilibrium", "checks"} <= set(results)
+    assert not {"equations", "linearisation", "stability", "integrals"} & set(results)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "hint"),
+    [
+        ("--problems", "9", "1 to 7"),
+        ("--problems", "x", "1-5"),
+        ("--problems", "5-1", "problem"),
+        ("--format", "word", "latex"),
+    ],
+)
+def test_wrong_choices_are_explained(option: str, value: str, hint: str, tmp_path: Path) -> None:
+    done = mbsym("run", PENDULUM, option, value, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert hint in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_bad_input_writes_nothing_and_does_not_stop_the_others(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(PENDULUM.read_text().replace("mass: m", "mass: mm"))
+    done = mbsym("run", bad, PENDULUM, tmp_path / "missing.yaml", "--out", tmp_path / "out", "-f", "json", "-p", "1")
+    assert done.exit_code == 2
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["simple-pendulum"]
+    assert "bad.yaml:" in done.stderr
+    assert "missing.yaml" in done.stderr
+    assert "Traceback" not in done.output
+
+
+def test_a_folder_stands_for_its_descriptions(tmp_path: Path) -> None:
+    folder = tmp_path / "several"
+    folder.mkdir()
+    for name in ("a.yaml", "b.yaml"):
+        (folder / name).write_text(PENDULUM.read_text())
+    (folder / "notes.md").write_text("not a description")
+    (folder / "a.txt").write_text(mbsym("convert", PENDULUM).stdout)
+    done = mbsym("run", folder, "--out", tmp_path / "out", "-f", "json", "-p", "1")
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"a", "a.yaml", "b"}
+
+
+def test_failed_self_check_is_exit_code_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A planted mistake in the kinetic energy: reports are still written, and say so."""
+    from mbsym.algebra.ring import Ring
+    from mbsym.problems import energy
+
+    honest = energy.kinetic_energy
+    monkeypatch.setattr(energy, "kinetic_energy", lambda scene: honest(scene) * Ring.number(scene.ring, 2))
+    done = mbsym("run", PENDULUM, "--out", tmp_path, "-f", "json")
+    assert done.exit_code == 1
+    assert "SELF-CHECK FAILED" in done.stderr
+    outcomes = {check["outcome"] for check in json.loads((tmp_path / "results.json").read_text())["checks"]}
+    assert "FAILED" in outcomes
+
+
+def test_output_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    done = mbsym("run", PENDULUM, "--out", tmp_path / "file" / "out", "-f", "json", "-p", "1")
+    assert done.exit_code == 1
+    assert "cannot be written" in done.stderr
+
+
+def test_writing_is_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "report.tex"
+    target.write_text("old")
+
+    def refuse(*_: object) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(OSError, match="disk full"):
+        files.write_whole(target, "new")
+    assert target.read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["report.tex"]
+
+
+def test_a_result_that_cannot_be_had_is_said_not_raised(tmp_path: Path) -> None:
+    """No unperturbed motion, and a budget too small for closed formulas: the rest still comes out."""
+    text = re.sub(r"^motion:.*?(?=^\w|\Z)", "", (SYSTEMS / "spatial-arm.yaml").read_text(), flags=re.DOTALL | re.MULTILINE)
+    arm = tmp_path / "arm.yaml"
+    arm.write_text(text)
+    done = mbsym("run", arm, "--out", tmp_path / "out", "--terms", 200)
+    assert done.exit_code == 0, done.output
+    assert "no unperturbed motion" in done.stdout
+    assert "budget" in done.stdout
+    assert "straight-line program  exact" in done.stdout
+    unavailable = json.loads((tmp_path / "out" / "results.json").read_text())["unavailable"]
+    assert {"energy", "equations", "equilibrium", "stability"} <= set(unavailable)
+
+
+def test_check_says_what_it_read() -> None:
+    done = mbsym("check", SYSTEMS / "satellite.yaml", SYSTEMS / "satellite.txt")
+    assert done.exit_code == 0
+    assert done.stdout.count("5 degrees of freedom") == 2
+
+
+def test_convert_there_and_back(tmp_path: Path) -> None:
+    assert mbsym("convert", SYSTEMS / "satellite.yaml", "--out", tmp_path / "s.txt").exit_code == 0
+    assert mbsym("convert", tmp_path / "s.txt", "--out", tmp_path / "s.yaml").exit_code == 0
+    again = mbsym("convert", tmp_path / "s.yaml", "--to", "text")
+    assert again.stdout == (tmp_path / "s.txt").read_text()
+
+
+def test_schema_is_json() -> None:
+    assert json.loads(mbsym("schema").stdout)["type"] == "object"
+
+
+@pytest.mark.parametrize("number", PROBLEMS)
+def test_explain(number: int) -> None:
+    done = mbsym("explain", number)
+    assert done.exit_code == 0
+    assert f"Problem {number}" in done.stdout
+    assert "Source:" in done.stdout
+
+
+def test_explain_lists_and_refuses() -> None:
+    assert mbsym("explain").stdout.count("\n") == len(PROBLEMS)
+    assert mbsym("explain", "8").exit_code == 2
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_help_has_an_example(name: str) -> None:
+    done = mbsym(name, "--help")
+    assert done.exit_code == 0
+    assert f"mbsym {name}" in done.stdout.split("Example")[1]
+
+
+@pytest.mark.parametrize("number", PROBLEMS)
+def test_the_explanations_are_doctests(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    failed, tried = doctest.testmod(PROBLEMS[number].module)
+    assert (failed, tried > 1) == (0, True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted(SYSTEMS.iterdir()), ids=lambda path: path.name)
+def test_every_shipped_system_runs_and_checks_itself(path: Path, tmp_path: Path) -> None:
+    assert path.read_text().startswith("#"), "the first comment says what the system shows"
+    done = mbsym("run", path, "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert {check["outcome"] for check in results["checks"]} <= {"exact", "verified numerically"}

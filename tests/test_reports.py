@@ -1,0 +1,315 @@
+"""Reports: every file is read back, run or compiled, and compared with exact results."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SHIPPED, precision
+from flint import arb, fmpq
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.report.summary import summary
+from mbsym.report.targets import TARGETS
+
+#: Names that are reserved in some language, or look alike in another; forces of many kinds; a comment-closing name.
+NASTY = """
+mbsym: 1
+name: 'Names *) "and" \\ 100% {of} \\end{document} $all$ sorts_^~'
+description: "Ends with a quote and a backslash: \\"\\"\\" \\\\"
+parameters: {N: positive, K: positive, np: positive, q: positive, a_b: positive, ab: positive, sin1: positive, x: real,
+  C: {sign: positive, meaning: 'a "stiffness" \\ 5% *)'}, omega_0: real, omega0: {sign: positive, value: 1/3}}
+prescribed: {p: {rate: omega0, initial: ab/10}}
+bodies:
+  - name: a "body" *)
+    attached to: 0
+    rotation: {axes: [3, 1], angles: [phi, p]}
+    connection point: [s, 0, 0]
+    coordinates: [s, phi]
+    mass centre: [K/3, a_b, 0]
+    mass: N
+    inertia about: mass centre
+    inertia: [np, q, ab]
+  - name: tip
+    attached to: a "body" *)
+    rotation: {axes: [2], angles: [lam]}
+    connection point: [0, 0, K]
+    mass centre: [0, 0, sin1]
+    mass: x**2 + 1
+loads:
+  - uniform gravity: {acceleration: [0, -C, 0]}
+  - damper: {coordinate: lam, coefficient: omega0}
+  - force function: -C*s**2/2 + q*exp(-a_b*t)*cos(phi/2) - omega_0*sqrt(s**2 + 1)
+motion: {s: 0, phi: 0, lam: 0}
+"""
+TWO_LINKS = "double-pendulum.yaml"
+SYSTEMS = ["satellite.yaml", "ziegler-damped.yaml", "heavy-top.yaml", "spring-pendulum.yaml"]
+
+
+def analysis_of(name: str) -> Analysis:
+    return mbsym.loads(NASTY) if name == "nasty" else mbsym.load(SHIPPED / name)
+
+
+def loaded(text: str, folder: Path):
+    path = folder / "model.py"
+    path.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location("model_under_test", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def state_of(analysis: Analysis, source: random.Random) -> dict[str, Fraction]:
+    """Values of all names; a prescribed quantity has the value that its motion gives."""
+    values = {name: Fraction(source.randint(20, 80), 64) for name in analysis.ring.names()}
+    from mbsym.algebra.base import Lowering
+    from mbsym.algebra.point import Rationals
+
+    numbers = Rationals({}, {})
+    lower = Lowering(numbers, {name: numbers.number(value) for name, value in values.items()})
+    for item in analysis.system.prescribed:
+        exact = lower(item.rate) * numbers.number(values["t"])
+        exact = exact if item.initial is None else exact + lower(item.initial)
+        values[item.name] = Fraction(int(exact.p), int(exact.q))
+    return values
+
+
+def exact(analysis: Analysis, polynomial, values) -> float:
+    with precision(200):
+        return float(analysis.ring.evaluate(polynomial, {k: arb(fmpq(v.numerator, v.denominator)) for k, v in values.items()}))
+
+
+def close(found, expected, scale=None) -> bool:
+    found, expected = np.asarray(found, float), np.asarray(expected, float)
+    return bool(np.all(np.abs(found - expected) <= 1e-12 * max(1.0, np.abs(expected).max(initial=scale or 0.0))))
+
+
+# --- model.py ---
+
+
+@pytest.mark.parametrize("name", [*SYSTEMS, "nasty"])
+def test_the_module_agrees_with_the_exact_formulas(name, tmp_path):
+    analysis = analysis_of(name)
+    model = loaded(TARGETS["python"].render(analysis, analysis.problems), tmp_path)
+    assert model.COORDINATES == analysis.system.coordinates
+    assert model.PARAMETERS == analysis.system.parameter_names
+    source = random.Random(5)
+    n = len(model.COORDINATES)
+    states = [state_of(analysis, source) for _ in range(3)]
+    p = {key: float(states[0][key]) for key in model.PARAMETERS}
+    for values in states:
+        values |= {key: states[0][key] for key in model.PARAMETERS} | {"t": states[0]["t"]}
+        values |= {item.name: states[0][item.name] for item in analysis.system.prescribed}
+    q = np.array([[float(values[key]) for values in states] for key in model.COORDINATES])
+    qd = np.array([[float(values[key]) for values in states] for key in analysis.system.velocities])
+    t = float(states[0]["t"])
+    mass, right = model.mass_matrix(q, p, t), model.forcing(q, qd, p, t)
+    energies = model.energy(q, qd, p, t)
+    rates = model.rhs(t, np.concatenate([q, qd]), p)
+    for k, values in enumerate(states):
+        expected = [[exact(analysis, x.polynomial, values) for x in row] for row in analysis.equations.mass_matrix]
+        forces = [exact(analysis, x.polynomial, values) for x in analysis.equations.forcing]
+        kinetic = exact(analysis, analysis.energy.kinetic_energy.polynomial, values)
+        potential = exact(analysis, analysis.energy.force_function.polynomial, values)
+        assert close(mass[..., k], expected)
+        assert close(right[:, k], forces, abs(kinetic))
+        assert close(energies[k], kinetic - potential, abs(kinetic) + abs(potential))
+        assert close(expected @ rates[n:, k], forces, 10 * np.abs(forces).max() + abs(kinetic))
+        one = model.rhs(t, np.concatenate([q[:, k], qd[:, k]]), [p[key] for key in model.PARAMETERS])
+        assert close(one, rates[:, k])
+
+
+def test_linear_matrices_of_the_module(tmp_path):
+    analysis = analysis_of("ziegler-damped.yaml")
+    model = loaded(TARGETS["python"].render(analysis, (5,)), tmp_path)
+    values = state_of(analysis, random.Random(1))
+    found = model.linear_matrices({key: float(values[key]) for key in model.PARAMETERS})
+    for matrix, numbers in zip(analysis.linearisation.matrices, found, strict=True):
+        assert close(numbers, [[exact(analysis, x.polynomial, values) for x in row] for row in matrix])
+    assert not hasattr(loaded(TARGETS["python"].render(analysis, (3,)), tmp_path), "linear_matrices")
+
+
+def test_the_module_complains_of_all_missing_parameters_at_once(tmp_path):
+    analysis = analysis_of("nasty")
+    model = loaded(TARGETS["python"].render(analysis, (3,)), tmp_path)
+    assert model.DEFAULTS["N"] is None
+    assert Fraction(model.DEFAULTS["omega0"]).limit_denominator(10) == Fraction(1, 3)
+    with pytest.raises(ValueError, match="no value for the parameters N, np, q, a_b, ab, sin1, x, C, omega_0"):
+        model.mass_matrix([0, 0, 0], {"K": 1, "omega0": 2})
+    with pytest.raises(ValueError, match="expected 11 parameters"):
+        model.mass_matrix([0, 0, 0], [1, 2])
+    with pytest.raises(ValueError, match="expected shape"):
+        model.mass_matrix([0, 0], dict.fromkeys(model.PARAMETERS, 1.0))
+
+
+# --- results.json ---
+
+
+def test_results_hold_what_was_asked_for():
+    analysis = analysis_of("satellite.yaml")
+    found = json.loads(TARGETS["json"].render(analysis, (1, 2, 3, 4, 5, 6, 7)))
+    assert set(found) == {
+        "system", "coordinates", "parameters", "kinematics", "energy", "equations", "equilibrium", "linearisation",
+        "stability", "integrals", "checks", "unavailable",
+    }  # fmt: skip
+    assert found["unavailable"] == {}
+    assert set(found["kinematics"]["bodies"][0]) == {
+        "name", "rotation", "angular_velocity", "velocity_origin", "velocity_mass_centre",
+    }  # fmt: skip
+    assert found["energy"]["cyclic"] == ["chi"]
+    assert found["equilibrium"]["satisfied"] is True
+    yaw, pitch = found["linearisation"]["subsystems"]
+    assert pitch["M"] == [["c", "f"], ["f", "d"]]
+    assert pitch["K"] == [["3*(b - a)", "3*f"], ["3*f", "3*f"]]
+    assert yaw["K"] == [["c - b", "0", "0"], ["0", "4*(c - a)", "4*f"], ["0", "4*f", "d + 3*f"]]
+    assert "lam**4" in found["stability"]["characteristic_polynomials"][1]
+    assert "gamma - p2 > 0" in found["stability"]["conditions"]
+    assert {check["outcome"] for check in found["checks"]} == {"exact"}
+    few = json.loads(TARGETS["json"].render(analysis, (1, 4)))
+    assert "energy" not in few
+    assert "equilibrium" in few
+
+
+def test_results_read_back_to_the_same_polynomials():
+    analysis = analysis_of("ziegler-damped.yaml")
+    found = json.loads(TARGETS["json"].render(analysis, (3,)))
+    values = state_of(analysis, random.Random(2))
+    names = {key: float(value) for key, value in values.items()} | {"sin": np.sin, "cos": np.cos}
+    for text, formula in zip(found["equations"]["forcing"], analysis.equations.forcing, strict=True):
+        assert close(eval(text, {}, names), exact(analysis, formula.polynomial, values))
+
+
+# --- LaTeX ---
+
+
+def compiled(text: str, folder: Path) -> str:
+    (folder / "report.tex").write_text(text, encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:]
+    return done.stdout
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
+@pytest.mark.parametrize("name", ["satellite.yaml", "nasty"])
+def test_latex_compiles_without_overfull_lines(name, tmp_path):
+    analysis = analysis_of(name)
+    log = compiled(TARGETS["latex"].render(analysis, analysis.problems), tmp_path)
+    if name != "nasty":
+        assert "Overfull" not in log
+
+
+def test_latex_is_balanced_and_says_its_conventions():
+    analysis = analysis_of("satellite.yaml")
+    text = TARGETS["latex"].render(analysis, analysis.problems)
+    bare = re.sub(r"\\[{}]", "", text)
+    assert bare.count("{") == bare.count("}")
+    for begin in set(re.findall(r"\\begin\{(\w+)\}", text)):
+        assert text.count(f"\\begin{{{begin}}}") == text.count(f"\\end{{{begin}}}")
+    assert "Direction cosines are passive" in text
+    assert r"q_{1}" in text
+    assert r"\begin{pmatrix} c & f \\ f & d \end{pmatrix}" in text
+
+
+# --- no closed form ---
+
+
+def test_without_closed_form_reports_give_the_reason_and_the_program(tmp_path):
+    analysis = Analysis(analysis_of("satellite.yaml").system, terms=60)
+    reason = analysis.stage(3).failure.reason
+    texts = {name: target.render(analysis, analysis.problems) for name, target in TARGETS.items()}
+    assert json.loads(texts["json"])["unavailable"]["equations"] == reason
+    assert reason in texts["latex"]
+    assert "s_{1} = " in texts["latex"]
+    assert "dynamics[t_" in texts["wolfram"]
+    model = loaded(texts["python"], tmp_path)
+    assert model.mass_matrix(np.zeros(5), dict.fromkeys(model.PARAMETERS, 1.0)).shape == (5, 5)
+    lines = {line.number: line for line in summary(analysis, analysis.problems, []).problems}
+    assert not lines[3].available
+    assert reason in lines[3].lines[0]
+
+
+# --- determinism ---
+
+DIGESTS = """
+import hashlib, sys
+from test_reports import TARGETS, analysis_of
+for name in ("satellite.yaml", "nasty"):
+    analysis = analysis_of(name)
+    for target in TARGETS.values():
+        print(name, target.name, hashlib.sha256(target.render(analysis, analysis.problems).encode()).hexdigest())
+"""
+
+
+def test_reports_are_the_same_byte_for_byte():
+    outputs = []
+    for seed in ("0", "1"):
+        environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(__file__).parent)}
+        command = [sys.executable, "-c", DIGESTS]
+        outputs.append(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
+    assert outputs[0] == outputs[1]
+    assert outputs[0].count("\n") == 2 * len(TARGETS)
+    analysis = analysis_of("satellite.yaml")
+    digest = hashlib.sha256(TARGETS["json"].render(analysis, analysis.problems).encode()).hexdigest()
+    assert f"satellite.yaml json {digest}" in outputs[0]
+
+
+# --- Wolfram Language ---
+
+
+@pytest.fixture(scope="module")
+def mathics():
+    pytest.importorskip("mathics")
+    from mathics.core.load_builtin import import_and_load_builtins
+
+    import_and_load_builtins()
+    from mathics.session import MathicsSession
+
+    return MathicsSession(add_builtin=True, character_encoding="UTF-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["nasty", "ziegler-damped.yaml"])
+def test_wolfram_reads_the_report_and_gets_the_same_numbers(name, mathics):
+    from mbsym.formulas.wolfram import wolfram_names
+
+    analysis = analysis_of(name)
+    mathics.reset()
+    mathics.evaluate(f"({uncommented(TARGETS['wolfram'].render(analysis, analysis.problems))})")
+    names = wolfram_names(analysis.ring)
+    values = state_of(analysis, random.Random(3))
+    rules = [f"{names[key]} -> {values[key]}" for key in analysis.system.parameter_names]
+    for key in analysis.system.coordinates:
+        rules += [f"{names[key]}'[t] -> {values[key + '_dot']}", f"{names[key]}[t] -> {values[key]}"]
+    at = "{" + ", ".join(rules) + "}"
+
+    def numbers(expression: str):
+        text = str(mathics.evaluate(f"N[(({expression}) /. {at}) /. {{t -> {values['t']}}}, 20]"))
+        return np.array(json.loads(text.replace("{", "[").replace("}", "]").replace("*^", "e").replace("List", "")))
+
+    def expected(formulas):
+        return [exact(analysis, x.polynomial, values) for x in formulas]
+
+    assert close(numbers("massMatrix"), [expected(row) for row in analysis.equations.mass_matrix])
+    assert close(numbers("forcing"), expected(analysis.equations.forcing))
+    assert close(numbers("linearK"), [expected(row) for row in analysis.linearisation.K])
+    body = analysis.kinematics.bodies[-1]
+    assert close(numbers(f'angularVelocity["{body.name}"]'), expected(body.angular_velocity))
+    assert str(mathics.evaluate("Length[equations]")) == str(len(analysis.system.coordinates))
+    assert str(mathics.evaluate("Head[equations[[1]]]")) in ("Equal", "System`Equal")
+
+
+def uncommented(text: str) -> str:
+    return re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL).strip().rstrip(";")
