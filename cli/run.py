@@ -54,13 +54,18 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 
 @click.command("run")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option("--problems", "-p", default="1-7", callback=_problems, show_default=True, help="Which: 1-5 or 1,3,6.")
-@click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="latex,wolfram,...")
+@click.option("--problems", "-p", default="1-7", callback=_problems, show_default=True, help="1-5 or 1,3,6.")
+@click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default=400_000, show_default=True, help="Budget of terms for a closed formula.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
-    files: tuple[Path, ...], problems: tuple[int, ...], formats: tuple[str, ...], out: Path | None, terms: int, quiet: bool
+    files: tuple[Path, ...],
+    problems: tuple[int, ...],
+    formats: tuple[str, ...],
+    out: Path | None,
+    terms: int,
+    quiet: bool,
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -141,10 +142,8 @@ class Analysis:
     def stage(self, number: int) -> Stage:
         """Stage of a numbered problem, derived now if it was not before."""
         name = PROBLEMS[number].attribute
-        try:
+        with suppress(Unavailable):
             getattr(self, name)
-        except Unavailable:
-            pass
         return self._stages[name]
 
     def _optional(self, attribute: str) -> Any:

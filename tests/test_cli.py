@@ -118,7 +118,9 @@ def test_writing_is_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_result_that_cannot_be_had_is_said_not_raised(tmp_path: Path) -> None:
     """No unperturbed motion, and a budget too small for closed formulas: the rest still comes out."""
-    text = re.sub(r"^motion:.*?(?=^\w|\Z)", "", (SYSTEMS / "spatial-arm.yaml").read_text(), flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(
+        r"^motion:.*?(?=^\w|\Z)", "", (SYSTEMS / "spatial-arm.yaml").read_text(), flags=re.DOTALL | re.MULTILINE
+    )
     arm = tmp_path / "arm.yaml"
     arm.write_text(text)
     done = mbsym("run", arm, "--out", tmp_path / "out", "--terms", 200)

@@ -129,7 +129,7 @@ class Program(Algebra):
         value, other = (x, b) if x is not None else (y, a)
         if value is not None:
             if value in (0, 1, -1):
-                return {0: self.zero, 1: other}[abs(value)] if value >= 0 else self.minus(other)
+                return self.zero if value == 0 else (other if value == 1 else self.minus(other))
             if value < 0:
                 return self.minus(self.product(self.number(-value), other))
         minus_a, minus_b = self._negated(a), self._negated(b)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Union
 
 from mbsym.expressions.place import Span
 
@@ -64,7 +63,7 @@ class Call:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
-Expression = Union[Number, Name, Negative, Operation, Call]
+Expression = Number | Name | Negative | Operation | Call
 
 ZERO = Number(Fraction(0))
 ONE = Number(Fraction(1))

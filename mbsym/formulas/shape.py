@@ -33,6 +33,7 @@ Rational = Any  # flint.fmpq
 #: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
 Monomial = tuple[tuple[int, int], ...]
 Terms = dict[Monomial, Rational]
+Split = Callable[[Monomial], tuple[Monomial, Monomial]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +274,7 @@ class _Presenter:
     def _bracket(self, terms: Terms, factored: bool) -> Sum:
         level = max(self.level(monomial[0][0]) for monomial in terms if monomial)
         if level:
-            return self._grouped(terms, lambda index: self.level(index) == level, factored)
+            return self._grouped(terms, self._at_level(level), factored)
         if len(terms) > COLLECT:
             return self._plain(terms)
         key = frozenset(terms.items())
@@ -285,12 +286,22 @@ class _Presenter:
         ordered = sorted(terms, key=self._key)
         return _tidy([self._assembled(terms[monomial], monomial, [], False) for monomial in ordered])
 
-    def _grouped(self, terms: Terms, leading: Callable[[int], bool], factored: bool) -> Sum:
-        """Collected by the monomials in the generators that ``leading`` chooses, of highest degree first."""
+    def _at_level(self, level: int) -> Split:
+        """Splits monomials after their generators of that level, the highest they hold."""
+
+        def split(monomial: Monomial) -> tuple[Monomial, Monomial]:
+            end = 0
+            while end < len(monomial) and self._levels[monomial[end][0]] == level:
+                end += 1
+            return monomial[:end], monomial[end:]
+
+        return split
+
+    def _grouped(self, terms: Terms, split: Split, factored: bool) -> Sum:
+        """Collected by the first parts of the monomials, of highest degree first."""
         groups: dict[Monomial, Terms] = {}
         for monomial, coefficient in terms.items():
-            head = tuple(pair for pair in monomial if leading(pair[0]))
-            tail = tuple(pair for pair in monomial if not leading(pair[0]))
+            head, tail = split(monomial)
             groups.setdefault(head, {})[tail] = coefficient
         shared: dict[tuple[Any, ...], Terms] = {}
         for head in sorted(groups, key=lambda m: (-sum(e for _, e in m), self._key(m))):
@@ -327,7 +338,7 @@ class _Presenter:
         for variable in sorted({k for monomial in terms for k, _ in monomial}, key=self.place):
             if sum(any(k == variable for k, _ in monomial) for monomial in terms) < 2:
                 continue
-            candidate = self._grouped(terms, variable.__eq__, True)
+            candidate = self._grouped(terms, _by(variable), True)
             if leaves(candidate) < fewest:
                 best, fewest = candidate, leaves(candidate)
         return best
@@ -347,6 +358,18 @@ class _Presenter:
             inner = (self.rank(f) for term in factor.base.terms for f in (*term.over, *term.under))
             known = self._ranks[factor.base] = max(inner, default=0)
         return known
+
+
+def _by(variable: int) -> Split:
+    """Splits off the power of one generator."""
+
+    def split(monomial: Monomial) -> tuple[Monomial, Monomial]:
+        for place, (index, _) in enumerate(monomial):
+            if index == variable:
+                return monomial[place : place + 1], monomial[:place] + monomial[place + 1 :]
+        return (), monomial
+
+    return split
 
 
 def _used(polynomial: Polynomial) -> list[int]:

@@ -1,7 +1,7 @@
 """Kinetic energy over any scalar.
 
-    T = sum over bodies of  m/2 V_O^2 + m V_O.(omega x r_C) + 1/2 omega.Theta_O omega     (tensor about the joint)
-                            m/2 V_C^2 + 1/2 omega.Theta_C omega                           (about the mass centre)
+T = sum over bodies of  m/2 V_O^2 + m V_O.(omega x r_C) + 1/2 omega.Theta_O omega     (tensor about the joint)
+                        m/2 V_C^2 + 1/2 omega.Theta_C omega                           (about the mass centre)
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Generalised forces of wrenches through partial velocities, in the ring.
 
-    Q_i = sum over bodies of  F . dV_O/dq'_i + M . domega/dq'_i
+Q_i = sum over bodies of  F . dV_O/dq'_i + M . domega/dq'_i
 """
 
 from __future__ import annotations

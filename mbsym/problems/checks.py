@@ -227,7 +227,5 @@ def check_residuals(ring: Ring, first: Sequence[Formula], second: Sequence[Formu
 
 def _all_zero(ring: Ring, a: Sequence[Sequence[Any]], b: Sequence[Sequence[Any]]) -> bool:
     return all(
-        ring.is_zero(x - y) is True
-        for row, other in zip(a, b, strict=True)
-        for x, y in zip(row, other, strict=True)
+        ring.is_zero(x - y) is True for row, other in zip(a, b, strict=True) for x, y in zip(row, other, strict=True)
     )

@@ -1,6 +1,7 @@
 """Problem 7: first integrals.
 
-An expression I(q, q', t) is an integral if dI/dt vanishes by virtue of the equations E_i = (M q'' - f)_i = 0.  Found are
+An expression I(q, q', t) is an integral if dI/dt vanishes by virtue of the equations E_i = (M q'' - f)_i = 0.
+Found are
 
 * the generalised energy  H = T_2 - T_0 - U,  with  dH/dt = sum q'_i E_i  if L does not contain the time and the other
   loads do no work;

@@ -134,7 +134,7 @@ def quadratised(scene: Scene) -> Scene:
 
 def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
     """d^2/dx_i dx_j."""
-    value = x.second.get((min(i, j), max(i, j)), ring.zero)
+    value: Polynomial = x.second.get((min(i, j), max(i, j)), ring.zero)
     return value * 2 if i == j else value
 
 

@@ -35,8 +35,8 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.formulas.formula import Formula, Matrix
 from mbsym.expressions.tree import names
+from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.motion import relations
@@ -103,7 +103,9 @@ class Stability:
     numerical: Verdict | None
 
 
-def stability(scene: Scene, energy_conserved: bool, cyclic: Sequence[str], linear: Linearisation, signs: Signs) -> Stability:
+def stability(
+    scene: Scene, energy_conserved: bool, cyclic: Sequence[str], linear: Linearisation, signs: Signs
+) -> Stability:
     """Judges every subsystem.
 
     ``energy_conserved``: the nonlinear system has a generalised energy integral, dissipation apart; ``cyclic``: the
@@ -139,7 +141,8 @@ def _judge(
     ring, known = _in_parameters(scene.ring, rows, signs)
     if isinstance(ring, ParameterRing):
         rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
-    system = LinearSystem(*rows, conservative=energy_conserved, cyclic=idle)
+    mass, damping, gyroscopic, stiffness, circulatory = rows
+    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, energy_conserved, idle)
     point = None if values is None else _point(scene, ring, rows, values)
     return SubsystemStability(part.coordinates, matrices, factor, ring, analyse(system, known, point))
 
@@ -220,14 +223,7 @@ def _point(
     numbers = Rationals({}, {})
     environment = {name: numbers.number(value) for name, value in values.items()}
     carry = Carrier(scene.ring, numbers, environment)
-    used = {
-        k
-        for matrix in rows
-        for row in matrix
-        for x in row
-        for k, degree in enumerate(x.degrees())
-        if degree > 0
-    }
+    used = {k for matrix in rows for row in matrix for x in row for k, degree in enumerate(x.degrees()) if degree > 0}
     notation = {item.name for item in scene.system.notation}
     point = {}
     try:
