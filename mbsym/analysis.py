@@ -261,16 +261,17 @@ class Analysis:
         return self._result("checks", self._checks)
 
     def _checks(self) -> tuple[Check, ...]:
-        system, ring, done = self.system, self.ring, []
+        ring, done = self.ring, []
+        truth = checks.oracles(self.system, ring)
         closed = self._optional("equations") if 3 in self.problems else None
         if 1 in self.problems and (own := self._optional("kinematics")) is not None:
-            done.append(checks.check_kinematics(system, ring, own))
+            done.append(checks.check_kinematics(truth, own))
         if 2 in self.problems and (own := self._optional("energy")) is not None:
-            done.append(checks.check_energy(system, ring, own))
+            done.append(checks.check_energy(truth, own))
         if closed is not None:
-            done.append(checks.check_equations(system, ring, closed))
+            done.append(checks.check_equations(truth, closed))
         if 3 in self.problems and (own := self._optional("programs")) is not None:
-            done.append(checks.check_program(system, ring, own))
+            done.append(checks.check_program(truth, own))
         if closed is not None and 4 in self.problems and (own := self._optional("equilibrium")) is not None:
             again = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
             done.append(checks.check_residuals(ring, own.residuals, again.residuals))

@@ -321,7 +321,7 @@ def state(analysis: Analysis, called: Callable[[str], str] = lambda name: name) 
                 break
         seed = _drawn(called(base) + suffix)
         values[name] = fmpq(seed % 37 + 1, seed % 23 + 2)
-    tangents = {name: fmpq(_drawn("tan " + called(name)) % 17 - 8, 3) for name in ring.angles}
+    tangents = {name: fmpq(_drawn("tan " + called(name)) % 16 + 1, 17) for name in ring.angles}
     return State(Rationals(tangents, ring.angles), values | {"pi": fmpq(355, 113)})
 
 

@@ -119,11 +119,12 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite(description: Descrip
     rows = analysis.equations.mass_matrix.polynomials
     n = len(rows)
     assert all(rows[i][j] == rows[j][i] for i in range(n) for j in range(i))
-    for here in rational_states(analysis.system, analysis.ring, 2):
+    for here in rational_states(analysis.system, analysis.ring, 3):
         carry = Carrier(analysis.ring, here.numbers, here.values)
         values = [[carry(x) for x in row] for row in rows]
-        for k in range(1, n + 1):  # Sylvester
-            assert fmpq_mat(k, k, [values[i][j] for i in range(k) for j in range(k)]).det() > 0
+        minors = [fmpq_mat(k, k, [values[i][j] for i in range(k) for j in range(k)]).det() for k in range(1, n + 1)]
+        assert min(minors) >= 0  # Sylvester; zero only where the axes of a joint fall together
+        assume(0 not in minors)
 
 
 def rate(analysis: Analysis, x: Polynomial, explicit: bool = True) -> Polynomial:

@@ -324,3 +324,29 @@ def test_wolfram_reads_the_report_and_gets_the_same_numbers(name, mathics):
 
 def uncommented(text: str) -> str:
     return re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL).strip().rstrip(";")
+
+
+# --- not even a program ---
+
+STRANGE = """
+mbsym: 1
+name: A power that no algebra has
+parameters: {m: positive, l: positive}
+bodies:
+  - name: bob
+    attached to: 0
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: [l, 0, 0]
+    mass: m**(1/3)
+motion: {theta: 0}
+"""
+
+
+def test_without_any_code_reports_say_why(tmp_path):
+    analysis = mbsym.loads(STRANGE)
+    texts = {name: target.render(analysis, analysis.problems) for name, target in TARGETS.items()}
+    assert "There is no code for the equations of motion: the power 1/3" in texts["python"]
+    assert not hasattr(loaded(texts["python"], tmp_path), "mass_matrix")
+    assert "the power 1/3" in texts["latex"]
+    assert "the power 1/3" in texts["wolfram"]
+    assert "the power 1/3" in json.loads(texts["json"])["unavailable"]["equations"]

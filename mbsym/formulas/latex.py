@@ -213,13 +213,19 @@ class LatexPrinter:
 
 
 def _joined(factors: Sequence[str]) -> str:
-    """Factors side by side; a thin space after a function, whose argument would seem to go on."""
+    """Factors side by side; a thin space after a function, whose argument would seem to go on, and around words."""
     written = "".join(factors[:1])
     for before, factor in pairwise(factors):
         after_function = re.match(r"\\(sin|cos|exp|ln|arctan)\b", before) is not None
-        written += r"\, " if after_function and not factor.startswith(("\\sin", "\\cos")) else " "
+        before_function = factor.startswith(("\\sin", "\\cos"))
+        word = before.startswith(_WORDS) or factor.startswith(_WORDS)
+        written += r"\, " if (after_function and not before_function) or word else " "
         written += factor
     return written
+
+
+#: Names of several letters, which must not run into their neighbours.
+_WORDS = (r"\mathit", r"\mathtt")
 
 
 def latex_matrix(rows: Sequence[Sequence[str]]) -> str:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
@@ -198,8 +199,21 @@ class Oracle:
         self.system = system
         self.state = state
         self.numbers = state.numbers
-        self.moving = Placement(system, state, self._in_time())
-        self.displaced = {name: Placement(system, state, self._displaced(name)) for name in system.coordinates}
+
+    @cached_property
+    def moving(self) -> Placement:
+        """The system moving through the state: series in time."""
+        return Placement(self.system, self.state, self._in_time())
+
+    @cached_property
+    def displaced(self) -> dict[str, Placement]:
+        """The system at rest in the state, displaced along each coordinate: series in the displacement."""
+        return {name: Placement(self.system, self.state, self._displaced(name)) for name in self.system.coordinates}
+
+    @cached_property
+    def residuals(self) -> dict[str, Scalar]:
+        """M q'' - forcing, for every coordinate."""
+        return {name: self._inertia(name) - self._applied(name) for name in self.system.coordinates}
 
     def _constants(self) -> dict[str, Series]:
         zero = self.numbers.zero
@@ -222,10 +236,6 @@ class Oracle:
         environment = self._constants()
         environment[name] = Series(self.state.values[name], self.numbers.one, self.numbers.zero)
         return environment
-
-    def residuals(self) -> dict[str, Scalar]:
-        """M q'' - forcing, for every coordinate."""
-        return {name: self._inertia(name) - self._applied(name) for name in self.system.coordinates}
 
     def _inertia(self, name: str) -> Scalar:
         total = self.numbers.zero

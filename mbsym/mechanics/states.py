@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from functools import cached_property
 
 from flint import arb, fmpq
 
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.oracle import State
+from mbsym.mechanics.oracle import Oracle, State
 from mbsym.model.system import System
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
@@ -39,3 +40,21 @@ def ball_states(system: System, ring: Ring, count: int) -> Iterator[State]:
     for _ in range(count):
         values = {name: arb(value) for name, value in _values(system, ring, source).items()} | {"pi": arb.pi()}
         yield State(Balls(values), values)
+
+
+class Oracles:
+    """Oracles at the states of the self-check, shared by all checks: each placement is made once."""
+
+    def __init__(self, system: System, ring: Ring, count: int) -> None:
+        self.system = system
+        self.ring = ring
+        self.count = count
+
+    @cached_property
+    def rational(self) -> tuple[Oracle, ...]:
+        return tuple(Oracle(self.system, state) for state in rational_states(self.system, self.ring, self.count))
+
+    @cached_property
+    def balls(self) -> tuple[Oracle, ...]:
+        """To be used at one working precision only: values are remembered."""
+        return tuple(Oracle(self.system, state) for state in ball_states(self.system, self.ring, self.count))

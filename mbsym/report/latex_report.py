@@ -16,7 +16,7 @@ from mbsym.problems.linearisation import Subsystem
 from mbsym.report.conditions import cases, statements
 from mbsym.report.environment import rendered
 from mbsym.report.python_module import prescribed_value
-from mbsym.report.straight_line import Dialect, listing
+from mbsym.report.straight_line import Dialect, listing, programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -95,7 +95,8 @@ _SPECIAL = {
 
 def escaped(words: str) -> str:
     """Plain text; characters that plain pdflatex cannot set become question marks."""
-    return "".join(_SPECIAL.get(c, c if c < "\u0100" else "?") for c in " ".join(words.split()))
+    plain = "".join(_SPECIAL.get(c, c if c < "\u0100" else "?") for c in " ".join(words.split()))
+    return plain.replace("--", "-{}-")
 
 
 def prose(words: str) -> str:
@@ -253,8 +254,10 @@ def _number(value: Fraction) -> str:
 
 
 def _code(analysis: Analysis, names: LatexNames) -> Any:
-    """Mass matrix and forcing as a straight-line program."""
-    system, programs = analysis.system, analysis.programs
+    """Mass matrix and forcing as a straight-line program; None if there is none."""
+    system, (programs, _) = analysis.system, programs_of(analysis)
+    if programs is None:
+        return None
     symbols = {name: str(names[name]) for name in programs.environment if name != "pi"} | {"pi": r"\pi"}
     for name in system.coordinates:
         symbols[name + "_dot"] = names[name].accented("dot")

@@ -19,7 +19,7 @@ from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import Prescribed, System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
-from mbsym.report.straight_line import Dialect, Listing, listing
+from mbsym.report.straight_line import Dialect, Listing, listing, programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -52,7 +52,7 @@ class Function:
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
-    system, code = analysis.system, analysis.programs
+    system, (code, no_code) = analysis.system, programs_of(analysis)
     writer = _Module(system)
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
@@ -71,10 +71,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         meanings=[(item.name, plain(item.meaning)) for item in system.parameters if item.meaning],
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
-        mass=writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
+        no_code=plain(no_code),
         upper=upper,
-        forcing=writer.function(code.program, code.forcing),
-        energy=writer.function(code.program, [code.energy]),
+        mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
+        forcing=code and writer.function(code.program, code.forcing),
+        energy=code and writer.function(code.program, [code.energy]),
         linear=matrices,
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )

@@ -21,7 +21,7 @@ from mbsym.model.system import System
 from mbsym.report.conditions import Statement, statements
 from mbsym.report.environment import rendered
 from mbsym.report.python_module import prescribed_value
-from mbsym.report.straight_line import Dialect, Listing, listing
+from mbsym.report.straight_line import Dialect, Listing, listing, programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -118,9 +118,11 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
     return " + ".join(written) or "0"
 
 
-def _code(analysis: Analysis) -> dict[str, Any]:
-    """Mass matrix and forcing as straight-line code over plain symbols."""
-    system, programs = analysis.system, analysis.programs
+def _code(analysis: Analysis) -> dict[str, Any] | None:
+    """Mass matrix and forcing as straight-line code over plain symbols; None if there is none."""
+    system, (programs, _) = analysis.system, programs_of(analysis)
+    if programs is None:
+        return None
     names = wolfram_names(analysis.ring)
     inputs = {name: names[name] for name in programs.environment}
     nodes: list[Node] = [x for row in programs.mass_matrix for x in row]
