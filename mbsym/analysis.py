@@ -125,7 +125,8 @@ class Analysis:
             except Unavailable as missing:
                 failure = missing.failure
             except (NoClosedForm, NotRational) as reason:
-                failure = NoResult(str(reason), "the straight-line program is available; raise --terms for more")
+                hint = "the straight-line program is available; raise --terms for more"
+                failure = NoResult(str(reason), hint if "budget" in str(reason) else "")
             except SingularPoint as reason:
                 failure = NoResult(f"singular: {reason}", "choose another motion or other coordinates")
             whole = time.perf_counter() - started

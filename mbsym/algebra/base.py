@@ -150,8 +150,9 @@ class Lowering:
     def angle(self, expression: Expression) -> tuple[Scalar, Scalar]:
         """(sin, cos) of an expression."""
         form = linear_form(expression)
-        if form is not None and not form.constant:
+        if form is not None and not form.constant and not any(name.endswith("_dot") for name, _ in form.coefficients):
             return self.algebra.sin_cos(form)
+        # A number that is no multiple of pi, a velocity, anything not linear: an angle of its own.
         return self.algebra.sin_cos_of(self(expression))
 
     def _value(self, expression: Expression) -> Scalar:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from mbsym.algebra.base import Algebra, NoClosedForm
+from mbsym.algebra.base import Algebra
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Expression
@@ -70,11 +70,19 @@ class Jets(Algebra):
     """Jets over a ring.
 
     ``motion`` gives each coordinate's unperturbed value as an expression in parameters; a coordinate that is not in it
-    (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i.
+    (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i; ``values``
+    holds the unperturbed value of every name as a polynomial.
     """
 
-    def __init__(self, ring: Ring, motion: Mapping[str, Expression], deviations: Mapping[str, int]) -> None:
+    def __init__(
+        self,
+        ring: Ring,
+        motion: Mapping[str, Expression],
+        deviations: Mapping[str, int],
+        values: Mapping[str, Polynomial],
+    ) -> None:
         self.ring = ring
+        self.values = values
         self.motion = motion
         self.deviations = deviations
         self.zero, self.one = Jet(ring.zero), Jet(ring.one)
@@ -97,19 +105,32 @@ class Jets(Algebra):
 
     def sin_cos(self, angle: LinearForm) -> tuple[Jet, Jet]:
         base = LinearForm(turns=angle.turns)
+        elsewhere: list[tuple[str, Fraction]] = []
         first: First = {}
         for name, coefficient in angle.coefficients:
-            at_rest = self.motion.get(name)
-            form = LinearForm(((name, coefficient),))
-            if at_rest is not None:
-                value = linear_form(at_rest)
-                if value is None or value.constant:
-                    raise NoClosedForm(f"sin and cos of the unperturbed {name}, which is no linear form in angles")
-                form = value.scaled(coefficient)
-            base = base + form
             if name in self.deviations:
                 first[self.deviations[name]] = self.ring.number(coefficient)
-        return self._turned(*self.ring.sin_cos(base), Jet(self.ring.zero, first))
+            form: LinearForm | None = LinearForm(((name, Fraction(1)),))
+            if name in self.motion:
+                form = linear_form(self.motion[name])
+            if form is None or form.constant:
+                elsewhere.append((name, coefficient))
+            else:
+                base = base + form.scaled(coefficient)
+        sine, cosine = self.ring.sin_cos(base)
+        for name, coefficient in elsewhere:
+            s, c = self._at_rest_elsewhere(name, coefficient)
+            sine, cosine = self.ring.reduce(sine * c + cosine * s), self.ring.reduce(cosine * c - sine * s)
+        return self._turned(sine, cosine, Jet(self.ring.zero, first))
+
+    def _at_rest_elsewhere(self, name: str, coefficient: Fraction) -> tuple[Polynomial, Polynomial]:
+        """sin and cos of coefficient * name where the unperturbed value is no linear form in angles (1/2, l*w).
+
+        Like everywhere in the ring they are made of those of name / denominator, so that both routes meet.
+        """
+        denominator = self.ring.angles.get(name, 1)
+        basic = self.ring.sin_cos_of(self.values[name] * self.ring.number(Fraction(1, denominator)))
+        return self.ring.multiple_angle(*basic, int(coefficient * denominator))
 
     def sin_cos_of(self, argument: Jet) -> tuple[Jet, Jet]:
         return self._turned(*self.ring.sin_cos_of(argument.value), _small(argument))

@@ -261,6 +261,8 @@ class Program(Algebra):
         match instruction.operation:
             case "input" if instruction.payload == "pi":
                 return LinearForm(turns=Fraction(1))
+            case "input" if str(instruction.payload).endswith("_dot"):
+                return None  # a velocity is no angle: its sine is that of a plain value
             case "input":
                 return LinearForm(((str(instruction.payload), Fraction(1)),))
             case "negative":

@@ -90,11 +90,13 @@ class Ring(Algebra):
         self._declare_angles()
 
     def _declare_angles(self) -> None:
-        moving = {g.name for g in self.generators if g.kind in ("coordinate", "prescribed")}
-        for name in [*sorted(moving), "t"]:
+        moving = {g.name for g in self.generators if g.kind in ("coordinate", "prescribed", "time")}
+        for name in sorted(moving):
             kind = "coordinate" if ("coordinate", name) in self._index else "prescribed"
             index = self._index["time", "t"] if name == "t" else self._index[kind, name]
             self._derivatives[name] = {index: self.one}
+            if kind == "coordinate":  # loads may hold functions of velocities: exp(q'), which the chain rule must reach
+                self._derivatives[name + "_dot"] = {self._index["velocity", name]: self.one}
         for name, denominator in self.angles.items():
             s, c = self._index["sine", name], self._index["cosine", name]
             self._relate(((s, 2),), self._gens[s] ** 2 + self._gens[c] ** 2 - 1)
@@ -155,11 +157,12 @@ class Ring(Algebra):
             multiple = coefficient * self.angles[name]
             if multiple.denominator != 1:
                 raise NoClosedForm(f"sin and cos of {coefficient}*{name} were not foreseen")
-            s, c = self._multiple(self.generator("sine", name), self.generator("cosine", name), int(multiple))
+            s, c = self.multiple_angle(self.generator("sine", name), self.generator("cosine", name), int(multiple))
             sine, cosine = sine * c + cosine * s, cosine * c - sine * s
         return self.reduce(sine), self.reduce(cosine)
 
-    def _multiple(self, s: Polynomial, c: Polynomial, n: int) -> tuple[Polynomial, Polynomial]:
+    def multiple_angle(self, s: Polynomial, c: Polynomial, n: int) -> tuple[Polynomial, Polynomial]:
+        """sin(n x) and cos(n x) from s = sin x and c = cos x."""
         sine, cosine = self.zero, self.one
         for _ in range(abs(n)):
             sine, cosine = self.reduce(sine * c + cosine * s), self.reduce(cosine * c - sine * s)
@@ -250,6 +253,8 @@ class Ring(Algebra):
             leading = tuple((k, e) for k, e in enumerate(factor.monomial(0)) if e)
             self._relate((*leading, (index, 1)), factor * generator - 1)
             self._chain(index, -(generator**2), factor)
+            if self.is_positive(factor):
+                self._positive.add(index)
         return self._gens[index]
 
     def _inverse_of_adjoined(self, factor: Polynomial) -> Polynomial | None:
@@ -344,6 +349,8 @@ class Ring(Algebra):
 
     def velocity_derivative(self, x: Polynomial, name: str) -> Polynomial:
         """Partial derivative with respect to the velocity of a coordinate."""
+        if len(self._derivatives[name + "_dot"]) > 1:
+            return self.derivative(x, name + "_dot")
         return x.derivative(self._index["velocity", name])
 
     def depends_on(self, x: Polynomial, name: str) -> bool:
@@ -417,19 +424,16 @@ class Ring(Algebra):
     def is_zero(self, x: Polynomial) -> bool | None:
         """True (proved zero), False (proved different from zero), or None where this ring cannot decide.
 
-        Sines, cosines, reciprocals, roots of primes and one further root are decided algebraically.  With several
-        roots or functions a nonzero normal form may hide a zero: balls at random points then prove "nonzero".
+        Sines, cosines, reciprocals and roots of primes are decided algebraically.  Behind other adjoined elements
+        (sqrt((1 + cos x)^2), log(exp x), sin(x + 1)) a nonzero normal form may hide a zero: there only balls at random
+        points prove "nonzero".
         """
         numerator, _ = self.fraction(x)
         if numerator.is_zero():
             return True
-        roots = [
-            known
-            for index, known in enumerate(self.generators[: self.spare])
-            if numerator.degrees()[index] > 0 and (known.kind in ("root", "function", "sine"))
-        ]
-        hidden = [known for known in roots if not (known.kind == "root" and known.argument.is_constant())]
-        if len(hidden) <= 1:
+        degrees = numerator.degrees()
+        adjoined = [g for k, g in enumerate(self.generators[: self.spare]) if degrees[k] > 0]
+        if all(g.kind == "root" and g.argument.is_constant() for g in adjoined):
             return False
         return False if self._nonzero_at_random(numerator) else None
 

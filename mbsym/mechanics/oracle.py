@@ -255,8 +255,34 @@ class Oracle:
     def _applied(self, name: str) -> Scalar:
         total = self.numbers.zero
         for load in self.system.loads:
-            total = total + _LOADS[type(load)](self, load, name)
+            if type(load) in _FORCE_FUNCTIONS:
+                total = total + _FORCE_FUNCTIONS[type(load)](load, self.displaced[name]).b
+            else:
+                total = total + _GENERALIZED_FORCES[type(load)](self, load, name)
         return total
+
+    @cached_property
+    def force_function(self) -> Scalar:
+        """U of all loads that have one."""
+        total = self.numbers.zero
+        for load in self.system.loads:
+            if type(load) in _FORCE_FUNCTIONS:
+                total = total + _FORCE_FUNCTIONS[type(load)](load, self.moving).a
+        return total
+
+    @cached_property
+    def kinetic_energy(self) -> Scalar:
+        """(1/2) sum of m V_C^2 + omega . A Theta_C A^T omega."""
+        twice = self.numbers.zero
+        for body in self.system.bodies:
+            mass = self.moving.lower(body.mass).a
+            for x in self.moving.mass_centre(body):
+                twice = twice + mass * x.b * x.b
+            tensor = self.moving.inertia(body)
+            if tensor is not None:
+                spin = self.moving.spin(body.name)[0]
+                twice = twice + _dot(spin, [_dot([x.a for x in row], spin) for row in tensor])
+        return twice * self.numbers.number(Fraction(1, 2))
 
     def along(self, name: str, body: str, point: Sequence[Scalar]) -> list[Scalar]:
         """dr_P/dq in inertial axes."""
@@ -271,20 +297,21 @@ class Oracle:
 
 
 # --- loads, each by the shortest physical argument ---
+#
+# Conservative loads give their force function for a placement of the bodies; its derivative along a displacement is
+# the generalised force.  The others give the generalised force itself.
 
 
-def _uniform(oracle: Oracle, load: model.UniformGravity, name: str) -> Scalar:
-    field = oracle.numbers_of(load.acceleration)
-    total = oracle.numbers.zero
-    for body in oracle.system.bodies:
-        mass = oracle.moving.lower(body.mass).a
-        total = total + mass * _dot(field, [x.b for x in oracle.displaced[name].mass_centre(body)])
+def _uniform(load: model.UniformGravity, place: Placement) -> Series:
+    field = place.lower.vector(load.acceleration)
+    total = place.algebra.zero
+    for body in place.system.bodies:
+        total = total + place.lower(body.mass) * _dot(field, place.mass_centre(body))
     return total
 
 
-def _newtonian(oracle: Oracle, load: model.NewtonianGravity, name: str) -> Scalar:
-    """dU/dq with U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
-    place = oracle.displaced[name]
+def _newtonian(load: model.NewtonianGravity, place: Placement) -> Series:
+    """U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
     algebra = place.algebra
     outward = [a - b for a, b in zip(place.origin[load.about], place.origin[load.centre], strict=True)]
     distance = algebra.square_root(_dot(outward, outward))
@@ -292,8 +319,8 @@ def _newtonian(oracle: Oracle, load: model.NewtonianGravity, name: str) -> Scala
     e = [inverse * x for x in outward]
     total = algebra.zero
     half, three = algebra.number(Fraction(1, 2)), algebra.number(3)
-    for body in oracle.system.bodies:
-        if load.about not in oracle.system.path(body.name):
+    for body in place.system.bodies:
+        if load.about not in place.system.path(body.name):
             continue
         mass = place.lower(body.mass)
         x = [a - b for a, b in zip(place.mass_centre(body), place.origin[load.about], strict=True)]
@@ -309,26 +336,37 @@ def _newtonian(oracle: Oracle, load: model.NewtonianGravity, name: str) -> Scala
         quadrupole = half * (three * along - (second[0][0] + second[1][1] + second[2][2]))
         terms = mass * inverse - inverse * inverse * mass * _dot(e, x) + inverse * inverse * inverse * quadrupole
         total = total + terms
-    return (place.lower(load.constant) * total).b
+    return place.lower(load.constant) * total
 
 
-def _coordinate_spring(oracle: Oracle, load: model.CoordinateSpring, name: str) -> Scalar:
-    place = oracle.displaced[name]
+def _coordinate_spring(load: model.CoordinateSpring, place: Placement) -> Series:
     stretch = place.lower.environment[load.coordinate] - place.lower(load.rest)
-    energy = place.algebra.number(Fraction(1, 2)) * place.lower(load.stiffness) * stretch * stretch
-    return -energy.b
+    return place.algebra.number(Fraction(-1, 2)) * place.lower(load.stiffness) * stretch * stretch
 
 
-def _point_spring(oracle: Oracle, load: model.PointSpring, name: str) -> Scalar:
-    place = oracle.displaced[name]
+def _point_spring(load: model.PointSpring, place: Placement) -> Series:
     algebra = place.algebra
     ends = [place.point(end.body, place.lower.vector(end.position)) for end in (load.first, load.second)]
     span = [a - b for a, b in zip(*ends, strict=True)]
     square, length = _dot(span, span), place.lower(load.length)
     energy = square
     if not algebra.vanishes(length):
-        energy = square - algebra.number(2) * length * algebra.square_root(square)
-    return -(algebra.number(Fraction(1, 2)) * place.lower(load.stiffness) * energy).b
+        energy = square - algebra.number(2) * length * algebra.square_root(square) + length * length
+    return algebra.number(Fraction(-1, 2)) * place.lower(load.stiffness) * energy
+
+
+def _force_function(load: model.ForceFunction, place: Placement) -> Series:
+    value = place.lower(load.expression)
+    return -value if load.spelled == "potential" else value
+
+
+_FORCE_FUNCTIONS: dict[type, Any] = {
+    model.UniformGravity: _uniform,
+    model.NewtonianGravity: _newtonian,
+    model.CoordinateSpring: _coordinate_spring,
+    model.PointSpring: _point_spring,
+    model.ForceFunction: _force_function,
+}
 
 
 def _coordinate_damper(oracle: Oracle, load: model.CoordinateDamper, name: str) -> Scalar:
@@ -346,11 +384,6 @@ def _point_damper(oracle: Oracle, load: model.PointDamper, name: str) -> Scalar:
     closing = [a - b for a, b in zip(*velocities, strict=True)]
     shift = [a - b for a, b in zip(*shifts, strict=True)]
     return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
-
-
-def _force_function(oracle: Oracle, load: model.ForceFunction, name: str) -> Scalar:
-    slope = oracle.displaced[name].lower(load.expression).b
-    return -slope if load.spelled == "potential" else slope
 
 
 def _rayleigh(oracle: Oracle, load: model.Rayleigh, name: str) -> Scalar:
@@ -382,14 +415,9 @@ def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
     return _dot(torque, turned)
 
 
-_LOADS: dict[type, Any] = {
-    model.UniformGravity: _uniform,
-    model.NewtonianGravity: _newtonian,
-    model.CoordinateSpring: _coordinate_spring,
-    model.PointSpring: _point_spring,
+_GENERALIZED_FORCES: dict[type, Any] = {
     model.CoordinateDamper: _coordinate_damper,
     model.PointDamper: _point_damper,
-    model.ForceFunction: _force_function,
     model.Rayleigh: _rayleigh,
     model.GeneralizedForce: _generalized,
     model.PointForce: _point_force,

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from flint import arb, ctx
@@ -21,10 +22,10 @@ from mbsym.algebra.base import NotRational, Scalar, SingularPoint
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.oracle import Oracle, Placement, State
+from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.programs import Programs
 from mbsym.mechanics.states import Oracles
-from mbsym.model.system import System, acceleration_name
+from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
@@ -143,11 +144,11 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
 
     def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
         state = oracle.state
-        nodes = [node for row in programs.mass_matrix for node in row] + list(programs.forcing)
+        nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing, programs.energy]
         values = programs.program.evaluate(nodes, state.values, state.numbers)
         needed = oracle.residuals
         n = len(names)
-        found = []
+        found = [("energy", values[-1], oracle.kinetic_energy - oracle.force_function)]
         for i, name in enumerate(names):
             total = -values[n * n + i]
             for j, other in enumerate(names):
@@ -175,9 +176,13 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
                     cosine = sum((axes[k][i] * parent[k][j] for k in range(3)), state.numbers.zero)
                     found.append((f"R of {body.name}", carry(own.rotation[i, j].polynomial), cosine))
             spin = place.spin(body.name)[0]
+            relative = spin
+            if body.attached_to != INERTIAL:
+                relative = [a - b for a, b in zip(spin, place.spin(body.attached_to)[0], strict=True)]
             origin = [x.b for x in place.origin[body.name]]
             centre = [x.b for x in place.mass_centre(body)]
             for label, ours, world in (
+                ("relative angular velocity", own.relative_angular_velocity, relative),
                 ("angular velocity", own.angular_velocity, spin),
                 ("velocity of the origin", own.velocity_origin, origin),
                 ("velocity of the mass centre", own.velocity_mass_centre, centre),
@@ -191,31 +196,26 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
 
 
 def check_energy(truth: Oracles, energy: Energy) -> Check:
-    """T against the sum over bodies in inertial axes."""
+    """T, its parts A2, A1, A0, and U against sums over bodies in inertial axes."""
+    names = truth.system.coordinates
 
     def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
-        total = _energy_in_inertial_axes(truth.system, oracle.moving, state)
-        return [("kinetic energy", carry(energy.kinetic_energy.polynomial), total)]
+        speeds = [state.values[velocity_name(name)] for name in names]
+        parts = carry(energy.A0.polynomial)
+        for i, speed in enumerate(speeds):
+            parts = parts + carry(energy.A1[i].polynomial) * speed
+            for j, other in enumerate(speeds):
+                half = state.numbers.number(Fraction(1, 2))
+                parts = parts + half * carry(energy.A2[i, j].polynomial) * speed * other
+        return [
+            ("kinetic energy", carry(energy.kinetic_energy.polynomial), oracle.kinetic_energy),
+            ("A2, A1, A0", parts, oracle.kinetic_energy),
+            ("force function", carry(energy.force_function.polynomial), oracle.force_function),
+        ]
 
-    return compare(truth, "kinetic energy", ("recursion in body axes", "sum in inertial axes"), pairs)
-
-
-def _energy_in_inertial_axes(system: System, place: Placement, state: State) -> Scalar:
-    """(1/2) sum of m V_C^2 + omega . A Theta_C A^T omega."""
-    twice = state.numbers.zero
-    for body in system.bodies:
-        mass = place.lower(body.mass).a
-        for x in place.mass_centre(body):
-            twice = twice + mass * x.b * x.b
-        tensor = place.inertia(body)
-        if tensor is not None:
-            spin = place.spin(body.name)[0]
-            for i in range(3):
-                for j in range(3):
-                    twice = twice + spin[i] * tensor[i][j].a * spin[j]
-    return twice * state.numbers.reciprocal(state.numbers.number(2))
+    return compare(truth, "energy", ("recursion in body axes", "sums in inertial axes"), pairs)
 
 
 def check_linearisation(ring: Ring, first: Linearisation, second: Linearisation) -> Check:

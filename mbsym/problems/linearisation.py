@@ -121,7 +121,8 @@ def quadratised(scene: Scene) -> Scene:
     names, values = system.coordinates, motion_values(system)
     spinning = set(turning(scene))
     at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
-    jets = Jets(ring, at_rest, {name: i for i, name in enumerate(names)})
+    lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()}
+    jets = Jets(ring, at_rest, {name: i for i, name in enumerate(names)}, lowered)
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         value, rate = values[name]

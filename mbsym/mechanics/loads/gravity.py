@@ -5,9 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 
 from mbsym.algebra.base import Scalar, Vector
+from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Kind, Wrench, force_at
-from mbsym.mechanics.variables import ring_environment
+from mbsym.mechanics.variables import expressions, ring_environment
 from mbsym.model.system import INERTIAL, NewtonianGravity, UniformGravity
 
 # --- uniform ---
@@ -146,7 +147,43 @@ def _newtonian_action(load: NewtonianGravity, scene: Scene) -> Action:
             twist = algebra.cross(e, algebra.apply(tensor, e))
             moment = algebra.add(moment, algebra.scale(algebra.times(three, orbit.cube), twist))
         wrenches.append(Wrench(motion.body.name, force, moment))
+    if _expansion_point_moves(load, scene):
+        wrenches.append(_on_the_expansion_point(orbit))
     return Action(tuple(wrenches))
+
+
+def _expansion_point_moves(load: NewtonianGravity, scene: Scene) -> bool:
+    """Whether the frame of expansion depends on coordinates; a prescribed one feels no generalised force."""
+    coordinates = set(scene.system.coordinates)
+    path = [scene.system.body(name) for name in scene.system.path(load.about) if name != INERTIAL]
+    return any(coordinates & names(x) for body in path for x in expressions((body.rotation, body.connection_point)))
+
+
+def _on_the_expansion_point(orbit: _Orbit) -> Wrench:
+    """What is left of dU when O1 itself moves and the bodies stay: a force on O1, of the third order in c/R,
+
+    nu/R^4 sum m/2 (6 (e.c) c - 15 (e.c)^2 e + 3 c.c e) - 3/2 tr Theta_C e - 3 Theta_C e + 15/2 (e.Theta_C e) e.
+
+    It is as small as what the expansion drops, but without it the field would not be conservative.
+    """
+    scene, algebra = orbit.scene, orbit.scene.algebra
+    total = algebra.zero_vector
+    half, three, fifteen_halves = (algebra.number(Fraction(n, 2)) for n in (1, 6, 15))
+    for motion, e, c in orbit.bodies():
+        along, square = algebra.dot(e, c), algebra.dot(c, c)
+        per_e = algebra.times(half * three, square) - algebra.times(fifteen_halves, algebra.times(along, along))
+        force = algebra.add(algebra.scale(per_e, e), algebra.scale(algebra.times(three, along), c))
+        force = algebra.scale(motion.mass, force)
+        tensor = central_inertia(scene, motion)
+        if tensor is not None:
+            turned = algebra.apply(tensor, e)
+            trace = tensor[0][0] + tensor[1][1] + tensor[2][2]
+            per_e = algebra.times(fifteen_halves, algebra.dot(e, turned)) - algebra.times(half * three, trace)
+            spread = algebra.subtract(algebra.scale(per_e, e), algebra.scale(three, turned))
+            force = algebra.add(force, spread)
+        total = algebra.add(total, scene.to_axes(force, motion.body.name, orbit.about))
+    fourth = algebra.times(orbit.cube, orbit.inverse)
+    return Wrench(orbit.about, algebra.scale(fourth, total), algebra.zero_vector)
 
 
 NEWTONIAN = Kind(_newtonian_action, _newtonian_force_function)
