@@ -18,6 +18,7 @@ from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.variables import ring_environment, ring_of
@@ -31,6 +32,7 @@ from mbsym.problems import (
     kinematics,
     knowledge,
     linearisation,
+    perturbation,
     stability,
 )
 from mbsym.problems.checks import Check
@@ -256,6 +258,14 @@ class Analysis:
 
     # --- self-check ---
 
+    def _dependent(self) -> perturbation.Dependent:
+        """What the matrices of problem 5 have already been freed of, and what their notation stands for."""
+        scene = self.parameters_scene
+        values = {self.ring.generators[k].name: value for k, value in relations(scene).items()}
+        values |= {name: value.polynomial for name, value in self.equilibrium.solved}
+        names = [item.name for item in self.system.notation]
+        return perturbation.Dependent(values, {name: knowledge.definition_in_parameters(scene, name) for name in names})
+
     @property
     def checks(self) -> tuple[Check, ...]:
         """Every result of the asked-for problems that has a second route, compared with it."""
@@ -279,4 +289,8 @@ class Analysis:
         if closed is not None and 5 in self.problems and (own := self._optional("linearisation")) is not None:
             second = linearisation.by_equations(self.scene, closed, self.equilibrium)
             done.append(checks.check_linearisation(ring, own, second))
+        if 5 in self.problems and (own := self._optional("linearisation")) is not None:
+            done.append(perturbation.check_perturbed_motion(self.system, ring, own, self._dependent()))
+        if 7 in self.problems and (own := self._optional("integrals")):
+            done.append(perturbation.check_integrals(truth, self.programs, own))
         return tuple(done)

@@ -22,13 +22,15 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.loads.interface import Kind
 from mbsym.mechanics.loads.kinds import KINDS
 
-KINEMATICS, ENERGY, EQUATIONS, PROGRAM, EQUILIBRIUM, LINEARISATION = ALL = (
+KINEMATICS, ENERGY, EQUATIONS, PROGRAM, EQUILIBRIUM, LINEARISATION, PERTURBED, INTEGRALS = ALL = (
     "kinematics",
     "energy",
     "equations of motion",
     "straight-line program",
     "equilibrium",
     "linearisation",
+    "perturbed motion",
+    "first integrals",
 )
 DYNAMICS = (EQUATIONS, PROGRAM)
 
@@ -202,12 +204,13 @@ def failing_without_a_mistake(name: str) -> set[str]:
     return failing(name)
 
 
-@pytest.mark.parametrize(
-    "name", ["machine", "spinning", "circular orbit", "free orbit"]
-)
+@pytest.mark.parametrize("name", ["machine", "spinning", "circular orbit", "free orbit"])
 def test_without_a_mistake_nothing_fails(name: str) -> None:
     checks = analysed(name).checks
-    assert {check.outcome for check in checks} == {"exact"}
+    # Where a coordinate rests at a parameter, sines and cosines of that parameter are irrational: balls.
+    allowed = {"exact", "verified numerically"} if name == "spinning" else {"exact"}
+    assert {check.outcome for check in checks} <= allowed
+    assert {check.outcome for check in checks if check.name != PERTURBED} == {"exact"}
     assert {check.name for check in checks} == set(ALL if name == "spinning" else ALL[:4])
 
 
@@ -727,7 +730,7 @@ BLIND = [
         "_symmetric(ring, parts[1])),\n        G=Matrix.of(ring, _skew(ring, parts[1]))",
         "_skew(ring, parts[1])),\n        G=Matrix.of(ring, _symmetric(ring, parts[1]))",
         "spinning",
-        (LINEARISATION,),
+        (PERTURBED,),
     ),
     Mistake(
         "G and N exchanged in both routes",
@@ -735,7 +738,7 @@ BLIND = [
         "(mass, velocity, position)]",
         "(mass, position, velocity)]",
         "spinning",
-        (LINEARISATION,),
+        (PERTURBED,),
     ),
     Mistake(
         "the unperturbed values of the coordinates in both routes",
@@ -743,7 +746,7 @@ BLIND = [
         "entry.coordinate: (entry.value, entry.rate)",
         "entry.coordinate: (ZERO, entry.rate)",
         "spinning",
-        (EQUILIBRIUM, LINEARISATION),
+        (PERTURBED,),
     ),
     Mistake(
         "the unit of time of a subsystem",
@@ -751,7 +754,7 @@ BLIND = [
         "inverse, inverse, inverse**2, inverse**2",
         "inverse, inverse, inverse, inverse",
         "spinning",
-        (LINEARISATION,),
+        (PERTURBED,),
     ),
 ]
 

@@ -203,7 +203,7 @@ class Oracle:
     @cached_property
     def moving(self) -> Placement:
         """The system moving through the state: series in time."""
-        return Placement(self.system, self.state, self._in_time())
+        return Placement(self.system, self.state, self.in_time)
 
     @cached_property
     def displaced(self) -> dict[str, Placement]:
@@ -219,7 +219,9 @@ class Oracle:
         zero = self.numbers.zero
         return {name: Series(value, zero, zero) for name, value in self.state.values.items()}
 
-    def _in_time(self) -> dict[str, Series]:
+    @cached_property
+    def in_time(self) -> dict[str, Series]:
+        """Every name as a series in time."""
         zero, half = self.numbers.zero, self.numbers.number(Fraction(1, 2))
         environment, values = self._constants(), self.state.values
         environment["t"] = Series(values["t"], self.numbers.one, zero)

@@ -54,8 +54,10 @@ class Check:
         return self.outcome == FAILED
 
 
-#: Computes, at an oracle's state, pairs of values that must be equal, each with a label for the complaint.
-Pairs = Callable[[Oracle], list[tuple[str, Scalar, Scalar]]]
+#: A label for the complaint, and two values that must be equal.
+Pair = tuple[str, Scalar, Scalar]
+#: Computes such pairs at an oracle's state.
+Pairs = Callable[[Oracle], list[Pair]]
 
 
 def oracles(system: System, ring: Ring) -> Oracles:
@@ -63,38 +65,62 @@ def oracles(system: System, ring: Ring) -> Oracles:
     return Oracles(system, ring, 4 * STATES)
 
 
-def compare(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs) -> Check:
+def compare(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs, states: int = STATES) -> Check:
     """Compares two routes at rational states, or with balls where the values are irrational."""
     try:
-        outcome, detail = _compare(truth.rational, pairs)
+        outcome, detail = _compare(truth.rational, pairs, states)
         return Check(name, *routes, outcome, detail)
     except NotRational:
         pass
     keep, ctx.prec = ctx.prec, PRECISION
     try:
-        outcome, detail = _compare(truth.balls, pairs)
+        outcome, detail = _compare(truth.balls, pairs, states)
     finally:
         ctx.prec = keep
     return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail)
 
 
-def _compare(truth: Sequence[Oracle], pairs: Pairs) -> tuple[str, str]:
+def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, str]:
     done = 0
     for oracle in truth:
         try:
             found = pairs(oracle)
-        except SingularPoint:
+        except (SingularPoint, ZeroDivisionError):
             continue
-        agreements = [(label, first, second, _agree(first, second)) for label, first, second in found]
-        for label, first, second, agree in agreements:
-            if agree is False:
-                return FAILED, f"{label} differs: {_short(first)} against {_short(second)}"
-        if any(agree is None for *_, agree in agreements):
-            continue
-        done += 1
-        if done == STATES:
-            return EXACT, f"{done} states"
-    return UNDECIDED, f"only {done} of {STATES} states without a singularity were found"
+        outcome, detail = _verdict(found)
+        if outcome == FAILED:
+            return outcome, detail
+        done += outcome == EXACT
+        if done == wanted:
+            return EXACT, f"{done} state{'s' * (done > 1)}"
+    return UNDECIDED, f"only {done} of {wanted} states without a singularity were found"
+
+
+def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[bool], list[Pair]]) -> Check:
+    """Compares pairs at one state: of rational numbers if ``exact`` and possible, else of balls (argument True)."""
+    try:
+        if exact:
+            try:
+                outcome, detail = _verdict(pairs(False))
+                return Check(name, *routes, outcome, detail or "random parameters")
+            except NotRational:
+                pass
+        keep, ctx.prec = ctx.prec, PRECISION
+        try:
+            outcome, detail = _verdict(pairs(True))
+        finally:
+            ctx.prec = keep
+        return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail or "random parameters")
+    except (SingularPoint, ZeroDivisionError) as reason:
+        return Check(name, *routes, UNDECIDED, f"singular: {reason}")
+
+
+def _verdict(found: Sequence[Pair]) -> tuple[str, str]:
+    agreements = [(label, first, second, _agree(first, second)) for label, first, second in found]
+    for label, first, second, agree in agreements:
+        if agree is False:
+            return FAILED, f"{label} differs: {_short(first)} against {_short(second)}"
+    return (UNDECIDED, "enclosures too wide") if any(agree is None for *_, agree in agreements) else (EXACT, "")
 
 
 def _agree(first: Scalar, second: Scalar) -> bool | None:
@@ -122,7 +148,7 @@ def check_equations(truth: Oracles, equations: Equations) -> Check:
     """Lagrange's closed equations against d'Alembert's principle."""
     names = truth.system.coordinates
 
-    def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
+    def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         needed = oracle.residuals
@@ -142,7 +168,7 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
     """The straight-line program against d'Alembert's principle."""
     names = truth.system.coordinates
 
-    def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
+    def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing, programs.energy]
         values = programs.program.evaluate(nodes, state.values, state.numbers)
@@ -162,11 +188,11 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
 def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
     """Direction cosines, angular velocities and velocities against the placement of the bodies in inertial axes."""
 
-    def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
+    def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         place = oracle.moving
-        found: list[tuple[str, Scalar, Scalar]] = []
+        found: list[Pair] = []
         for body in truth.system.bodies:
             own = kinematics.body(body.name)
             axes = [[x.a for x in row] for row in place.axes[body.name]]
@@ -199,7 +225,7 @@ def check_energy(truth: Oracles, energy: Energy) -> Check:
     """T, its parts A2, A1, A0, and U against sums over bodies in inertial axes."""
     names = truth.system.coordinates
 
-    def pairs(oracle: Oracle) -> list[tuple[str, Scalar, Scalar]]:
+    def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         speeds = [state.values[velocity_name(name)] for name in names]

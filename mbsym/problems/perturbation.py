@@ -1,0 +1,166 @@
+"""Self-check of problem 5 (and 7) by disturbing the independent derivation.
+
+Both routes of problem 5 share the unperturbed values, the split into five matrices and the passage to the user's
+notation.  Here d'Alembert's principle in inertial axes is evaluated at the unperturbed state with a small disturbance
+(dx, dx', dx'') carried along as the first coefficient of a series; what comes out must be
+
+    M dx'' + (D + G) dx' + (K + N) dx
+
+with M, D, K symmetric and G, N skew, and the subsystems' matrices, their notation and time scale undone, must be
+blocks of these.  First integrals are differentiated along the motion that the straight-line program gives.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat, fmpq, fmpq_mat
+
+from mbsym.algebra.base import Algebra, Lowering, Scalar
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import ZERO, Expression
+from mbsym.mechanics.oracle import Oracle, Series, State, TaylorSeries
+from mbsym.mechanics.programs import Programs
+from mbsym.mechanics.states import SEED, Oracles
+from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
+from mbsym.problems.integrals import Integral
+from mbsym.problems.linearisation import Linearisation
+
+#: Integrals longer than this are left to their proof.
+MOST_TERMS = 3000
+
+
+@dataclass(frozen=True)
+class Dependent:
+    """Values of dependent names in independent parameters: relations, solved conditions, the user's notation."""
+
+    parameters: Mapping[str, Polynomial]
+    notation: Mapping[str, Polynomial]
+
+
+def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
+    """Problem 5 against the disturbed derivation, at random parameter values."""
+    routes = ("matrices of the first approximation", f"{D_ALEMBERT}, disturbed")
+    exact = all(value == ZERO for value, _ in _given_motion(system).values())
+    return decide("perturbed motion", routes, exact, lambda balls: _pairs(system, ring, linear, dependent, balls))
+
+
+def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Dependent, balls: bool) -> list[Pair]:
+    state = _unperturbed_state(system, ring, dependent, balls)
+    carry = Carrier(ring, state.numbers, state.values)
+    matrices = [[[carry(x) for x in row] for row in m.polynomials] for m in linear.matrices]
+    disturbed, direction = _disturbed(system, state)
+    residuals = Oracle(system, disturbed).residuals
+    found: list[Pair] = []
+    mass, damping, gyroscopic, stiffness, circulatory = matrices
+    n = len(system.coordinates)
+    for i, name in enumerate(system.coordinates):
+        total = state.numbers.zero
+        for j, (shift, speed, push) in enumerate(direction):
+            total = total + mass[i][j] * push + (damping[i][j] + gyroscopic[i][j]) * speed
+            total = total + (stiffness[i][j] + circulatory[i][j]) * shift
+        found.append((f"equation {name}", total, residuals[name].b))
+    for symbol, matrix in zip("MDGKN", matrices, strict=True):
+        for i in range(n):
+            for j in range(i + 1):
+                mirrored = -matrix[j][i] if symbol in "GN" else matrix[j][i]
+                found.append((f"symmetry of {symbol}", matrix[i][j], mirrored))
+    return found + _blocks(ring, linear, dependent, state, matrices)
+
+
+def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: State, whole: Sequence[Any]) -> list[Pair]:
+    """Entries of the subsystems, notation and time scale undone, against those of the whole."""
+    carry = Carrier(ring, state.numbers, state.values)
+    symbols = {name: carry(value) for name, value in dependent.notation.items()}
+    carry = Carrier(ring, state.numbers, {**state.values, **symbols})
+    scale = state.numbers.one if linear.time_scale is None else carry(linear.time_scale.polynomial)
+    powers = (state.numbers.one, scale, scale, scale * scale, scale * scale)
+    found: list[Pair] = []
+    for part in linear.subsystems:
+        places = [linear.coordinates.index(name) for name in part.coordinates]
+        own = (part.M, part.D, part.G, part.K, part.N)
+        for symbol, block, matrix, power in zip("MDGKN", own, whole, powers, strict=True):
+            for i, a in enumerate(places):
+                for j, b in enumerate(places):
+                    value = carry(block[i, j].polynomial) * power
+                    found.append((f"{symbol} of subsystem {', '.join(part.coordinates)}", value, matrix[a][b]))
+    return found
+
+
+def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
+    """(value, rate) of every coordinate, read from the description once more."""
+    motion: dict[str, tuple[Expression, Expression]] = dict.fromkeys(system.coordinates, (ZERO, ZERO))
+    return motion | {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
+
+
+def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool) -> State:
+    source = random.Random(SEED)
+    kind: Any = arb if balls else fmpq
+    values: dict[str, Scalar] = {
+        name: kind(fmpq(source.randint(1, 40), source.randint(1, 24))) for name in ring.names()
+    }
+    values |= {p.name: -values[p.name] for p in system.parameters if p.sign in ("negative", "nonpositive")}
+    values["pi"] = arb.pi() if balls else fmpq(355, 113)
+    motion = _given_motion(system)
+    tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
+    at_rest = [name for name, (_, rate) in motion.items() if rate == ZERO]
+    numbers: Algebra
+    if balls:
+        numbers = Balls(values)  # reads the values below as they are filled in
+    else:
+        numbers = Rationals(tangents | {name: fmpq(0) for name in at_rest if name in tangents}, ring.angles)
+    carry = Carrier(ring, numbers, dict(values))
+    values |= {name: carry(value) for name, value in dependent.parameters.items()}
+    lower = Lowering(numbers, dict(values))
+    for name, (value, rate) in motion.items():
+        if name in at_rest:
+            values[name] = lower(value)
+        values[velocity_name(name)] = lower(rate)
+        values[acceleration_name(name)] = numbers.zero
+    return State(numbers, values)
+
+
+def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, Scalar, Scalar]]]:
+    """The state with a random disturbance as first coefficient, and the disturbance (dx, dx', dx'') itself."""
+    source = random.Random(SEED + 1)
+    zero = state.numbers.zero
+    values = {name: Series(value, zero, zero) for name, value in state.values.items()}
+    direction = []
+    for name in system.coordinates:
+        parts = []
+        for key in (name, velocity_name(name), acceleration_name(name)):
+            part = state.numbers.number(source.randint(1, 9))
+            values[key] = Series(state.values[key], part, zero)
+            parts.append(part)
+        direction.append((parts[0], parts[1], parts[2]))
+    return State(TaylorSeries(state.numbers, values), values), direction
+
+
+def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral]) -> Check:
+    """dI/dt along the motion, by series in time with the accelerations of the straight-line program."""
+    short = [item for item in found if item.formula.terms <= MOST_TERMS]
+
+    def pairs(oracle: Oracle) -> list[Pair]:
+        state = _accelerated(truth.system, oracle.state, programs)
+        environment = Oracle(truth.system, state).in_time
+        carry = Carrier(truth.ring, TaylorSeries(state.numbers, environment), environment)
+        return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in short]
+
+    return compare(truth, "first integrals", ("dI/dt along the motion", "zero"), pairs, states=1)
+
+
+def _accelerated(system: System, state: State, programs: Programs) -> State:
+    """The state with the accelerations that the equations of motion give there."""
+    n = len(system.coordinates)
+    nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing]
+    values = programs.program.evaluate(nodes, state.values, state.numbers)
+    matrix: Any = arb_mat if any(isinstance(value, arb) for value in values) else fmpq_mat
+    solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
+    accelerations = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
+    return State(state.numbers, {**state.values, **accelerations})
