@@ -250,7 +250,8 @@ class Analysis:
         linear, energies = self.linearisation, self._optional("energy")
         cyclic = () if energies is None else energies.cyclic
         conserved = stability.conserves_energy(self.parameters_scene, energies)
-        return stability.stability(self.parameters_scene, conserved, cyclic, linear, self.signs)
+        found = self.equilibrium
+        return stability.stability(self.parameters_scene, conserved, cyclic, linear, found, self.signs)
 
     @property
     def integrals(self) -> tuple[Integral, ...]:
@@ -283,6 +284,7 @@ class Analysis:
             done.append(checks.check_equations(truth, closed))
         if 3 in self.problems and (own := self._optional("programs")) is not None:
             done.append(checks.check_program(truth, own))
+            done.append(checks.check_mass_matrix(truth, own))
         if closed is not None and 4 in self.problems and (own := self._optional("equilibrium")) is not None:
             again = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
             done.append(checks.check_residuals(ring, own.residuals, again.residuals))

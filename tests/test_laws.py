@@ -37,8 +37,12 @@ some = settings(max_examples=10, deadline=None, derandomize=True)
 
 
 def passed(analysis: Analysis, *allowed: str) -> bool:
-    """All checks have an allowed outcome; shows the first that has not."""
-    wrong = [check for check in analysis.checks if check.outcome not in allowed]
+    """All checks have an allowed outcome; shows the first that has not.
+
+    About a motion that rests elsewhere than at zero, sines and cosines are irrational: balls are the best there is.
+    """
+    disturbed = {"perturbed motion": (*allowed, NUMERICAL)}
+    wrong = [check for check in analysis.checks if check.outcome not in disturbed.get(check.name, allowed)]
     assert not wrong, wrong[0]
     return True
 

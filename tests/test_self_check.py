@@ -22,11 +22,12 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.loads.interface import Kind
 from mbsym.mechanics.loads.kinds import KINDS
 
-KINEMATICS, ENERGY, EQUATIONS, PROGRAM, EQUILIBRIUM, LINEARISATION, PERTURBED, INTEGRALS = ALL = (
+KINEMATICS, ENERGY, EQUATIONS, PROGRAM, REGULAR, EQUILIBRIUM, LINEARISATION, PERTURBED, INTEGRALS = ALL = (
     "kinematics",
     "energy",
     "equations of motion",
     "straight-line program",
+    "mass matrix",
     "equilibrium",
     "linearisation",
     "perturbed motion",
@@ -211,7 +212,7 @@ def test_without_a_mistake_nothing_fails(name: str) -> None:
     allowed = {"exact", "verified numerically"} if name == "spinning" else {"exact"}
     assert {check.outcome for check in checks} <= allowed
     assert {check.outcome for check in checks if check.name != PERTURBED} == {"exact"}
-    assert {check.name for check in checks} == set(ALL if name == "spinning" else ALL[:4])
+    assert {check.name for check in checks} == set(ALL[:8] if name == "spinning" else ALL[:5])
 
 
 @pytest.mark.parametrize("height", ["sqrt(l**2 - x**2)", "log(x - l)", "(l - x)**(3/2)"])
@@ -349,7 +350,7 @@ CAUGHT = [
     Mistake(
         "the mixed term of the kinetic energy",
         "mechanics.energy:_body_energy",
-        "algebra.number(2) * algebra.dot(velocity, swing)",
+        "algebra.times(algebra.number(2), algebra.dot(velocity, swing))",
         "algebra.dot(velocity, swing)",
         "machine",
         (ENERGY, EQUATIONS),
@@ -634,8 +635,8 @@ CAUGHT = [
     Mistake(
         "the slope of a jet's sine",
         "algebra.jet:Jets._turned",
-        "s * small_cosine + c * u",
-        "s * small_cosine - c * u",
+        "times(s, small_cosine) + times(c, u)",
+        "times(s, small_cosine) - times(c, u)",
         "spinning",
         (LINEARISATION,),
     ),

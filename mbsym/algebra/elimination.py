@@ -14,6 +14,9 @@ from flint import fmpq_mat
 
 from mbsym.algebra.ring import Polynomial, Ring
 
+#: A table of rows by columns is reduced if rows * columns^2 is no more than this; beyond it p stays as it was.
+MOST_WORK = 20_000_000
+
 #: A symbol's generator index and the polynomial it stands for (in parameters only).
 Definition = tuple[int, Polynomial]
 
@@ -36,6 +39,9 @@ def combination(ring: Ring, p: Polynomial, definitions: Sequence[Definition]) ->
 def _combination(ring: Ring, p: Polynomial, definitions: Sequence[Definition]) -> Polynomial | None:
     columns = [definition.to_dict() for _, definition in definitions] + [p.to_dict()]
     monomials = sorted({monomial for column in columns for monomial in column})
+    if len(monomials) * len(columns) ** 2 > MOST_WORK:
+        return None
+    ring.spend(len(monomials) * len(columns) ** 2)
     table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
     reduced, rank = table.rref()
     last = len(columns) - 1
@@ -79,8 +85,8 @@ def eliminate(ring: Ring, definitions: Sequence[Definition], candidates: Sequenc
         if not options:
             continue
         _, _, index, slope = min(options, key=lambda option: option[:2])
-        rest = relation - slope * gens[index]
-        value = ring.reduce(-rest * ring.reciprocal(slope))
+        rest = relation - ring.times(slope, gens[index])
+        value = ring.reduce(ring.times(-rest, ring.reciprocal(slope)))
         images = {k: ring.substitute(image, {index: value}) for k, image in images.items()}
         images[index] = value
     return Elimination(ring, images)

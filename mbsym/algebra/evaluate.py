@@ -27,7 +27,9 @@ class Carrier:
         algebra = self.algebra
         if isinstance(algebra, Rationals):
             used = x.degrees()
+            self.ring.spend(len(x))
             return x(*(self._generator(k) if used[k] > 0 else algebra.zero for k in range(len(used))))
+        self.ring.spend(20 * len(x))
         total = algebra.zero
         for monomial, coefficient in x.terms():
             term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))

@@ -39,18 +39,6 @@ class Jet:
     def __sub__(self, other: Jet) -> Jet:
         return self + (-other)
 
-    def __mul__(self, other: Jet) -> Jet:
-        first: First = {}
-        _accumulate(first, self.first, other.value)
-        _accumulate(first, other.first, self.value)
-        second: Second = {}
-        _accumulate(second, self.second, other.value)
-        _accumulate(second, other.second, self.value)
-        for i, a in self.first.items():
-            for j, b in other.first.items():
-                key = (i, j) if i <= j else (j, i)
-                second[key] = second[key] + a * b if key in second else a * b
-        return Jet(self.value * other.value, first, second)
 
 
 def _sum(a: dict[Any, Polynomial], b: dict[Any, Polynomial]) -> dict[Any, Polynomial]:
@@ -60,10 +48,11 @@ def _sum(a: dict[Any, Polynomial], b: dict[Any, Polynomial]) -> dict[Any, Polyno
     return total
 
 
-def _accumulate(into: dict[Any, Polynomial], terms: dict[Any, Polynomial], factor: Polynomial) -> None:
+def _accumulate(ring: Ring, into: dict[Any, Polynomial], terms: dict[Any, Polynomial], factor: Polynomial) -> None:
     if not factor.is_zero():
         for key, value in terms.items():
-            into[key] = into[key] + value * factor if key in into else value * factor
+            product = ring.times(value, factor)
+            into[key] = into[key] + product if key in into else product
 
 
 class Jets(Algebra):
@@ -97,6 +86,23 @@ class Jets(Algebra):
     def vanishes(self, x: Jet) -> bool:
         return not x.first and not x.second and bool(x.value.is_zero())
 
+    def times(self, a: Jet, b: Jet) -> Jet:
+        """a*b; jets themselves do not multiply, because every product has to keep within the ring's budgets."""
+        ring = self.ring
+        first: First = {}
+        _accumulate(ring, first, a.first, b.value)
+        _accumulate(ring, first, b.first, a.value)
+        second: Second = {}
+        _accumulate(ring, second, a.second, b.value)
+        _accumulate(ring, second, b.second, a.value)
+        for i, x in a.first.items():
+            for j, y in b.first.items():
+                key = (i, j) if i <= j else (j, i)
+                product = ring.times(x, y)
+                second[key] = second[key] + product if key in second else product
+        ring.spend(20 * (8 + len(a.second) + len(b.second)))
+        return Jet(ring.times(a.value, b.value), first, second)
+
     def reduce(self, x: Jet) -> Jet:
         reduce = self.ring.reduce
         first = {k: r for k, v in x.first.items() if not (r := reduce(v)).is_zero()}
@@ -120,7 +126,7 @@ class Jets(Algebra):
         sine, cosine = self.ring.sin_cos(base)
         for name, coefficient in elsewhere:
             s, c = self._at_rest_elsewhere(name, coefficient)
-            sine, cosine = self.ring.reduce(sine * c + cosine * s), self.ring.reduce(cosine * c - sine * s)
+            sine, cosine = map(self.ring.reduce, self.ring.sum_of_angles(sine, cosine, s, c))
         return self._turned(sine, cosine, Jet(self.ring.zero, first))
 
     def _at_rest_elsewhere(self, name: str, coefficient: Fraction) -> tuple[Polynomial, Polynomial]:
@@ -137,19 +143,19 @@ class Jets(Algebra):
 
     def _turned(self, sine: Polynomial, cosine: Polynomial, u: Jet) -> tuple[Jet, Jet]:
         """sin(a + u) and cos(a + u) for small u: the small parts of sin u and cos u are u and -u^2/2."""
-        half_square = u * u * self.number(Fraction(1, 2))
-        s, c = Jet(sine), Jet(cosine)
-        small_cosine = self.one - half_square
-        return self.reduce(s * small_cosine + c * u), self.reduce(c * small_cosine - s * u)
+        times, s, c = self.times, Jet(sine), Jet(cosine)
+        small_cosine = self.one - times(times(u, u), self.number(Fraction(1, 2)))
+        return self.reduce(times(s, small_cosine) + times(c, u)), self.reduce(times(c, small_cosine) - times(s, u))
 
     def _series(self, x: Jet, value: Polynomial, slope: Polynomial, half_curvature: Polynomial) -> Jet:
         """f(a) + f'(a) u + f''(a)/2 u^2."""
         u = _small(x)
-        return self.reduce(Jet(value) + Jet(slope) * u + Jet(half_curvature) * (u * u))
+        return self.reduce(Jet(value) + self.times(Jet(slope), u) + self.times(Jet(half_curvature), self.times(u, u)))
 
     def reciprocal(self, x: Jet) -> Jet:
         inverse = self.ring.reciprocal(x.value)
-        return self._series(x, inverse, -(inverse**2), inverse**3)
+        square = self.ring.times(inverse, inverse)
+        return self._series(x, inverse, -square, self.ring.times(square, inverse))
 
     def square_root(self, x: Jet) -> Jet:
         if not x.first and not x.second:
@@ -158,23 +164,26 @@ class Jets(Algebra):
         inverse = self.ring.reciprocal(root)
         half = self.ring.number(Fraction(1, 2))
         eighth = self.ring.number(Fraction(-1, 8))
-        return self._series(x, root, half * inverse, eighth * inverse**3)
+        cube = self.ring.times(inverse, self.ring.times(inverse, inverse))
+        return self._series(x, root, half * inverse, eighth * cube)
 
     def function(self, name: str, x: Jet) -> Jet:
         ring = self.ring
         half = ring.number(Fraction(1, 2))
         if name in ("sinh", "cosh", "tanh"):
             up, down = self.function("exp", x), self.function("exp", -x)
-            sinh, cosh = (up - down) * Jet(half), (up + down) * Jet(half)
-            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(sinh * self.reciprocal(cosh))
+            sinh, cosh = self.times(up - down, Jet(half)), self.times(up + down, Jet(half))
+            if name == "tanh":
+                return self.reduce(self.times(sinh, self.reciprocal(cosh)))
+            return sinh if name == "sinh" else cosh
         value = ring.function(name, x.value)
         if name == "exp":
             return self._series(x, value, value, value * half)
         if name == "log":
             inverse = ring.reciprocal(x.value)
-            return self._series(x, value, inverse, -half * inverse**2)
-        inverse = ring.reciprocal(ring.one + x.value**2)
-        return self._series(x, value, inverse, -x.value * inverse**2)
+            return self._series(x, value, inverse, -half * ring.times(inverse, inverse))
+        inverse = ring.reciprocal(ring.one + ring.times(x.value, x.value))
+        return self._series(x, value, inverse, -ring.times(x.value, ring.times(inverse, inverse)))
 
 
 def _small(x: Jet) -> Jet:

@@ -17,6 +17,9 @@ from flint import arb, fmpq
 from mbsym.algebra.base import Algebra, NotRational, Scalar, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
+#: Multiples of an angle up to this one are formed from its sine and cosine.
+MOST_MULTIPLE = 256
+
 
 class Rationals(Algebra):
     """``fmpq`` scalars.  ``half_tangents`` gives t for each angle name; ``denominators`` the d of sin(name / d)."""
@@ -38,6 +41,8 @@ class Rationals(Algebra):
         for name, coefficient in angle.coefficients:
             s, c = self.basic[name]
             n = coefficient * self.denominators[name]
+            if abs(n) > MOST_MULTIPLE:
+                raise NotRational("sin and cos of a high multiple of an angle are too long as rational numbers")
             for _ in range(abs(int(n))):
                 sign = 1 if n > 0 else -1
                 sine, cosine = sine * c + sign * cosine * s, cosine * c - sign * sine * s

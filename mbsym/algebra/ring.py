@@ -8,6 +8,11 @@ What is not polynomial is adjoined as a spare generator with a relation: a recip
 to be eliminated leads its relation: adjoined ones first (the latest before the earlier ones it may depend on), then
 sines before cosines.  For reciprocals the normal form is not always unique; ``is_zero`` therefore clears
 denominators before it decides.
+
+A description may come from anyone, so every step that can grow is bounded before it is taken: products by their
+candidate terms and bytes, reductions and substitutions by what they can expand to, multiples of angles, degrees and
+the integers under roots by their size, and everything together by a count of work.  Counts decide, never a clock, so
+that a result does not depend on the machine.
 """
 
 from __future__ import annotations
@@ -16,9 +21,11 @@ import random
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 from typing import Any
 
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz
+from flint.utils.flint_exceptions import DomainError
 
 from mbsym.algebra.base import Algebra, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
@@ -28,6 +35,22 @@ Polynomial = Any
 #: Products with more candidate terms than this, and polynomials longer than the term budget, have "no closed form".
 PRODUCT_BUDGET = 40_000_000
 TERM_BUDGET = 400_000
+
+#: A product that may need more bytes than this is not begun: a library that runs out of memory ends the process.
+MEMORY_BUDGET = 1_500_000_000
+#: Candidate terms (and what costs as much) of everything that is done in one ring together, at the usual term budget.
+WORK_BUDGET = 600_000_000
+#: Below so many candidate terms a product, reduction or substitution is not looked at more closely.
+SMALL = 20_000
+#: The degree in one generator: powers of powers grow far beyond any formula without growing in terms.
+MOST_DEGREE = 1_000
+#: sin and cos of n*x are polynomials of degree n in sin and cos of x.
+MOST_MULTIPLE = 256
+#: What is factored: so many terms.
+MOST_FACTORED = 20_000
+#: Integers under a root are factored: so many bits may remain when the small primes are out.
+MOST_BITS = 120
+_SMALL_PRIMES = 2_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +89,7 @@ class Ring(Algebra):
         terms: int = TERM_BUDGET,
     ) -> None:
         self.term_budget = terms
+        self.work, self.work_budget = 0, WORK_BUDGET * max(1, terms // TERM_BUDGET)
         self.spare = spare
         layout: list[Generator] = [Generator("spare", f"#{spare - 1 - k}") for k in range(spare)]
         layout += [Generator("acceleration", name) for name in coordinates]
@@ -83,6 +107,7 @@ class Ring(Algebra):
         self._free = spare - 1
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
+        self._overhead = 20 + len(layout) // 3  # what an operation costs before it looks at the second term
         self._positive = {self._index["parameter", name] for name in positive if ("parameter", name) in self._index}
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
         self._derivatives: dict[str, dict[int, Polynomial]] = {}
@@ -123,30 +148,86 @@ class Ring(Algebra):
     def has(self, kind: str, name: str) -> bool:
         return (kind, name) in self._index
 
+    # --- bounds ------------------------------------------------------------------------------------------------------
+
+    def spend(self, work: int) -> None:
+        """Counts work, in candidate terms of products.  Raises NoClosedForm when the budget is used up."""
+        self.work += work
+        if self.work > self.work_budget:
+            raise NoClosedForm(f"more than {self.work_budget} steps of polynomial arithmetic in all")
+
     def times(self, a: Polynomial, b: Polynomial) -> Polynomial:
-        if len(a) * len(b) > PRODUCT_BUDGET:
-            raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms is beyond the budget")
+        candidates = len(a) * len(b)
+        if candidates > SMALL:
+            self.spend(candidates * _check_product(a, b))
+        self.work += candidates + self._overhead
         return a * b
+
+    def _check(self, x: Polynomial) -> None:
+        if len(x) > self.term_budget:
+            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.term_budget}")
+
+    def factored(self, x: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
+        """The content of x and its irreducible factors with their exponents, if x is not too long to be factored."""
+        if len(x) > MOST_FACTORED:
+            raise NoClosedForm(f"a denominator or root of {len(x)} terms: at most {MOST_FACTORED} are factored")
+        self._check(x)
+        self.spend(100 * len(x))
+        content, factors = x.factor()
+        return content, [(factor, int(exponent)) for factor, exponent in factors]
 
     def vanishes(self, x: Polynomial) -> bool:
         return bool(x.is_zero())
 
+    # --- normal form -------------------------------------------------------------------------------------------------
+
     def reduce(self, x: Polynomial) -> Polynomial:
         """Normal form: each relation's leading term eliminated, sin^2 -> 1 - cos^2 among them."""
-        if len(x) > self.term_budget:
-            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.term_budget}")
+        self._check(x)
+        self.spend(len(x) + 8 * self._overhead)
+        degrees = x.degrees()
+        if max(degrees) > MOST_DEGREE:
+            raise NoClosedForm(f"a formula of degree {_size(int(max(degrees)))}: at most {MOST_DEGREE} is supported")
         again = True
         while again:
             again = False
-            degrees = x.degrees()
             for leading, relation in self._relations:
                 for k, d in leading:
                     if degrees[k] < d:
                         break
                 else:
-                    reduced = divmod(x, relation)[1]
+                    reduced = self._remainder(x, degrees, leading, relation)
                     if reduced != x:
                         x, degrees, again = reduced, reduced.degrees(), len(self._relations) > len(self.angles)
+        return x
+
+    def _remainder(
+        self, x: Polynomial, degrees: Sequence[int], leading: Sequence[tuple[int, int]], relation: Polynomial
+    ) -> Polynomial:
+        """x modulo a relation; step by step where a division at one stroke might grow beyond the budgets.
+
+        The leading term to the power e is replaced by up to comb(e + tail - 1, e) products of the relation's other
+        terms.
+        """
+        highest = min(int(degrees[k]) // d for k, d in leading)
+        tail = len(relation) - 1
+        growth = comb(highest + tail - 1, highest) if highest + tail < 64 else 2**64
+        if len(x) * growth <= 100 * SMALL:
+            self.work += len(x) * growth
+            return divmod(x, relation)[1]
+        exponents = [0] * len(degrees)
+        for k, d in leading:
+            exponents[k] = d
+        lead = self.context.term(exp_vec=tuple(exponents))
+        rest = lead - relation / relation.leading_coefficient()
+        while highest:
+            quotient, remainder = divmod(x, lead**highest)
+            if quotient.is_zero():
+                highest -= 1
+                continue
+            x = self.times(self.times(quotient, rest), lead ** (highest - 1)) + remainder
+            self._check(x)
+            self.spend(len(x))
         return x
 
     # --- angles ------------------------------------------------------------------------------------------------------
@@ -158,14 +239,25 @@ class Ring(Algebra):
             if multiple.denominator != 1:
                 raise NoClosedForm(f"sin and cos of {coefficient}*{name} were not foreseen")
             s, c = self.multiple_angle(self.generator("sine", name), self.generator("cosine", name), int(multiple))
-            sine, cosine = sine * c + cosine * s, cosine * c - sine * s
+            sine, cosine = self.sum_of_angles(sine, cosine, s, c)
         return self.reduce(sine), self.reduce(cosine)
 
+    def sum_of_angles(
+        self, s: Polynomial, c: Polynomial, other_s: Polynomial, other_c: Polynomial
+    ) -> tuple[Polynomial, Polynomial]:
+        """sin and cos of a sum of two angles, not reduced."""
+        sine = self.times(s, other_c) + self.times(c, other_s)
+        return sine, self.times(c, other_c) - self.times(s, other_s)
+
     def multiple_angle(self, s: Polynomial, c: Polynomial, n: int) -> tuple[Polynomial, Polynomial]:
-        """sin(n x) and cos(n x) from s = sin x and c = cos x."""
+        """sin(n x) and cos(n x) from s = sin x and c = cos x, by doubling."""
+        if abs(n) > MOST_MULTIPLE:
+            raise NoClosedForm(f"sin and cos of {_size(n)} times an angle: at most {MOST_MULTIPLE} times is supported")
         sine, cosine = self.zero, self.one
-        for _ in range(abs(n)):
-            sine, cosine = self.reduce(sine * c + cosine * s), self.reduce(cosine * c - sine * s)
+        for digit in f"{abs(n):b}":
+            sine, cosine = map(self.reduce, self.sum_of_angles(sine, cosine, sine, cosine))
+            if digit == "1":
+                sine, cosine = map(self.reduce, self.sum_of_angles(sine, cosine, s, c))
         return (-sine if n < 0 else sine), cosine
 
     def _constant_angle(self, turns: Fraction) -> tuple[Polynomial, Polynomial]:
@@ -187,7 +279,7 @@ class Ring(Algebra):
             return (half * self.square_root(self.number(2)),) * 2
         if turns == Fraction(1, 6):
             return half, half * self.square_root(self.number(3))
-        raise NoClosedForm(f"sin and cos of {turns}*pi: only multiples of pi/4 and pi/6 are supported")
+        raise NoClosedForm(f"sin and cos of {_size(turns)}*pi: only multiples of pi/4 and pi/6 are supported")
 
     def sin_cos_of(self, argument: Polynomial) -> tuple[Polynomial, Polynomial]:
         """An angle of its own, such as ``Omega*t``: two adjoined generators with the chain rule."""
@@ -201,7 +293,7 @@ class Ring(Algebra):
             for name in self._derivatives:
                 inner = self.derivative(argument, name)
                 if not inner.is_zero():
-                    self._derivatives[name] |= {s: self._gens[c] * inner, c: -self._gens[s] * inner}
+                    self._derivatives[name] |= {s: self.times(self._gens[c], inner), c: -self.times(self._gens[s], inner)}
         return self._gens[index], self._gens[index + 1]
 
     # --- adjoined elements -------------------------------------------------------------------------------------------
@@ -226,7 +318,7 @@ class Ring(Algebra):
         for name in self._derivatives:
             inner = self.derivative(argument, name)
             if not inner.is_zero():
-                self._derivatives[name][index] = self.reduce(outer * inner)
+                self._derivatives[name][index] = self.reduce(self.times(outer, inner))
 
     def reciprocal(self, x: Polynomial) -> Polynomial:
         """1/x, one adjoined generator for each irreducible factor of x.
@@ -236,10 +328,10 @@ class Ring(Algebra):
         x = self.reduce(x)
         if x.is_zero():
             raise SingularPoint("division by zero")
-        content, factors = x.factor()
+        content, factors = self.factored(x)
         result = self.context.constant(1 / content)
         for factor, exponent in factors:
-            result = result * self._reciprocal_of_factor(factor) ** exponent
+            result = self.times(result, self._power(self._reciprocal_of_factor(factor), exponent))
         return self.reduce(result)
 
     def _reciprocal_of_factor(self, factor: Polynomial) -> Polynomial:
@@ -251,7 +343,7 @@ class Ring(Algebra):
             index = self._adjoin("reciprocal", factor)
             generator = self._gens[index]
             leading = tuple((k, e) for k, e in enumerate(factor.monomial(0)) if e)
-            self._relate((*leading, (index, 1)), factor * generator - 1)
+            self._relate((*leading, (index, 1)), self.times(factor, generator) - 1)
             self._chain(index, -(generator**2), factor)
             if self.is_positive(factor):
                 self._positive.add(index)
@@ -265,32 +357,42 @@ class Ring(Algebra):
                 if known.kind == "reciprocal":
                     return known.argument
                 if known.kind == "root":
-                    return self._gens[index] * self.reciprocal(known.argument)
+                    return self.times(self._gens[index], self.reciprocal(known.argument))
         return None
+
+    def _power(self, x: Polynomial, exponent: int) -> Polynomial:
+        """x**exponent, not reduced: powers of a monomial at once, others product by product within the budgets."""
+        if len(x) <= 1:
+            return x**exponent
+        result = self.one
+        for _ in range(exponent):
+            result = self.times(result, x)
+            self._check(result)
+        return result
 
     def square_root(self, x: Polynomial) -> Polynomial:
         """sqrt(x): squares of positive factors come out exactly, the rest is adjoined with rho^2 = rest."""
         x = self.reduce(x)
         if x.is_zero():
             return self.zero
-        content, factors = x.factor()
+        content, factors = self.factored(x)
         outside, inside, numbers = self.one, self.one, Fraction(int(content.p), int(content.q))
         for factor, exponent in factors:
             positive = self.is_positive(factor)
             if positive:
-                outside = outside * factor ** (exponent // 2)
+                outside = self.times(outside, self._power(factor, exponent // 2))
                 exponent = exponent % 2
-            inside = inside * factor**exponent
+            inside = self.times(inside, self._power(factor, exponent))
         rational, radicand = _square_part(abs(numbers))
         outside = outside * self.number(rational)
         if inside.is_constant():
             if numbers < 0:
                 raise SingularPoint("the square root of a negative number")
             for prime in _primes(radicand):
-                outside = outside * self._root(self.number(prime))
+                outside = self.times(outside, self._root(self.number(prime)))
             return self.reduce(outside)
         sign = -1 if numbers < 0 else 1
-        return self.reduce(outside * self._root(inside * (sign * radicand)))
+        return self.reduce(self.times(outside, self._root(inside * (sign * radicand))))
 
     def _root(self, radicand: Polynomial) -> Polynomial:
         index = self._adjoined("root", radicand)
@@ -299,7 +401,7 @@ class Ring(Algebra):
             root = self._gens[index]
             self._relate(((index, 2),), root**2 - radicand)
             if any(not self.derivative(radicand, name).is_zero() for name in self._derivatives):
-                self._chain(index, root * self.reciprocal(radicand) * fmpq(1, 2), radicand)
+                self._chain(index, self.times(root, self.reciprocal(radicand)) * fmpq(1, 2), radicand)
         return self._gens[index]
 
     def function(self, name: str, x: Polynomial) -> Polynomial:
@@ -309,7 +411,7 @@ class Ring(Algebra):
             down = self.function("exp", -x)
             half = fmpq(1, 2)
             sinh, cosh = (up - down) * half, (up + down) * half
-            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(sinh * self.reciprocal(cosh))
+            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(self.times(sinh, self.reciprocal(cosh)))
         if x.is_zero() and name in ("exp", "atan"):
             return self.one if name == "exp" else self.zero
         if x.is_one() and name == "log":
@@ -324,7 +426,7 @@ class Ring(Algebra):
                 outer = {
                     "exp": lambda: self._gens[index],
                     "log": lambda: self.reciprocal(x),
-                    "atan": lambda: self.reciprocal(self.one + x * x),
+                    "atan": lambda: self.reciprocal(self.one + self.times(x, x)),
                 }[name]()
                 self._chain(index, outer, x)
         return self._gens[index]
@@ -382,7 +484,33 @@ class Ring(Algebra):
         full = list(self._gens)
         for index in touched:
             full[index] = images[index]
+        self._check_substitution(x, touched, images)
         return self.reduce(x.compose(*full))
+
+    def _check_substitution(self, x: Polynomial, touched: Sequence[int], images: Mapping[int, Polynomial]) -> None:
+        """Raises NoClosedForm if the substituted polynomial may be too long or of too high a degree."""
+        self.spend(len(x) + 100)
+        degrees = x.degrees()
+        grown, terms, powers = 0, len(x), 1
+        for index in touched:
+            degree, length = int(degrees[index]), len(images[index])
+            grown = max(grown, degree * max(0, *map(int, images[index].degrees())))
+            powers *= comb(degree + length - 1, degree) if degree + length < 64 or length == 1 else 2**64
+        if grown > MOST_DEGREE:
+            raise NoClosedForm(f"a substitution makes a formula of degree {_size(grown)}: up to {MOST_DEGREE} is supported")
+        if terms * powers <= SMALL:
+            return
+        spans = [0 if k in images else max(0, int(degree)) for k, degree in enumerate(degrees)]
+        for index in touched:
+            for k, degree in enumerate(images[index].degrees()):
+                spans[k] += int(degrees[index]) * max(0, int(degree))
+        dense = 1
+        for span in spans:
+            dense = min(dense * (1 + span), 2**64)
+        candidates = min(terms * powers, terms * dense)
+        if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
+            raise NoClosedForm(f"a substitution into {terms} terms may lead to {_size(candidates)}")
+        self.spend(candidates)
 
     def _moved(self, index: int, images: dict[int, Polynomial]) -> Polynomial:
         known = self.generators[index]
@@ -408,18 +536,35 @@ class Ring(Algebra):
             degree = int(x.degrees()[index])
             if known.kind != "reciprocal" or degree <= 0:
                 continue
-            cleared = self.zero
-            for monomial, coefficient in x.terms():
-                exponents = list(monomial)
-                lacking = degree - int(exponents[index])
-                exponents[index] = 0
-                cleared = cleared + self.context.term(coefficient, tuple(exponents)) * known.argument**lacking
-            x = self.reduce(cleared)
-            while degree and x and divmod(x, known.argument)[1].is_zero():
-                x, degree = divmod(x, known.argument)[0], degree - 1
+            x = self.reduce(self._cleared(x, index, degree, known.argument))
+            while degree and x and (quotient := self.quotient(x, known.argument)) is not None:
+                x, degree = quotient, degree - 1
             if degree:
                 denominators.append((known.argument, degree))
         return x, denominators
+
+    def _cleared(self, x: Polynomial, index: int, degree: int, argument: Polynomial) -> Polynomial:
+        """x * argument**degree, where the generator of that index is 1/argument: Horner's scheme."""
+        parts: list[dict[tuple[int, ...], Any]] = [{} for _ in range(degree + 1)]
+        for monomial, coefficient in x.terms():
+            exponents = list(monomial)
+            power, exponents[index] = int(exponents[index]), 0
+            parts[power][tuple(exponents)] = coefficient
+        total = self.zero
+        for part in parts:
+            total = self.times(total, argument) + self.context.from_dict(part)
+            self._check(total)
+        return total
+
+    def quotient(self, x: Polynomial, y: Polynomial) -> Polynomial | None:
+        """x/y if that is a polynomial: decided without a remainder, which could be longer than both."""
+        if len(x) < 1 or any(a < b for a, b in zip(x.degrees(), y.degrees(), strict=True)):
+            return None if len(x) else x
+        self.spend(len(x) + len(y))
+        try:
+            return x / y
+        except DomainError:
+            return None
 
     def is_zero(self, x: Polynomial) -> bool | None:
         """True (proved zero), False (proved different from zero), or None where this ring cannot decide.
@@ -473,6 +618,7 @@ class ParameterRing(Ring):
             raise ValueError("only parameters can be split off")
         self.whole = whole
         self.term_budget = whole.term_budget
+        self.work, self.work_budget, self._overhead = whole.work, whole.work_budget, 20
         self.spare, self._free = 0, -1
         self.indices = tuple(indices)
         self.generators = [whole.generators[k] for k in indices]
@@ -535,6 +681,45 @@ class _Evaluation:
         return arb.pi() if g.name == "pi" else arb(self.values[g.name])
 
 
+def _check_product(a: Polynomial, b: Polynomial) -> int:
+    """The work of one candidate term of a*b, counted by the size of the coefficients.
+
+    Raises NoClosedForm if the product takes too much time or memory.
+    """
+    candidates = len(a) * len(b)
+    if candidates > PRODUCT_BUDGET:
+        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms is beyond the budget")
+    spans = [max(0, int(d)) + max(0, int(e)) for d, e in zip(a.degrees(), b.degrees(), strict=True)]
+    dense = 1
+    for span in spans:
+        dense = min(dense * (1 + span), candidates)
+    first, second = _words(a), _words(b)
+    if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
+        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory")
+    return 1 + first * second // 4
+
+
+def _bytes(x: Polynomial, degree: int) -> int:
+    """The bytes of one term: exponents are packed into words, at least eight bits each."""
+    bits = max(8, degree.bit_length() + 1)
+    return 16 + 8 * -(-x.context().nvars() // max(1, 64 // bits))
+
+
+def _words(x: Polynomial) -> int:
+    """The length of a coefficient in machine words, judged by a few of them."""
+    places = {0, len(x) // 3, len(x) // 2, len(x) - 1}
+    sample = [x.coefficient(k) for k in places]
+    return max((int(c.p).bit_length() + int(c.q).bit_length()) // 64 for c in sample)
+
+
+def _size(value: int | Fraction) -> str:
+    """A number for a message: long ones in powers of ten."""
+    whole = abs(int(value))
+    if whole < 10**15:
+        return str(value) if Fraction(value).denominator < 10**15 else "a long fraction"
+    return f"about 10**{int(whole.bit_length() * 0.30103)}"
+
+
 def _square_part(value: Fraction) -> tuple[Fraction, int]:
     """(r, n) with value = r^2 n, n a square-free integer."""
     whole = value.numerator * value.denominator
@@ -548,4 +733,18 @@ def _square_part(value: Fraction) -> tuple[Fraction, int]:
 
 
 def _primes(n: int, distinct: bool = True) -> list[int]:
-    return [int(p) for p, e in fmpz(n).factor() for _ in range(1 if distinct else int(e))]
+    """The prime factors of n.  Raises NoClosedForm where they are out of reach."""
+    found: list[int] = []
+    for factor, exponent in fmpz(n).factor(trial_limit=_SMALL_PRIMES):
+        parts = [(factor, 1)]
+        if not factor.is_probable_prime():
+            root = factor.isqrt()
+            if root * root == factor and root.is_probable_prime():
+                parts = [(root, 2)]
+            elif int(factor).bit_length() > MOST_BITS:
+                digits = int(int(factor).bit_length() * 0.30103) + 1
+                raise NoClosedForm(f"the square root of a number whose {digits} digits cannot be factored")
+            else:
+                parts = [(p, int(e)) for p, e in factor.factor()]
+        found += [int(p) for p, e in parts for _ in range(1 if distinct else e * int(exponent))]
+    return found

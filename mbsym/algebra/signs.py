@@ -120,12 +120,14 @@ class Signs:
 
     Words: positive, nonnegative, negative, nonpositive, nonzero, real.  Relations: ``>``, ``>=``, ``!=``.
     Raises ``ValueError`` for anything else, ``ContradictionError`` (a ValueError) when no parameters are possible as
-    far as that is noticed.
+    far as that is noticed.  ``normal`` brings polynomials to normal form where generators obey relations
+    (sqrt(2)^2 = 2): without it "sqrt(2)^2 - 2 > 0" would look like a condition.
     """
 
     context: Any
     words: tuple[str, ...]
     assumptions: tuple[tuple[Polynomial, str], ...] = ()
+    normal: Callable[[Polynomial], Polynomial] | None = None
 
     def __post_init__(self) -> None:
         if len(self.words) != self.context.nvars():
@@ -141,10 +143,15 @@ class Signs:
 
     def sign(self, p: Polynomial) -> str:
         """``positive``, ``negative``, ``zero``, ``nonnegative``, ``nonpositive``, ``nonzero`` or ``unknown``."""
-        return SIGN_WORDS[self._possible(p, -1)]
+        return SIGN_WORDS[self._possible(self.normalised(p), -1)]
+
+    def normalised(self, p: Polynomial) -> Polynomial:
+        """p in normal form."""
+        return p if self.normal is None else self.normal(p)
 
     def condition(self, p: Polynomial) -> Condition:
         """The requirement p > 0, reduced."""
+        p = self.normalised(p)
         if p == 0:
             return self._decided(False)
         unit, powers = _factored(p)
@@ -182,6 +189,7 @@ class Signs:
 
     def nonzero_condition(self, p: Polynomial) -> Condition:
         """The requirement p != 0, reduced to the factors that may vanish."""
+        p = self.normalised(p)
         if p == 0:
             return self._decided(False)
         factors = tuple(_normal(f)[0] for f, _ in _factored(p)[1] if 0 in self._possible(f, -1))
@@ -189,7 +197,7 @@ class Signs:
 
     def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
         """The same knowledge with further assumptions."""
-        return Signs(self.context, self.words, (*self.assumptions, *more))
+        return Signs(self.context, self.words, (*self.assumptions, *more), self.normal)
 
     def _decided(self, answer: bool, nonzero: tuple[Polynomial, ...] = ()) -> Condition:
         one = self.context.constant(1)

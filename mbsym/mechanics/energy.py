@@ -31,7 +31,7 @@ def _body_energy(scene: Scene, motion: BodyMotion) -> Scalar:
         doubled = algebra.dot(velocity, velocity)
         if about_joint:
             swing = algebra.cross(motion.angular_velocity, motion.mass_centre)
-            doubled = doubled + algebra.number(2) * algebra.dot(velocity, swing)
+            doubled = doubled + algebra.times(algebra.number(2), algebra.dot(velocity, swing))
         energy = algebra.times(algebra.times(half, motion.mass), doubled)
     if motion.inertia is not None:
         spin = motion.angular_velocity

@@ -123,6 +123,9 @@ class Placement:
         self.system = system
         self.algebra = TaylorSeries(state.numbers, environment)
         self.lower = Lowering(self.algebra, environment)
+        self._centres: dict[str, Triple] = {}
+        self._tensors: dict[str, list[Triple]] = {}
+        self._spins: dict[str, tuple[list[Scalar], list[Scalar]]] = {}
         one, zero = self.algebra.one, self.algebra.zero
         identity = [[one if i == j else zero for j in range(3)] for i in range(3)]
         self.origin: dict[str, Triple] = {INERTIAL: [zero, zero, zero]}
@@ -151,14 +154,21 @@ class Placement:
         return [a + b for a, b in zip(self.origin[body], self.direction(body, v), strict=True)]
 
     def mass_centre(self, body: model.Body) -> Triple:
-        return self.point(body.name, self.lower.vector(body.mass_centre))
+        if body.name not in self._centres:
+            self._centres[body.name] = self.point(body.name, self.lower.vector(body.mass_centre))
+        return self._centres[body.name]
 
     def inertia(self, body: model.Body) -> list[Triple] | None:
         """A Theta_C A^T, in inertial axes."""
         if body.inertia is None:
             return None
-        tensor = [list(self.lower.vector(row)) for row in body.inertia.tensor]
-        if body.inertia.about == "joint":
+        if body.name not in self._tensors:
+            self._tensors[body.name] = self._inertia(body, body.inertia)
+        return self._tensors[body.name]
+
+    def _inertia(self, body: model.Body, inertia: model.Inertia) -> list[Triple]:
+        tensor = [list(self.lower.vector(row)) for row in inertia.tensor]
+        if inertia.about == "joint":
             c = self.lower.vector(body.mass_centre)
             mass, square = self.lower(body.mass), _dot(c, c)
             for i in range(3):
@@ -170,7 +180,11 @@ class Placement:
 
     def spin(self, body: str) -> tuple[list[Scalar], list[Scalar]]:
         """omega and domega/ds from A' A^T, in inertial axes."""
-        axes = self.axes[body]
+        if body not in self._spins:
+            self._spins[body] = self._spin(self.axes[body])
+        return self._spins[body]
+
+    def _spin(self, axes: list[Triple]) -> tuple[list[Scalar], list[Scalar]]:
         omega, rate = [], []
         for i, j in ((2, 1), (0, 2), (1, 0)):
             pairs = list(zip(axes[i], axes[j], strict=True))
@@ -239,18 +253,30 @@ class Oracle:
         environment[name] = Series(self.state.values[name], self.numbers.one, self.numbers.zero)
         return environment
 
-    def _inertia(self, name: str) -> Scalar:
-        total = self.numbers.zero
+    @cached_property
+    def _momentum_rates(self) -> list[tuple[model.Body, list[Scalar], list[Scalar] | None]]:
+        """(body, m r_C'', dH_C/dt) of every body that has mass or inertia."""
         two = self.numbers.number(2)
-        displaced = self.displaced[name]
+        found = []
         for body in self.system.bodies:
             mass = self.moving.lower(body.mass).a
-            path, shift = self.moving.mass_centre(body), displaced.mass_centre(body)
-            total = total + mass * two * _dot([x.c for x in path], [x.b for x in shift])
             tensor = self.moving.inertia(body)
+            if self.numbers.vanishes(mass) and tensor is None:
+                continue
+            force = [mass * two * x.c for x in self.moving.mass_centre(body)]
+            change = None
             if tensor is not None:
                 omega, rate = self.moving.spin(body.name)
                 change = [_dot([x.a for x in row], rate) + _dot([x.b for x in row], omega) for row in tensor]
+            found.append((body, force, change))
+        return found
+
+    def _inertia(self, name: str) -> Scalar:
+        total = self.numbers.zero
+        displaced = self.displaced[name]
+        for body, force, change in self._momentum_rates:
+            total = total + _dot(force, [x.b for x in displaced.mass_centre(body)])
+            if change is not None:
                 total = total + _dot(change, displaced.spin(body.name)[0])
         return total
 

@@ -12,11 +12,12 @@ overlapping balls of at least 200 bits, where roots or exponentials make exact n
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra.base import NotRational, Scalar, SingularPoint
 from mbsym.algebra.evaluate import Carrier
@@ -183,6 +184,29 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
         return found
 
     return compare(truth, "straight-line program", ("Newton-Euler recursion in body axes", D_ALEMBERT), pairs)
+
+
+def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
+    """det M is not zero: every coordinate, and every combination of them, carries inertia."""
+    names = truth.system.coordinates
+    n = len(names)
+    nodes = [node for row in programs.mass_matrix for node in row]
+
+    def regular(oracle: Oracle) -> bool:
+        values = programs.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+        if any(isinstance(value, arb) for value in values):
+            return not arb_mat(n, n, [arb(value) for value in values]).det().contains(0)
+        return bool(fmpq_mat(n, n, values).rank() == n)
+
+    routes = ("rank of M", "number of coordinates")
+    for states in (truth.rational, truth.balls):
+        for oracle in states:
+            with suppress(SingularPoint, NotRational):
+                if regular(oracle):
+                    return Check("mass matrix", *routes, EXACT, "regular")
+    idle = [name for i, name in enumerate(names) if all(programs.program.vanishes(x) for x in programs.mass_matrix[i])]
+    which = ", ".join(idle) if idle else f"some combination of {', '.join(names)}"
+    return Check("mass matrix", *routes, FAILED, f"M is singular: {which} carries no inertia")
 
 
 def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:

@@ -74,7 +74,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> 
         pending = [
             other
             for other in reduced
-            if other is not None and not any(divmod(other, known)[1].is_zero() for known in conditions)
+            if other is not None and not any(ring.quotient(other, known) is not None for known in conditions)
         ]
     return Equilibrium(
         satisfied=not conditions and not impossible,
@@ -93,9 +93,9 @@ def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
     if numerator.is_zero():
         return None
     kept = ring.one
-    for factor, _ in numerator.factor()[1]:
+    for factor, _ in ring.factored(numerator)[1]:
         if signs.sign(factor) not in ("positive", "negative", "nonzero"):
-            kept = kept * factor
+            kept = ring.times(kept, factor)
     return numerator if kept.is_constant() else ring.reduce(kept)
 
 
@@ -120,8 +120,8 @@ def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Poly
     if not options:
         return None
     _, _, index, slope = min(options, key=lambda option: option[:2])
-    rest = condition - slope * ring.context.gen(index)
-    return index, ring.reduce(-rest * ring.reciprocal(slope))
+    rest = condition - ring.times(slope, ring.context.gen(index))
+    return index, ring.reduce(ring.times(-rest, ring.reciprocal(slope)))
 
 
 def _preferred(system: System) -> list[str]:

@@ -10,7 +10,8 @@ Found are
   above: candidates are tried at exact rational states, and proved through multipliers, det(M) dI/dt = sum mu_i E_i
   with mu = adj(M) dI/dq', where that is small enough.
 
-``status`` is "proved" (an identity of the ring) or "verified numerically" (exact at random rational states).
+``status`` is "proved" (an identity of the ring) or "verified numerically" (at random states: exactly
+where they are rational, else by narrow balls around zero).
 
 Source: Banshchikov & Vetrov (first integrals); the generalised energy is Jacobi's.
 
@@ -24,10 +25,11 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from flint import fmpq, fmpq_mat
+from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
@@ -35,13 +37,16 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.states import rational_states
+from mbsym.mechanics.oracle import State
+from mbsym.mechanics.states import ball_states, rational_states
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
 
 PROVED, NUMERICAL = "proved", "verified numerically"
 
+#: Working precision of balls, in bits.
+PRECISION = 256
 #: States at which a candidate must be conserved exactly before it is reported.
 STATES = 4
 #: Multipliers through adj(M) are tried up to this size of M and of the candidate.
@@ -170,25 +175,46 @@ def _is_new(formula: Polynomial, others: Sequence[Polynomial]) -> bool:
 
 
 def _conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
-    """Whether dI/dt = 0 exactly, q'' from the equations, at random rational states; and I varies with the state."""
+    """Whether dI/dt = 0, q'' from the equations, at random states, and I holds a velocity at all.
+
+    Exact at rational states; where roots or exponentials make the values irrational, balls that contain zero and are
+    narrow.
+    """
     ring, names = scene.ring, scene.system.coordinates
     if not any(formula.degrees()[ring.index("velocity", name)] > 0 for name in names):
         return False
     rate = total_rate(scene, formula)
-    passed = 0
-    for state in rational_states(scene.system, ring, 4 * STATES):
-        values = dict(state.values)
-        carry = Carrier(ring, state.numbers, values)
-        n = len(names)
+    try:
+        return _vanishes(scene, equations, rate, rational_states(scene.system, ring, 4 * STATES), fmpq_mat)
+    except NotRational:
+        pass
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        return _vanishes(scene, equations, rate, ball_states(scene.system, ring, 4 * STATES), arb_mat)
+    finally:
+        ctx.prec = keep
+
+
+def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iterable[State], matrix: Any) -> bool:
+    """Whether dI/dt, with the accelerations of the equations, is zero at enough of the states."""
+    names = scene.system.coordinates
+    n, passed = len(names), 0
+    for state in states:
+        carry = Carrier(scene.ring, state.numbers, state.values)
         try:
-            mass = fmpq_mat(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
-            forcing = fmpq_mat(n, 1, [carry(x.polynomial) for x in equations.forcing])
-            accelerations = mass.solve(forcing)
+            mass = matrix(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
+            accelerations = mass.solve(matrix(n, 1, [carry(x.polynomial) for x in equations.forcing]))
         except (SingularPoint, ZeroDivisionError):
             continue
-        values |= {acceleration_name(name): accelerations[i, 0] for i, name in enumerate(names)}
-        if Carrier(ring, state.numbers, values)(rate) != fmpq(0):
+        moved = {acceleration_name(name): accelerations[i, 0] for i, name in enumerate(names)}
+        value = Carrier(scene.ring, state.numbers, {**state.values, **moved})(rate)
+        if matrix is fmpq_mat and value != 0:
             return False
+        if matrix is arb_mat:
+            if not value.is_finite():
+                continue
+            if not value.contains(0) or value.rad() > arb(2) ** -60:
+                return False
         passed += 1
         if passed == STATES:
             return True

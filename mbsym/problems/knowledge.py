@@ -1,13 +1,16 @@
 """What a description tells about signs: declared signs, assumptions, and the signs of the user's own symbols.
 
 Conditions are stated in the user's notation where they can be, so its symbols get signs too, by proof from their
-definitions; what cannot be proved stays "real" until an assumption says more.
+definitions; what cannot be proved stays "real" until an assumption says more.  A symbol or an assumption whose formula
+is singular or beyond all budgets tells nothing: less is known then, and nothing that is known is wrong.
 """
 
 from __future__ import annotations
 
+from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 
@@ -25,8 +28,14 @@ def signs(scene: Scene) -> Signs:
     known = _with_reciprocals(scene, Signs(ring.context, tuple(words)))
     words = list(known.words)
     dependent = relations(scene)
+    definitions = _definitions(scene)
     for item in scene.system.notation:
-        definition = ring.substitute(definition_in_parameters(scene, item.name), dependent)
+        if item.name not in definitions:
+            continue
+        try:
+            definition = ring.substitute(definitions[item.name], dependent)
+        except (NoClosedForm, SingularPoint):
+            continue
         words = list(_with_reciprocals(scene, Signs(ring.context, tuple(words))).words)
         word = Signs(ring.context, tuple(words)).sign(definition)
         if word not in ("unknown", "zero"):
@@ -51,28 +60,47 @@ def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ..
     """left - right > 0 and the like, denominators of known sign cleared."""
     found = []
     for item in scene.system.assumptions:
-        left, right = scene.lower(item.left), scene.lower(item.right)
-        if item.relation in _FLIPPED:
-            left, right = right, left
-        numerator, denominators = scene.ring.fraction(left - right)
+        try:
+            left, right = scene.lower(item.left), scene.lower(item.right)
+            if item.relation in _FLIPPED:
+                left, right = right, left
+            numerator, denominators = scene.ring.fraction(left - right)
+        except (NoClosedForm, SingularPoint):
+            continue
         relation = _FLIPPED.get(item.relation, item.relation)
         for factor, exponent in denominators:
             word = plain.sign(factor)
             if word == "negative" and exponent % 2:
                 numerator = -numerator
             elif word != "positive" and exponent % 2:
-                numerator = numerator * factor
+                numerator = scene.ring.times(numerator, factor)
         found.append((numerator, relation))
     return tuple(found)
 
 
 def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
-    """A symbol of the user's notation, earlier symbols replaced by what they stand for."""
+    """A symbol of the user's notation, earlier symbols replaced by what they stand for.
+
+    Raises SingularPoint where that divides by zero or has no closed form: the symbol has no value then.
+    """
+    found = _definitions(scene)
+    if name not in found:
+        raise SingularPoint(f"the symbol {name} has no closed form")
+    return found[name]
+
+
+def _definitions(scene: Scene) -> dict[str, Polynomial]:
+    """The user's symbols in declared parameters alone, those left out that have no such form."""
     ring = scene.ring
     images: dict[int, Polynomial] = {}
+    found: dict[str, Polynomial] = {}
+    missing: set[str] = set()
     for item in scene.system.notation:
-        value = ring.substitute(scene.lower(item.value), images)
-        if item.name == name:
-            return value
-        images[ring.index("parameter", item.name)] = value
-    raise KeyError(name)
+        try:
+            if names(item.value) & missing:
+                raise SingularPoint("an earlier symbol is missing")
+            found[item.name] = ring.substitute(scene.lower(item.value), images)
+            images[ring.index("parameter", item.name)] = found[item.name]
+        except (NoClosedForm, SingularPoint):
+            missing.add(item.name)
+    return found

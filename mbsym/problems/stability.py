@@ -26,8 +26,10 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+
+from flint import fmpq
 
 from mbsym.algebra.base import NotRational, SingularPoint
 from mbsym.algebra.elimination import Elimination, eliminate
@@ -43,6 +45,7 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
 from mbsym.problems.energy import Energy
+from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability_theory import LinearSystem, Verdict, analyse, combine
@@ -91,7 +94,7 @@ class SubsystemStability:
 
     def _formula(self, x: Polynomial) -> Formula:
         whole = self.factor.ring
-        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else x)
+        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else whole.reduce(x))
 
 
 @dataclass(frozen=True)
@@ -104,7 +107,12 @@ class Stability:
 
 
 def stability(
-    scene: Scene, energy_conserved: bool, cyclic: Sequence[str], linear: Linearisation, signs: Signs
+    scene: Scene,
+    energy_conserved: bool,
+    cyclic: Sequence[str],
+    linear: Linearisation,
+    equilibrium: Equilibrium,
+    signs: Signs,
 ) -> Stability:
     """Judges every subsystem.
 
@@ -112,12 +120,12 @@ def stability(
     coordinates that occur neither in L nor in the other loads.
     """
     elimination = _elimination(scene)
-    values = parameter_values(scene)
+    values = parameter_values(scene, equilibrium)
     judged = tuple(
         _judge(scene, part, elimination, signs, values, energy_conserved, cyclic) for part in linear.subsystems
     )
-    numerical = None
-    if all(part.theory.at_point is not None for part in judged):
+    numerical = _motion_at(scene, equilibrium, values)
+    if numerical is None and all(part.theory.at_point is not None for part in judged):
         numerical = combine(part.theory.at_point.verdict for part in judged if part.theory.at_point is not None)
     return Stability(judged, combine(part.theory.verdict for part in judged), numerical)
 
@@ -153,7 +161,7 @@ def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], s
     for assumption, _ in signs.assumptions:
         used |= {k for k, d in enumerate(assumption.degrees()) if d > 0 and ring.generators[k].kind == "parameter"}
     if any(ring.generators[k].kind != "parameter" for k in used):
-        return ring, signs
+        return ring, replace(signs, normal=ring.reduce)
     small = ParameterRing(ring, sorted(used))
     kept = [
         (small.project(assumption), relation)
@@ -198,22 +206,40 @@ def _polynomial(
     return (made[0], made[1], made[2], made[3], made[4]), Formula(ring, factor)
 
 
-def parameter_values(scene: Scene) -> dict[str, Fraction] | None:
-    """Exact values of all parameters, relations used; None unless every independent one has a value."""
+def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Fraction] | None:
+    """Exact values of all parameters: given ones, then relations, then what the conditions of problem 4 leave open.
+
+    None unless all are known.
+    """
     given = {p.name: value for p in scene.system.parameters if (value := rational(p.value)) is not None}
-    dependent = {item.name for item in scene.system.relations}
-    if any(p.name not in given and p.name not in dependent for p in scene.system.parameters):
-        return None
+    solved = {name: value.polynomial for name, value in equilibrium.solved if name not in given}
+    dependent = {scene.ring.generators[k].name: value for k, value in relations(scene).items()}
     numbers = Rationals({}, {})
-    environment = {name: numbers.number(value) for name, value in given.items()}
-    carry = Carrier(scene.ring, numbers, environment)
-    try:
-        for index, value in relations(scene).items():
+    for name, value in (solved | dependent).items():
+        carry = Carrier(scene.ring, numbers, {name: numbers.number(value) for name, value in given.items()})
+        try:
             exact = carry(value)
-            given[scene.ring.generators[index].name] = Fraction(int(exact.p), int(exact.q))
-    except (NotRational, SingularPoint, KeyError):
+        except (NotRational, SingularPoint, KeyError):
+            return None
+        given[name] = Fraction(int(exact.p), int(exact.q))
+    return given if all(p.name in given for p in scene.system.parameters) else None
+
+
+def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Fraction] | None) -> Verdict | None:
+    """ "undecided", with the reason, where the given values break a condition of problem 4; None where they do not."""
+    if values is None:
         return None
-    return given
+    ring = scene.ring
+    exact = {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
+    numbers = dict.fromkeys(ring.names(), fmpq(0)) | exact
+    for condition in equilibrium.conditions:
+        value = ring.evaluate(condition.polynomial, numbers)
+        if not value.contains(0):
+            size = float(value.mid())
+            return Verdict("undecided", "", f"The motion does not exist there: {condition} = {size:.6g}, not 0.")
+        if not value.is_zero():
+            return Verdict("undecided", "", f"Whether the motion exists there is open: {condition} is about 0.")
+    return None
 
 
 def _point(

@@ -267,7 +267,8 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Stability:
 
 
 def _analyse(system: LinearSystem, signs: Signs) -> Stability:
-    raw = characteristic_polynomial(system.M, _add(system.D, system.G), _add(system.K, system.N))
+    written = characteristic_polynomial(system.M, _add(system.D, system.G), _add(system.K, system.N))
+    raw = tuple(signs.normalised(c) for c in written)
     mass = definiteness(system.M, signs, "M")
     # A mass matrix is positive definite, so its minors may be used to judge everything else.
     # Long ones would cost the search for combinations more than they can give.

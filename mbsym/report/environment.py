@@ -9,9 +9,15 @@ from typing import Any
 
 def rendered(template: str, filters: Mapping[str, Callable[..., Any]], **values: Any) -> str:
     """A template of ``mbsym_templates`` filled in; an unknown name in it is an error."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only reports need it
+    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined  # only reports need it
+
+    try:
+        cache = FileSystemBytecodeCache()  # compiled templates, in a folder that only this user may write
+    except RuntimeError:
+        cache = None
 
     environment = Environment(
+        bytecode_cache=cache,
         loader=FileSystemLoader(str(files("mbsym_templates"))),
         undefined=StrictUndefined,
         autoescape=False,

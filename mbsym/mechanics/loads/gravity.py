@@ -168,17 +168,17 @@ def _on_the_expansion_point(orbit: _Orbit) -> Wrench:
     """
     scene, algebra = orbit.scene, orbit.scene.algebra
     total = algebra.zero_vector
-    half, three, fifteen_halves = (algebra.number(Fraction(n, 2)) for n in (1, 6, 15))
+    three_halves, three, fifteen_halves = (algebra.number(Fraction(n, 2)) for n in (3, 6, 15))
     for motion, e, c in orbit.bodies():
         along, square = algebra.dot(e, c), algebra.dot(c, c)
-        per_e = algebra.times(half * three, square) - algebra.times(fifteen_halves, algebra.times(along, along))
+        per_e = algebra.times(three_halves, square) - algebra.times(fifteen_halves, algebra.times(along, along))
         force = algebra.add(algebra.scale(per_e, e), algebra.scale(algebra.times(three, along), c))
         force = algebra.scale(motion.mass, force)
         tensor = central_inertia(scene, motion)
         if tensor is not None:
             turned = algebra.apply(tensor, e)
             trace = tensor[0][0] + tensor[1][1] + tensor[2][2]
-            per_e = algebra.times(fifteen_halves, algebra.dot(e, turned)) - algebra.times(half * three, trace)
+            per_e = algebra.times(fifteen_halves, algebra.dot(e, turned)) - algebra.times(three_halves, trace)
             spread = algebra.subtract(algebra.scale(per_e, e), algebra.scale(three, turned))
             force = algebra.add(force, spread)
         total = algebra.add(total, scene.to_axes(force, motion.body.name, orbit.about))
