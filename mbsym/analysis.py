@@ -255,7 +255,10 @@ class Analysis:
 
     @property
     def integrals(self) -> tuple[Integral, ...]:
-        return self._result("integrals", lambda: integrals.integrals(self.scene, self.energy, self.equations))
+        return self._result("integrals", self._integrals)
+
+    def _integrals(self) -> tuple[Integral, ...]:
+        return integrals.integrals(self.scene, self.energy, self.equations, self.programs)
 
     # --- self-check ---
 

@@ -95,6 +95,14 @@ def test_failed_self_check_is_exit_code_one(tmp_path: Path, monkeypatch: pytest.
     assert "FAILED" in outcomes
 
 
+def test_a_coordinate_without_inertia_is_named(tmp_path: Path) -> None:
+    text = PENDULUM.read_text().replace("mass centre: [0, -l, 0]", "mass centre: [0, 0, 0]").replace("inertia: [J, 0, J]", "inertia: [J, J, 0]")
+    (tmp_path / "idle.yaml").write_text(text)
+    done = mbsym("run", tmp_path / "idle.yaml", "--out", tmp_path / "out", "-f", "json", "-p", "1-3")
+    assert done.exit_code == 1
+    assert "theta carries no inertia" in done.stderr
+
+
 def test_output_folder_that_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     done = mbsym("run", PENDULUM, "--out", tmp_path / "file" / "out", "-f", "json", "-p", "1")

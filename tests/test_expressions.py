@@ -128,6 +128,27 @@ def test_hostile_texts_are_refused_at_once(written: str, code: str) -> None:
     assert code in {item.code for item in complaints}
 
 
+@pytest.mark.parametrize(
+    ("written", "hint"),
+    [
+        ("cosine(x)", "did you mean 'cos'?"),
+        ("Sine(x)", "did you mean 'sin'?"),
+        ("coshyp(x)", "did you mean 'cosh'?"),
+        ("arcsin(x)", "write atan(x/sqrt(1 - x**2)) for asin(x)"),
+        ("abs(x)", "the functions are " + ", ".join(FUNCTIONS)),
+        ("0,5", "numbers have a decimal point: write 0.5"),
+        ("1_000", "digits stand together: write 1000"),
+        ("1.2.3", "a number has one decimal point"),
+        ("ℓ", "names are Latin letters, digits and _: write l"),
+        ("Θ", "names are Latin letters, digits and _: write Theta"),
+        ("ς", "names are Latin letters, digits and _: write sigma"),
+        ("é", "names are Latin letters, digits and _: write e"),
+    ],
+)
+def test_hints_name_what_was_meant(written: str, hint: str) -> None:
+    assert [item.hint for item in parse(written)[1]] == [hint]
+
+
 def test_long_sums_may_be_grouped() -> None:
     group = "(" + " + ".join(["x"] * 100) + ")"
     assert good(" + ".join([group] * 10))

@@ -42,7 +42,13 @@ def passed(analysis: Analysis, *allowed: str) -> bool:
     About a motion that rests elsewhere than at zero, sines and cosines are irrational: balls are the best there is.
     """
     disturbed = {"perturbed motion": (*allowed, NUMERICAL)}
-    wrong = [check for check in analysis.checks if check.outcome not in disturbed.get(check.name, allowed)]
+    # A random system may well have a coordinate without inertia; that this is said is tested elsewhere.
+    wrong = [
+        check
+        for check in analysis.checks
+        if check.outcome not in disturbed.get(check.name, allowed)
+        and not (check.name == "mass matrix" and "singular" in check.detail)
+    ]
     assert not wrong, wrong[0]
     return True
 
@@ -55,7 +61,7 @@ def passed(analysis: Analysis, *allowed: str) -> bool:
 def test_self_checks_are_exact(description: Description) -> None:
     analysis = analysed(description, (1, 2, 3))
     assert passed(analysis, EXACT)
-    assert len(analysis.checks) == 4
+    assert len(analysis.checks) == 5
 
 
 @law

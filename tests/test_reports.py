@@ -21,6 +21,9 @@ from flint import arb, fmpq
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.formulas.formula import Formula
+from mbsym.report.conditions import Reference, Shown, Statement
+from mbsym.report.latex_report import LINE, broken
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 
@@ -224,6 +227,155 @@ def test_latex_is_balanced_and_says_its_conventions():
     assert r"\begin{pmatrix} c & f \\ f & d \end{pmatrix}" in text
 
 
+def test_long_lines_are_broken_where_tex_reads_a_space():
+    words = " ".join(f"x_{{{k}}} \\penalty0  + \\ " for k in range(5000))
+    lines = broken(words).split("\n")
+    assert max(map(len, lines)) <= LINE + 2
+    assert all(line.strip() for line in lines)
+    assert not any(line.endswith("\\") for line in lines)
+    assert " ".join(lines) == words
+    assert broken("% " + words) == "% " + words
+
+
+def test_no_line_of_the_report_is_long():
+    analysis = analysis_of("spatial-arm.yaml")
+    text = TARGETS["latex"].render(analysis, (1, 2, 3, 7))
+    assert max(map(len, text.split("\n"))) < 1000
+
+
+EVERY_LOAD = """
+mbsym: 1
+name: Loads of all kinds
+parameters: {m: positive, k: positive, c: positive, g: positive, L: positive, M: real, n: positive}
+bodies:
+  - name: sun
+    attached to: 0
+    connection point: [0, L, 0]
+    mass: 0
+  - name: cart
+    attached to: sun
+    connection point: [x, 0, 0]
+    coordinates: [x]
+    mass: m
+  - name: bob
+    attached to: cart
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: [0, -L, 0]
+    mass: m
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - newtonian gravity: {constant: n, centre: 0, about: sun, order: 2}
+  - spring: {coordinate: x, stiffness: k + m, rest: L}
+  - spring: {between: [{body: cart, point: [0, 0, 0]}, {body: 0, point: [0, 0, L]}], stiffness: k, length: L/2}
+  - damper: {coordinate: theta, coefficient: c}
+  - damper: {between: [{body: bob, point: [0, -L, 0]}, {body: 0, point: [0, 0, 0]}], coefficient: 2*c}
+  - potential: -k*x**4
+  - rayleigh: c*x_dot**4
+  - generalized force: {x: -c*x_dot, theta: M}
+  - force: {body: bob, point: [0, -L, 0], components: [k, 0, 0], axes: bob}
+  - torque: {body: bob, components: [0, 0, M], axes: cart, reaction on: cart}
+motion: {x: 0, theta: {value: L, rate: n}}
+initial: {x: {position: 1/2, velocity: L}}
+"""
+
+
+def test_latex_lists_the_loads_and_the_given_motion(tmp_path):
+    analysis = mbsym.loads(EVERY_LOAD)
+    text = TARGETS["latex"].render(analysis, (2,))
+    for part in (
+        r"Uniform gravity, $g = (0,\; -g,\; 0)$ in inertial axes: $U = \sum m\, g \cdot r_C$",
+        r"with $\nu = n$, expanded to order 2 about the origin $O$ of \textit{sun}",
+        r"Spring of $x$, stiffness $k + m$, rest at $L$: $U = -\tfrac{1}{2}\, (k + m)\, (x - L)^2$",
+        r"Spring between the point $(0,\; 0,\; 0)$ of \textit{cart} and the point $(0,\; 0,\; L)$ of the inertial",
+        r"natural length $\frac{L}{2}$: $U = -\tfrac{1}{2}\, k\, (d - \frac{L}{2})^2$",
+        r"Damper of $\theta$, coefficient $c$: dissipation function $\tfrac{1}{2}\, c\, \dot{\theta}^2$",
+        r"dissipation function $\tfrac{1}{2}\, 2 c\, v^2$",
+        r"Potential: $-U = -k x^{4}$",
+        r"Dissipation function: $c \dot{x}^{4}$",
+        r"Generalised forces: $Q_{x} = -c \dot{x}$, $Q_{\theta} = M$",
+        r"Force $(k,\; 0,\; 0)$ in the axes of \textit{bob}, at the point $(0,\; -L,\; 0)$ of \textit{bob}",
+        r"Torque $(0,\; 0,\; M)$ in the axes of \textit{cart}, on \textit{bob}; the opposite one on \textit{cart}",
+        r"\theta = L + n t",
+        r"$x(0) = \frac{1}{2}$",
+        r"$\dot{x}(0) = L$",
+    ):
+        assert part in text.replace("\n", " "), part
+    if shutil.which("pdflatex") is not None:
+        compiled(text, tmp_path)
+
+
+def test_long_conditions_are_shown_once():
+    analysis = analysis_of("satellite.yaml")
+    text = TARGETS["latex"].render(analysis, (6,)).replace("\n", " ")
+    assert len(text) < 30_000
+    assert r"\longformula{\text{discriminant} < 0}" in text
+    assert r"\longformula{v_{4} < 0}" in text
+    assert r"\text{minor 3 of K} \colon\quad v_{0} < 0" in text
+    assert "of the last" not in text
+    unstable = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]["cases"][0][-1]
+    assert unstable["any_of"] == ["v4 < 0", "v2 < 0", "v0 < 0", "discriminant < 0"]
+
+
+def test_what_was_shown_is_recognised_with_either_sign():
+    ring = analysis_of("heavy-top.yaml").ring
+    p = ring.context.gen(ring.index("parameter", "m")) - ring.context.gen(ring.index("parameter", "g"))
+    shown = Shown()
+    shown.show(Statement("-(a)", Formula(ring, p), ">"))
+    assert shown.reference(Statement("a", Formula(ring, -p), ">")) == Reference("a", "a", ">")
+    assert shown.reference(Statement("-(a)", Formula(ring, p), ">=")) == Reference("a", "a", "<=")
+    assert shown.reference(Statement("b", Formula(ring, p), ">")) == Reference("b", "a", "<")
+    assert shown.reference(Statement("b", Formula(ring, -p), "!=")) == Reference("b", "a", "!=")
+    assert shown.reference(Statement("b", Formula(ring, 2 * p), ">")) is None
+    assert shown.reference(Statement("b", None, ">")) is None
+
+
+def test_a_number_stands_in_front_of_a_matrix():
+    text = TARGETS["latex"].render(analysis_of("satellite.yaml"), (5,))
+    assert r"3 \begin{pmatrix} b - a & f \\ f & f \end{pmatrix}" in text
+
+
+# --- verdicts that depend on something ---
+
+HOOP = """
+mbsym: 1
+name: Bead on a rotating hoop
+parameters: {m: positive, g: positive, R: positive, Omega: positive, theta0: real}
+prescribed: {psi: {rate: Omega}}
+bodies:
+  - name: hoop
+    attached to: 0
+    rotation: {axes: [2], angles: [psi]}
+    mass: 0
+  - name: bead
+    attached to: hoop
+    rotation: {axes: [3], angles: [theta]}
+    coordinates: [theta]
+    mass centre: [0, -R, 0]
+    mass: m
+loads: [uniform gravity: {vector: [0, -g, 0]}]
+motion: {theta: theta0}
+"""
+
+
+def test_verdicts_presume_the_conditions_of_problem_4():
+    analysis = mbsym.loads(HOOP)
+    presumed = "provided the condition of problem 4 holds"
+    assert f"Verdict, {presumed}: " in TARGETS["latex"].render(analysis, (4, 6)).replace("\n", " ")
+    assert presumed in TARGETS["wolfram"].render(analysis, (6,))
+    lines = [text for line in summary(analysis, (6,), []).problems for text in line.lines]
+    assert f"all this {presumed}" in lines
+    assert "problem 4 holds" not in TARGETS["latex"].render(analysis_of("heavy-top.yaml"), (4, 6))
+
+
+def test_the_summary_says_what_a_verdict_depends_on():
+    (line,) = summary(analysis_of("heavy-top.yaml"), (6,), []).problems
+    assert line.lines[0] == "alpha, beta: depends on the parameters; necessary conditions:"
+    assert "whole system: depends on the parameters" in line.lines
+    never = mbsym.loads(HOOP.replace("theta: theta0}", "theta: 0}") + "assumptions: [R*Omega**2 > g]\n")
+    (line,) = summary(never, (6,), []).problems
+    assert any(re.fullmatch(r"  v0 = .*g.* > 0 never holds", text) for text in line.lines), line.lines
+
+
 # --- no closed form ---
 
 
@@ -324,6 +476,13 @@ def test_wolfram_reads_the_report_and_gets_the_same_numbers(name, mathics):
 
 def uncommented(text: str) -> str:
     return re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL).strip().rstrip(";")
+
+
+def test_a_call_of_ndsolve_is_suggested_only_with_initial_conditions():
+    assert "NDSolve" in TARGETS["wolfram"].render(analysis_of("heavy-top.yaml"), (3,)).split("*)", 1)[1]
+    text = TARGETS["wolfram"].render(mbsym.loads(HOOP), (3,))
+    assert "initialConditions = {};" in text
+    assert "NDSolve" not in text
 
 
 # --- not even a program ---

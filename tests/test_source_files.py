@@ -18,6 +18,7 @@ from mbsym.expressions.tree import text as written
 from mbsym.model.system import CoordinateSpring, Inertia, PointForce, System, UniformGravity, rational
 from mbsym.source import json_schema, load, read, render, to_text, to_yaml
 from mbsym.source.placed import MAX_TEXT
+from mbsym.source.scope import slip_of
 
 SYSTEMS = sorted((Path(__file__).parent.parent / "systems").glob("*.yaml"))
 EVERYTHING = Path(__file__).parent / "everything.yaml"
@@ -112,11 +113,38 @@ def test_scalars_are_what_stands_in_the_file() -> None:
     text = "mbsym: 1\nname: no\nparameters: {y: 1e-3, n: 0o7}\nbodies:\n  - {name: on, attached to: 0, mass: 010}\n"
     system, complaints = read(text, "x.yaml")
     assert system is None
-    assert [item.code for item in complaints] == ["bad-word"]
+    assert [item.code for item in complaints] == ["bad-word", "no-coordinates"]
+    text = text.replace("mass: 010", "mass: 010, rotation: {axes: [3], angles: [x]}, mass centre: [y, n, 0]")
     system = good(text.replace("0o7", "0.10"))
     assert system.name == "no"
     assert [rational(one.value) for one in system.parameters] == [Fraction(1, 1000), Fraction(1, 10)]
     assert rational(system.bodies[0].mass) == 10
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_the_content_decides_about_the_spelling(path: Path) -> None:
+    system = loaded(path)
+    assert good(to_yaml(system), "x.txt") == system
+    assert good(to_text(system), "x.yaml") == system
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("thetta", "theta"),
+        ("tehta", "theta"),
+        ("psii", None),
+        ("phii", "phi"),
+        ("theta2", None),
+        ("thetaB", None),
+        ("theta", None),
+        ("Phi", None),
+        ("gama", "gamma"),
+        ("beta", None),
+    ],
+)
+def test_slips_of_the_pen_are_no_labels(name: str, meant: str | None) -> None:
+    assert slip_of(name, ["theta", "theta1", "thetaA", "phi", "gamma", "omega0"]) == meant
 
 
 def test_defaults_and_short_forms() -> None:

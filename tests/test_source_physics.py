@@ -14,6 +14,7 @@ from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import (
     NumberTensor,
     about_mass_centre,
+    impossible_alone,
     inertia_violation,
     number_of,
     second_moments,
@@ -65,6 +66,18 @@ def test_a_little_less_than_nothing_is_not_admissible(cloud: list) -> None:
     tensor = inertia_of([(-mass, r) for mass, r in cloud])
     if any(any(row) for row in tensor):
         assert inertia_violation(tensor) is not None
+
+
+@pytest.mark.parametrize(
+    ("moments", "axis"),
+    [("0 0 J", 2), ("J**2*m 0 0", 0), ("0 v 0", 1), ("0 x 0", None), ("0 J J", None), ("0 0 0", None), ("0 0 n", None)],
+)
+def test_a_single_positive_moment_belongs_to_no_body(moments: str, axis: int | None) -> None:
+    zero = expression("0")
+    first, second, third = map(expression, moments.split())
+    tensor = ((first, zero, zero), (zero, second, zero), (zero, zero, third))
+    signs = {"J": "positive", "m": "positive", "x": "real", "n": "nonnegative"}
+    assert impossible_alone(tensor, signs, {"v": Fraction(2)}) == axis
 
 
 def test_second_moments_of_a_rod() -> None:

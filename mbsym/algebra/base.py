@@ -19,7 +19,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 
 #: A scalar of some algebra: anything with + - * among its own kind.
 Scalar = Any
@@ -127,12 +127,19 @@ class Lowering:
 
     ``environment`` maps every name that may occur (parameters, coordinates, velocities, accelerations, prescribed
     quantities, ``t``, ``pi``) to a scalar.  Values are remembered, so a subexpression is lowered once.
+
+    Derivatives of long expressions are deep trees that share most of their parts.  Therefore equal expressions are
+    recognised by numbers given to their parts, not by comparing whole trees, and values are formed from the leaves
+    upwards, not by recursion.
     """
 
     def __init__(self, algebra: Algebra, environment: Mapping[str, Scalar]) -> None:
         self.algebra = algebra
         self.environment = environment
-        self._known: dict[Expression, Scalar] = {}
+        self._values: dict[int, Scalar] = {}
+        self._shapes: dict[tuple[Any, ...], int] = {}
+        self._numbers: dict[int, int] = {}
+        self._kept: list[Expression] = []  # an identity must not be used again
 
     def vector(self, components: Sequence[Expression]) -> Vector:
         return (self(components[0]), self(components[1]), self(components[2]))
@@ -142,18 +149,63 @@ class Lowering:
 
         Raises SingularPoint for a division by zero, NoClosedForm or NotRational as the algebra does.
         """
-        known = self._known.get(expression)
-        if known is None:
-            known = self._known[expression] = self.algebra.reduce(self._value(expression))
-        return known
+        number = self._number(expression)
+        if number not in self._values:
+            pending = [expression]
+            while pending:
+                node = pending[-1]
+                own = self._number(node)
+                lacking = [x for x in self._operands(node) if self._number(x) not in self._values]
+                if own not in self._values and lacking:
+                    pending.extend(reversed(lacking))
+                    continue
+                pending.pop()
+                if own not in self._values:
+                    self._values[own] = self.algebra.reduce(self._value(node))
+        return self._values[number]
+
+    def _number(self, expression: Expression) -> int:
+        """The same number for equal expressions."""
+        known = self._numbers.get(id(expression))
+        if known is not None:
+            return known
+        pending = [expression]
+        while pending:
+            node = pending[-1]
+            if id(node) in self._numbers:
+                pending.pop()
+                continue
+            parts = children(node)
+            lacking = [x for x in parts if id(x) not in self._numbers]
+            if lacking:
+                pending.extend(lacking)
+                continue
+            shape = (type(node), _label(node), *(self._numbers[id(x)] for x in parts))
+            self._numbers[id(node)] = self._shapes.setdefault(shape, len(self._shapes))
+            self._kept.append(node)
+            pending.pop()
+        return self._numbers[id(expression)]
+
+    def _operands(self, expression: Expression) -> tuple[Expression, ...]:
+        """The parts whose values are asked for by ``_value``."""
+        match expression:
+            case Operation("**", base, _):
+                return (base,)
+            case Call("sin" | "cos" | "tan", argument) if self._angle_form(argument) is not None:
+                return ()
+        return children(expression)
 
     def angle(self, expression: Expression) -> tuple[Scalar, Scalar]:
         """(sin, cos) of an expression."""
+        form = self._angle_form(expression)
+        return self.algebra.sin_cos_of(self(expression)) if form is None else self.algebra.sin_cos(form)
+
+    def _angle_form(self, expression: Expression) -> LinearForm | None:
+        """None for an angle of its own: a number that is no multiple of pi, a velocity, anything not linear."""
         form = linear_form(expression)
-        if form is not None and not form.constant and not any(name.endswith("_dot") for name, _ in form.coefficients):
-            return self.algebra.sin_cos(form)
-        # A number that is no multiple of pi, a velocity, anything not linear: an angle of its own.
-        return self.algebra.sin_cos_of(self(expression))
+        if form is None or form.constant or any(name.endswith("_dot") for name, _ in form.coefficients):
+            return None
+        return form
 
     def _value(self, expression: Expression) -> Scalar:
         algebra = self.algebra
@@ -197,3 +249,17 @@ class Lowering:
         if value.denominator == 2:
             return self.algebra.power(self.algebra.square_root(self(base)), value.numerator)
         raise NoClosedForm(f"the power {value}: only whole and half exponents are supported")
+
+
+def _label(expression: Expression) -> Any:
+    """What an expression is, its operands apart."""
+    match expression:
+        case Number(value):
+            return value
+        case Name(name):
+            return name
+        case Operation(operator, _, _):
+            return operator
+        case Call(function, _):
+            return function
+    return None

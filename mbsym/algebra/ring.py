@@ -39,14 +39,14 @@ TERM_BUDGET = 400_000
 #: A product that may need more bytes than this is not begun: a library that runs out of memory ends the process.
 MEMORY_BUDGET = 1_500_000_000
 #: Candidate terms (and what costs as much) of everything that is done in one ring together, at the usual term budget.
-WORK_BUDGET = 600_000_000
+WORK_BUDGET = 300_000_000
 #: Below so many candidate terms a product, reduction or substitution is not looked at more closely.
 SMALL = 20_000
 #: The degree in one generator: powers of powers grow far beyond any formula without growing in terms.
 MOST_DEGREE = 1_000
 #: sin and cos of n*x are polynomials of degree n in sin and cos of x.
 MOST_MULTIPLE = 256
-#: What is factored: so many terms.
+#: What is factored, and what greatest common divisors are taken of: so many terms.
 MOST_FACTORED = 20_000
 #: Integers under a root are factored: so many bits may remain when the small primes are out.
 MOST_BITS = 120
@@ -176,6 +176,15 @@ class Ring(Algebra):
         content, factors = x.factor()
         return content, [(factor, int(exponent)) for factor, exponent in factors]
 
+    def common_factor(self, a: Polynomial, b: Polynomial) -> Polynomial:
+        """The greatest common divisor; 1, which divides both as well, where they are too long for it."""
+        if a.is_zero() or b.is_zero():
+            return a + b
+        if a.is_constant() or b.is_constant() or max(len(a), len(b)) > MOST_FACTORED:
+            return self.one
+        self.spend(100 * (len(a) + len(b)))
+        return a.gcd(b)
+
     def vanishes(self, x: Polynomial) -> bool:
         return bool(x.is_zero())
 
@@ -183,6 +192,8 @@ class Ring(Algebra):
 
     def reduce(self, x: Polynomial) -> Polynomial:
         """Normal form: each relation's leading term eliminated, sin^2 -> 1 - cos^2 among them."""
+        if x.is_constant():
+            return x
         self._check(x)
         self.spend(len(x) + 8 * self._overhead)
         degrees = x.degrees()
@@ -457,8 +468,14 @@ class Ring(Algebra):
 
     def depends_on(self, x: Polynomial, name: str) -> bool:
         """Whether a coordinate, a prescribed quantity or t occurs (plainly, under sin and cos, or adjoined)."""
+        return bool(self.dependencies(x, (name,)))
+
+    def dependencies(self, x: Polynomial, names: Iterable[str]) -> tuple[str, ...]:
+        """Which of the names x depends on."""
+        if x.is_constant():
+            return ()
         degrees = x.degrees()
-        return any(degrees[index] > 0 for index in self._derivatives[name])
+        return tuple(name for name in names if any(degrees[index] > 0 for index in self._derivatives[name]))
 
     # --- substitution ------------------------------------------------------------------------------------------------
 

@@ -70,7 +70,30 @@ _LOOKALIKES = {
     "}": "only round parentheses group",
 }
 
-_FOREIGN_FUNCTIONS = {"arctan": "atan", "ln": "log", "tg": "tan", "sh": "sinh", "ch": "cosh", "th": "tanh"}
+_ARCSINE = "atan(x/sqrt(1 - x**2)) for asin(x)"
+_ARCCOSINE = "pi/2 - atan(x/sqrt(1 - x**2)) for acos(x)"
+_FOREIGN_FUNCTIONS = {
+    "arctan": "atan",
+    "arctangent": "atan",
+    "ln": "log",
+    "tg": "tan",
+    "sh": "sinh",
+    "ch": "cosh",
+    "th": "tanh",
+    "cot": "1/tan(...)",
+    "ctg": "1/tan(...)",
+    "asin": _ARCSINE,
+    "arcsin": _ARCSINE,
+    "arcsine": _ARCSINE,
+    "acos": _ARCCOSINE,
+    "arccos": _ARCCOSINE,
+    "arccosine": _ARCCOSINE,
+}
+
+#: Names of functions elsewhere, so short that they could be taken for factors.
+_NO_FACTORS = ("abs", "exp", "max", "min", "pow", "sec", "csc", "sgn")
+
+_DECIMAL_COMMA = re.compile(r"(?<![\w.,])([0-9]+),([0-9]+)(?![\w.,])")
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20}
 _BINDING_SIGN = 30
@@ -99,7 +122,7 @@ def parse_expression(text: str, complaints: Complaints, span_of: SpanOf) -> Expr
         if len(text) > MAX_LENGTH:
             complaints.error("too-long", f"an expression has at most {MAX_LENGTH} characters", span_of(0, 1))
             raise _Refused
-        parser = _Parser(_tokens(text, complaints, span_of), complaints, span_of)
+        parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
         tree = parser.whole()
     except _Refused:
         return None
@@ -134,7 +157,7 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     if character == "'" and position and text[position - 1].isalnum():
         hint = "a velocity is written theta_dot"
     if hint is None and character.isalpha():
-        hint = f"names are Latin letters, digits and _: write {_latin_name(character)}"
+        hint = f"names are Latin letters, digits and _: write {in_latin(character)}"
     complaints.error(
         "bad-character", f"the character {ascii_safe(shown)} has no meaning here", span_of(position, end), hint
     )
@@ -148,19 +171,31 @@ def ascii_safe(text: str) -> str:
     return quote + "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short) + quote
 
 
-def _latin_name(character: str) -> str:
-    """``theta`` for the Greek letter, ``a`` for a lookalike of a."""
+def in_latin(text: str) -> str:
+    """``theta`` for the Greek letter, ``a`` for a lookalike of a, ``l0`` for a script l with a lowered 0."""
+    written = "".join(map(_latin_letter, unicodedata.normalize("NFKC", text)))
+    return written if written.isascii() else "the name in Latin letters"
+
+
+def _latin_letter(character: str) -> str:
     name = unicodedata.name(character, "")
-    word = name.rsplit("LETTER ", 1)[-1].split(" ")[0]
-    if not word:
-        return "the name in Latin letters"
-    return word.capitalize() if "CAPITAL" in name and len(word) > 1 else word if "CAPITAL" in name else word.lower()
+    if character.isascii() or "LETTER " not in name:
+        return character
+    word = name.rsplit("LETTER ", 1)[-1].split(" WITH ")[0].split(" ")[-1]
+    return word.lower() if "CAPITAL" not in name else word.capitalize()
+
+
+def decimal_comma(text: str) -> str | None:
+    """The hint for a number such as ``0,5`` in a text."""
+    match = _DECIMAL_COMMA.search(text)
+    return match and f"numbers have a decimal point: write {match.group(1)}.{match.group(2)}"
 
 
 class _Parser:
     """Precedence climbing over a list of tokens."""
 
-    def __init__(self, tokens: list[_Token], complaints: Complaints, span_of: SpanOf) -> None:
+    def __init__(self, text: str, tokens: list[_Token], complaints: Complaints, span_of: SpanOf) -> None:
+        self.text = text
         self.tokens = tokens
         self.position = 0
         self.nodes = 0
@@ -288,7 +323,7 @@ class _Parser:
             self.advance()
             return tree
         if self.next.text == ",":
-            raise self.refusal("bad-expression", "one argument only", self.next)
+            raise self.refusal("bad-expression", "one argument only", self.next, decimal_comma(self.text))
         if self.next.kind == "end":
             raise self.refusal("bad-expression", "this parenthesis is never closed", opening)
         raise self.trailing(self.next)
@@ -351,6 +386,12 @@ class _Parser:
             return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         if token.kind in ("name", "number") or token.text == "(":
             hint = f"write {previous.text}*{token.text} for a product"
+        if token.text == ",":
+            hint = decimal_comma(self.text)
+        if previous.kind == "number" and re.fullmatch(r"[0-9_]+", token.text):
+            hint = f"digits stand together: write {previous.text}{token.text.replace('_', '')}"
+        elif previous.kind == token.kind == "number" and previous.end == token.start:
+            hint = "a number has one decimal point"
         if token.text == ")":
             return self.refusal("bad-expression", "this parenthesis was never opened", token)
         return self.refusal("bad-expression", f"an operator is missing before {ascii_safe(token.text)}", token, hint)
@@ -359,10 +400,12 @@ class _Parser:
 def _function_hint(name: str) -> str:
     if name in _FOREIGN_FUNCTIONS:
         return f"write {_FOREIGN_FUNCTIONS[name]}"
-    close = get_close_matches(name.lower()[:40], FUNCTIONS, n=1)
+    lower = name.lower()[:40]
+    begun = [one for one in FUNCTIONS if lower.startswith(one)]  # cosine, sinus, exponential
+    close = [max(begun, key=len)] if begun else get_close_matches(lower, FUNCTIONS, n=1)
     if close:
         return f"did you mean '{close[0]}'?"
-    if len(name) <= 3:
+    if len(name) <= 3 and name not in _NO_FACTORS:
         return f"write {name}*(...) for a product; the functions are {', '.join(FUNCTIONS)}"
     return f"the functions are {', '.join(FUNCTIONS)}"
 

@@ -214,18 +214,20 @@ class LatexPrinter:
 
 def _joined(factors: Sequence[str]) -> str:
     """Factors side by side; a thin space after a function, whose argument would seem to go on, and around words."""
-    written = "".join(factors[:1])
+    if len(factors) < 2:
+        return "".join(factors)
+    written = [factors[0]]
     for before, factor in pairwise(factors):
-        after_function = re.match(r"\\(sin|cos|exp|ln|arctan)\b", before) is not None
-        before_function = factor.startswith(("\\sin", "\\cos"))
         word = before.startswith(_WORDS) or factor.startswith(_WORDS)
-        written += r"\, " if (after_function and not before_function) or word else " "
-        written += factor
-    return written
+        runs_on = before.startswith(_FUNCTIONS) and not factor.startswith(_FUNCTIONS[:2])
+        written.append(r"\, " if word or runs_on else " ")
+        written.append(factor)
+    return "".join(written)
 
 
 #: Names of several letters, which must not run into their neighbours.
 _WORDS = (r"\mathit", r"\mathtt")
+_FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan")
 
 
 def latex_matrix(rows: Sequence[Sequence[str]]) -> str:

@@ -14,10 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary, proxy
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
 from mbsym.algebra.ring import Polynomial, Ring
 
@@ -32,20 +32,19 @@ COLLECT = 40
 Rational = Any  # flint.fmpq
 #: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
 Monomial = tuple[tuple[int, int], ...]
-Terms = dict[Monomial, Rational]
+#: Coefficients are whole: a common denominator is set aside.  (Integers of Python are compared and hashed quickly.)
+Terms = dict[Monomial, int]
 Split = Callable[[Monomial], tuple[Monomial, Monomial]]
 
 
-@dataclass(frozen=True, slots=True)
-class Factor:
+class Factor(NamedTuple):
     """``base ** exponent``; the base is the number of a generator (never a reciprocal) or a sum."""
 
     base: int | Sum
     exponent: int = 1
 
 
-@dataclass(frozen=True, slots=True)
-class Product:
+class Product(NamedTuple):
     """coefficient * (product of ``over``) / (product of ``under``)."""
 
     coefficient: Rational
@@ -85,7 +84,9 @@ _PRESENTERS: WeakKeyDictionary[Ring, _Presenter] = WeakKeyDictionary()
 _RECIPROCAL, _VELOCITY = 2, 3
 _MOTION = {"velocity": _VELOCITY, "acceleration": 4}
 _PLACE = ("coordinate", "prescribed", "time", "sine", "cosine")
-_END = (1 << 30, 0)
+#: Numbers that order by level, place and exponent: (level, adjoined, declared, within) and, in keys, the exponent.
+_PLACES, _EXPONENTS = 1 << 24, 1 << 32
+_END = 1 << 80
 
 
 class _Presenter:
@@ -96,7 +97,9 @@ class _Presenter:
         names = [g.name for g in ring.generators if g.kind in ("coordinate", "prescribed", "time", "parameter")]
         self._declared = {name: place for place, name in enumerate(names)}
         self._levels: dict[int, int] = {}
-        self._places: dict[int, tuple[Any, ...]] = {}
+        self._places: dict[int, int] = {}
+        self._inverted: dict[int, Polynomial | None] = {}
+        self._pairs: dict[tuple[int, int], int] = {}
         self._shapes: dict[int, tuple[Polynomial, Sum]] = {}
         self._factored: dict[frozenset[Any], Product] = {}
         self._brackets: dict[frozenset[Any], Sum] = {}
@@ -111,25 +114,27 @@ class _Presenter:
         return known[1]
 
     def _present(self, polynomial: Polynomial) -> Sum:
-        terms, under = self._as_fraction(polynomial)
+        numerator, under = self._as_fraction(polynomial)
+        scale, terms = self._terms(numerator)
         if not terms:
             return Sum(())
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
+        product = product._replace(coefficient=product.coefficient / scale)
         if under:
-            return Sum((Product(product.coefficient, product.over, _ordered(self, [*product.under, *under])),))
+            return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
         return _opened(product)
 
-    def _as_fraction(self, polynomial: Polynomial) -> tuple[Terms, list[Factor]]:
+    def _as_fraction(self, polynomial: Polynomial) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
         if len(polynomial) <= FACTOR_WHOLE and any(self._long_reciprocal(k) for k in _used(polynomial)):
             numerator, denominators = self.ring.fraction(polynomial)
             if len(numerator) < len(polynomial):
-                return self._terms(numerator), [Factor(self(p), exponent) for p, exponent in denominators]
-        return self._terms(polynomial), []
+                return numerator, [Factor(self(p), exponent) for p, exponent in denominators]
+        return polynomial, []
 
     def _long_reciprocal(self, index: int) -> bool:
-        generator = self.ring.generators[index]
-        return generator.kind == "reciprocal" and len(generator.argument) > 1
+        inner = self._inverse_of(index)
+        return inner is not None and len(inner) > 1
 
     # --- generators ------------------------------------------------------------------------------------------------
 
@@ -150,28 +155,47 @@ class _Presenter:
             self._levels[index] = level
         return self._levels[index]
 
-    def place(self, index: int) -> tuple[Any, ...]:
-        """The order in which people read: by level, then as declared; adjoined generators last."""
+    def place(self, index: int) -> int:
+        """The order in which people read: by level, then as declared; adjoined generators last, the newest first."""
         if index not in self._places:
             g = self.ring.generators[index]
             within = ("sine", "cosine").index(g.kind) + 1 if g.kind in ("sine", "cosine") else 0
-            adjoined = g.argument is not None
-            declared = -index if adjoined else self._declared[g.name]
-            self._places[index] = (-self.level(index), adjoined, declared, within)
+            declared = self._declared[g.name] if g.argument is None else _PLACES - index
+            self._places[index] = ((5 - self.level(index)) * 2 * _PLACES + declared) * 4 + within
         return self._places[index]
+
+    def _inverse_of(self, index: int) -> Polynomial | None:
+        """What a reciprocal is the reciprocal of; None for other generators."""
+        if index not in self._inverted:
+            generator = self.ring.generators[index]
+            self._inverted[index] = generator.argument if generator.kind == "reciprocal" else None
+        return self._inverted[index]
 
     # --- terms -----------------------------------------------------------------------------------------------------
 
-    def _terms(self, polynomial: Polynomial) -> Terms:
+    def _terms(self, polynomial: Polynomial) -> tuple[int, Terms]:
+        """(common denominator, terms of what is left)."""
         used = sorted(_used(polynomial), key=self.place)
-        return {
-            tuple((k, int(monomial[k])) for k in used if monomial[k]): coefficient
-            for monomial, coefficient in polynomial.terms()
+        scale = lcm(*(int(c.q) for c in polynomial.coeffs()))
+        # In a context of its own: flint hands out all exponents, and the ring has many more generators.
+        context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
+        small = polynomial.project_to_context(context, {k: place for place, k in enumerate(used)})
+        return scale, {
+            tuple([(used[i], int(e)) for i, e in enumerate(monomial) if e]): (
+                int(c.p) if scale == 1 else int(c.p) * (scale // int(c.q))
+            )
+            for monomial, c in zip(small.monoms(), small.coeffs(), strict=True)
         }
 
-    def _key(self, monomial: Monomial) -> tuple[Any, ...]:
+    def _key(self, monomial: Monomial) -> tuple[int, ...]:
         """Sorts as the dense exponents would, highest first."""
-        return (*((self.place(k), -e) for k, e in monomial), (_END,))
+        pairs = self._pairs
+        try:
+            return (*[pairs[pair] for pair in monomial], _END)
+        except KeyError:
+            for index, exponent in monomial:
+                pairs[index, exponent] = self.place(index) * _EXPONENTS - exponent
+            return (*[pairs[pair] for pair in monomial], _END)
 
     # --- products --------------------------------------------------------------------------------------------------
 
@@ -188,7 +212,7 @@ class _Presenter:
                 self._factored[key] = known
         return known
 
-    def _factors(self, terms: Terms, factored: bool) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+    def _factors(self, terms: Terms, factored: bool) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """Content, monomial, and the other factors with their exponents."""
         content, common, rest = _common(terms)
         level = max(self.level(monomial[0][0]) for monomial in rest if monomial)
@@ -199,41 +223,50 @@ class _Presenter:
             content = content * unit
             if level == 1 and len(parts) > 1:
                 content, common, parts = self._sines_restored(content, common, parts)
-        brackets = sorted(parts, key=lambda item: sorted(map(self._key, item[0])))
-        return self._whole_reciprocals(content, common, brackets)
+        if len(parts) > 1:
+            parts = sorted(parts, key=lambda item: sorted(map(self._key, item[0])))
+        return self._whole_reciprocals(content, common, parts)
 
-    def _irreducible(self, terms: Terms) -> tuple[Rational, list[tuple[Terms, int]]]:
-        """A factorisation over the generators that occur: the ring has many more, and flint minds them all."""
+    def _irreducible(self, terms: Terms) -> tuple[int, list[tuple[Terms, int]]]:
+        """A factorisation of terms without common factor, positive in front."""
+        if _obviously_irreducible(terms):
+            if terms[min(terms, key=self._key)] > 0:
+                return 1, [(terms, 1)]
+            return -1, [({monomial: -c for monomial, c in terms.items()}, 1)]
+        # Over the generators that occur: the ring has many more, and flint minds them all.
         used = sorted({k for monomial in terms for k, _ in monomial}, key=self.place)
-        context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
+        context = fmpz_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
         dense = {}
         for monomial, coefficient in terms.items():
             exponents = dict(monomial)
-            dense[tuple(exponents.get(k, 0) for k in used)] = coefficient
+            dense[tuple([exponents.get(k, 0) for k in used])] = coefficient
         unit, factors = context.from_dict(dense).factor()
-        return unit, [
-            ({tuple((used[i], int(e)) for i, e in enumerate(m) if e): c for m, c in factor.terms()}, int(exponent))
+        return int(unit), [
+            (
+                {tuple([(used[i], int(e)) for i, e in enumerate(m) if e]): int(c) for m, c in factor.terms()},
+                int(exponent),
+            )
             for factor, exponent in factors
         ]
 
     def _sines_restored(
-        self, content: Rational, common: Monomial, parts: list[tuple[Terms, int]]
-    ) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+        self, content: int, common: Monomial, parts: list[tuple[Terms, int]]
+    ) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """(cos x - 1)*(cos x + 1) is -sin(x)**2."""
         for index in sorted({k for part, _ in parts for m in part for k, _ in m}, key=self.place):
             g = self.ring.generators[index]
             if g.kind != "cosine" or g.argument is not None:
                 continue
-            minus = ({((index, 1),): fmpq(1), (): fmpq(-1)}, 1)
-            plus = ({((index, 1),): fmpq(1), (): fmpq(1)}, 1)
+            minus: tuple[Terms, int] = ({((index, 1),): 1, (): -1}, 1)
+            plus: tuple[Terms, int] = ({((index, 1),): 1, (): 1}, 1)
             if minus in parts and plus in parts:
                 parts = [part for part in parts if part not in (minus, plus)]
                 content, common = -content, self._joined(common, (self.ring.index("sine", g.name), 2))
         return content, common, parts
 
     def _whole_reciprocals(
-        self, content: Rational, common: Monomial, brackets: list[tuple[Terms, int]]
-    ) -> tuple[Rational, Monomial, list[tuple[Terms, int]]]:
+        self, content: int, common: Monomial, brackets: list[tuple[Terms, int]]
+    ) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """1/R is not taken out of a bracket that holds further powers of it: a/R + b/R^2, not (a + b/R)/R."""
         for index, exponent in common:
             if self.level(index) != _RECIPROCAL:
@@ -251,23 +284,22 @@ class _Presenter:
         return tuple((k, exponents[k]) for k in sorted(exponents, key=self.place))
 
     def _assembled(
-        self, coefficient: Rational, monomial: Monomial, brackets: Sequence[tuple[Terms, int]], factored: bool
+        self, coefficient: int, monomial: Monomial, brackets: Sequence[tuple[Terms, int]], factored: bool
     ) -> Product:
         over: list[Factor] = []
         under: list[Factor] = []
         for index, exponent in monomial:
-            generator = self.ring.generators[index]
-            if generator.kind == "reciprocal":
-                inner = self(generator.argument)
-                under += _powers(inner, exponent)
-            else:
+            inverted = self._inverse_of(index)
+            if inverted is None:
                 over.append(Factor(index, exponent))
+            else:
+                under += _powers(self(inverted), exponent)
         for terms, exponent in brackets:
             bracket = self._bracket(terms, factored)
             if exponent % 2 and (coefficient < 0 or _only_negative(bracket)) and _takes_sign(bracket):
                 bracket, coefficient = self._negated(bracket), -coefficient
             over.append(Factor(bracket, exponent))
-        return Product(coefficient, _ordered(self, over), _ordered(self, under))
+        return Product(fmpq(coefficient), _ordered(self, over), _ordered(self, under))
 
     # --- brackets --------------------------------------------------------------------------------------------------
 
@@ -306,7 +338,7 @@ class _Presenter:
         shared: dict[tuple[Any, ...], Terms] = {}
         for head in sorted(groups, key=lambda m: (-sum(e for _, e in m), self._key(m))):
             product = self._product(groups[head], factored)
-            shared.setdefault((product.over, product.under), {})[head] = product.coefficient
+            shared.setdefault((product.over, product.under), {})[head] = int(product.coefficient.p)
         products: list[Product] = []
         for (over, under), heads in shared.items():
             products += self._shared(over, under, heads, factored)
@@ -323,7 +355,7 @@ class _Presenter:
             if head:
                 products.append(self._times(self._assembled(coefficient, head, [], False), over, under))
             else:
-                product = Product(coefficient, over, under)
+                product = Product(fmpq(coefficient), over, under)
                 products += _opened(product).terms if abs(coefficient) == 1 else [product]
         return products
 
@@ -376,21 +408,39 @@ def _used(polynomial: Polynomial) -> list[int]:
     return [k for k, degree in enumerate(polynomial.degrees()) if degree > 0]
 
 
-def _common(terms: Terms) -> tuple[Rational, Monomial, Terms]:
-    """(content, common monomial, rest), the cheap part of a factorisation."""
-    numerator = gcd(*(int(c.p) for c in terms.values()))
-    denominator = lcm(*(int(c.q) for c in terms.values()))
-    content = fmpq(numerator, denominator)
-    shared = dict(next(iter(terms)))
+def _obviously_irreducible(terms: Terms) -> bool:
+    """Whether terms without a common factor cannot be factored, as far as that is seen without work.
+
+    Two terms: their exponents have no common divisor.  More: some generator is linear and occurs in one term only, or
+    in all but one; a factor without that generator would divide this one term, so it would be a common monomial.
+    """
+    if len(terms) == 2:
+        return gcd(*(e for monomial in terms for _, e in monomial)) == 1
+    degrees: dict[int, int] = {}
+    counts: dict[int, int] = {}
     for monomial in terms:
+        for k, e in monomial:
+            degrees[k] = degrees.get(k, 0) + e
+            counts[k] = counts.get(k, 0) + 1
+    lonely = (1, len(terms) - 1)
+    return any(count in lonely and degrees[k] == count for k, count in counts.items())
+
+
+def _common(terms: Terms) -> tuple[int, Monomial, Terms]:
+    """(content, common monomial, rest), the cheap part of a factorisation."""
+    content = gcd(*terms.values())
+    monomials = iter(terms)
+    shared = dict(next(monomials))
+    for monomial in monomials:
         if not shared:
             break
-        here = dict(monomial)
-        shared = {k: min(e, here[k]) for k, e in shared.items() if k in here}
-    rest = {}
-    for monomial, coefficient in terms.items():
-        kept = tuple((k, e - shared.get(k, 0)) for k, e in monomial if e > shared.get(k, 0)) if shared else monomial
-        rest[kept] = coefficient / content
+        shared = {k: min(e, shared[k]) for k, e in monomial if k in shared}
+    if not shared:
+        return content, (), terms if content == 1 else {m: c // content for m, c in terms.items()}
+    rest = {
+        tuple([(k, e - shared.get(k, 0)) for k, e in monomial if e > shared.get(k, 0)]): coefficient // content
+        for monomial, coefficient in terms.items()
+    }
     return content, tuple(shared.items()), rest
 
 

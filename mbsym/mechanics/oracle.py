@@ -254,7 +254,7 @@ class Oracle:
         return environment
 
     @cached_property
-    def _momentum_rates(self) -> list[tuple[model.Body, list[Scalar], list[Scalar] | None]]:
+    def momentum_rates(self) -> list[tuple[model.Body, list[Scalar], list[Scalar] | None]]:
         """(body, m r_C'', dH_C/dt) of every body that has mass or inertia."""
         two = self.numbers.number(2)
         found = []
@@ -274,7 +274,7 @@ class Oracle:
     def _inertia(self, name: str) -> Scalar:
         total = self.numbers.zero
         displaced = self.displaced[name]
-        for body, force, change in self._momentum_rates:
+        for body, force, change in self.momentum_rates:
             total = total + _dot(force, [x.b for x in displaced.mass_centre(body)])
             if change is not None:
                 total = total + _dot(change, displaced.spin(body.name)[0])

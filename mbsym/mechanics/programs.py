@@ -12,6 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat, fmpq_mat
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -19,6 +22,7 @@ from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.oracle import State
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
 
@@ -55,3 +59,17 @@ def programs(system: System, ring: Ring) -> Programs:
         forcing=tuple(-forcing[name] for name in names),
         energy=kinetic_energy(scene) - force_function(scene),
     )
+
+
+def accelerated(system: System, state: State, found: Programs) -> State:
+    """The state with the accelerations M^-1 f that the equations of motion give there.
+
+    Raises SingularPoint or ZeroDivisionError where M is singular, NotRational where a value is irrational.
+    """
+    n = len(system.coordinates)
+    nodes = [node for row in found.mass_matrix for node in row] + [*found.forcing]
+    values = found.program.evaluate(nodes, state.values, state.numbers)
+    matrix: Any = arb_mat if any(isinstance(value, arb) for value in values) else fmpq_mat
+    solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
+    accelerations = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
+    return State(state.numbers, {**state.values, **accelerations})

@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from itertools import combinations
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number
+from mbsym.model.system import Tensor
 
 Numbers = tuple[Fraction, Fraction, Fraction]
 NumberTensor = tuple[Numbers, Numbers, Numbers]
@@ -34,6 +35,17 @@ def inertia_violation(tensor: NumberTensor) -> str | None:
     if any(minor < 0 for minor in principal_minors(second_moments(tensor))):
         return "its principal moments violate the triangle inequality (tr(J)/2 - J is not positive semidefinite)"
     return None
+
+
+def impossible_alone(tensor: Tensor, signs: Mapping[str, str], values: Mapping[str, Fraction]) -> int | None:
+    """The index of the only moment of inertia, if it is positive by its sign or value: 0 + 0 cannot reach it."""
+    if any(not is_number(tensor[row][column], 0) for row in range(3) for column in range(3) if row != column):
+        return None
+    alone = [index for index in range(3) if not is_number(tensor[index][index], 0)]
+    if len(alone) != 1:
+        return None
+    moment = tensor[alone[0]][alone[0]]
+    return alone[0] if _sign(moment, signs) == "positive" or (number_of(moment, values) or 0) > 0 else None
 
 
 def _is_diagonal(tensor: NumberTensor) -> bool:

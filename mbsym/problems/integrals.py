@@ -33,13 +33,14 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.oracle import State
+from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import ball_states, rational_states
-from mbsym.model.system import INERTIAL, acceleration_name
+from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
 
@@ -64,10 +65,11 @@ class Integral:
     status: str
 
 
-def integrals(scene: Scene, energy: Energy, equations: Equations) -> tuple[Integral, ...]:
-    """All first integrals of the kinds above (scene over the ring)."""
+def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Programs) -> tuple[Integral, ...]:
+    """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
-    found += _momenta(scene, equations, [item.formula.polynomial for item in found if item.kind != "energy"])
+    conserved = _constant_momenta(scene.system, scene.ring, programs)
+    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind != "energy"])
     return tuple(found)
 
 
@@ -114,21 +116,51 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Itera
 # --- momenta of the whole system ---
 
 
-def _momenta(scene: Scene, equations: Equations, known: Sequence[Polynomial]) -> list[Integral]:
-    if scene.system.prescribed:  # whatever drives a prescribed motion exchanges momentum with the system
-        return []
+def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tuple[str, int]]:
+    """The (kind, axis) of momenta whose rate vanishes at one random state: what has to be looked at closely.
+
+    Rates of momentum are sums over the bodies in inertial axes, so that no formula is formed for nothing.
+    """
+    if system.prescribed:  # whatever drives a prescribed motion exchanges momentum with the system
+        return set()
+    for states in (rational_states(system, ring, STATES), ball_states(system, ring, STATES)):
+        for state in states:
+            try:
+                oracle = Oracle(system, accelerated(system, state, programs))
+                forces, moments = [state.numbers.zero] * 3, [state.numbers.zero] * 3
+                for body, force, change in oracle.momentum_rates:
+                    arm = [x.a for x in oracle.moving.mass_centre(body)]
+                    for i in range(3):
+                        j, k = (i + 1) % 3, (i + 2) % 3
+                        forces[i] = forces[i] + force[i]
+                        moments[i] = moments[i] + arm[j] * force[k] - arm[k] * force[j]
+                        if change is not None:
+                            moments[i] = moments[i] + change[i]
+            except (SingularPoint, NotRational, ZeroDivisionError):
+                continue
+            rates = {("linear momentum", i + 1): x for i, x in enumerate(forces)}
+            rates |= {("angular momentum", i + 1): x for i, x in enumerate(moments)}
+            return {key for key, x in rates.items() if (x.contains(0) if isinstance(x, arb) else x == 0)}
+    return set()
+
+
+def _momenta(
+    scene: Scene, equations: Equations, conserved: set[tuple[str, int]], known: Sequence[Polynomial]
+) -> list[Integral]:
+    found: list[Integral] = []
+    if not conserved:
+        return found
     try:
-        candidates = _candidates(scene)
-        found: list[Integral] = []
-        for kind, axis, formula in candidates:
+        for kind, axis, formula in _candidates(scene):
             others = [*known, *(item.formula.polynomial for item in found)]
-            if _is_new(formula, others) and _conserved(scene, equations, formula):
+            wanted = (kind, axis) in conserved and _is_new(formula, others)
+            if wanted and _conserved(scene, equations, formula):
                 name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
                 status = PROVED if _proved(scene, equations, formula) else NUMERICAL
                 found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
-        return found
     except (NoClosedForm, NotRational):
-        return []
+        pass  # what was found so far is right; the rest is not known
+    return found
 
 
 def _candidates(scene: Scene) -> list[tuple[str, int, Polynomial]]:

@@ -7,6 +7,8 @@ is singular or beyond all budgets tells nothing: less is known then, and nothing
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
@@ -89,8 +91,14 @@ def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
     return found[name]
 
 
+#: What ``_definitions`` found, scene by scene: it is asked for symbol by symbol.
+_REMEMBERED: WeakKeyDictionary[Scene, dict[str, Polynomial]] = WeakKeyDictionary()
+
+
 def _definitions(scene: Scene) -> dict[str, Polynomial]:
     """The user's symbols in declared parameters alone, those left out that have no such form."""
+    if scene in _REMEMBERED:
+        return _REMEMBERED[scene]
     ring = scene.ring
     images: dict[int, Polynomial] = {}
     found: dict[str, Polynomial] = {}
@@ -103,4 +111,5 @@ def _definitions(scene: Scene) -> dict[str, Polynomial]:
             images[ring.index("parameter", item.name)] = found[item.name]
         except (NoClosedForm, SingularPoint):
             missing.add(item.name)
+    _REMEMBERED[scene] = found
     return found

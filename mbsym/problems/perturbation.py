@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, arb_mat, fmpq, fmpq_mat
+from flint import arb, fmpq
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
@@ -25,7 +25,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.mechanics.oracle import Oracle, Series, State, TaylorSeries
-from mbsym.mechanics.programs import Programs
+from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED, Oracles
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
@@ -147,20 +147,9 @@ def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral
     short = [item for item in found if item.formula.terms <= MOST_TERMS]
 
     def pairs(oracle: Oracle) -> list[Pair]:
-        state = _accelerated(truth.system, oracle.state, programs)
+        state = accelerated(truth.system, oracle.state, programs)
         environment = Oracle(truth.system, state).in_time
         carry = Carrier(truth.ring, TaylorSeries(state.numbers, environment), environment)
         return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in short]
 
     return compare(truth, "first integrals", ("dI/dt along the motion", "zero"), pairs, states=1)
-
-
-def _accelerated(system: System, state: State, programs: Programs) -> State:
-    """The state with the accelerations that the equations of motion give there."""
-    n = len(system.coordinates)
-    nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing]
-    values = programs.program.evaluate(nodes, state.values, state.numbers)
-    matrix: Any = arb_mat if any(isinstance(value, arb) for value in values) else fmpq_mat
-    solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
-    accelerations = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
-    return State(state.numbers, {**state.values, **accelerations})

@@ -14,13 +14,15 @@ from mbsym.problems.stability_theory import Case, Requirement
 class Statement:
     """``formula`` ``relation`` 0.
 
-    ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.
+    ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.  ``never``
+    is the polynomial, as it arises, of a statement that cannot hold.
     """
 
     label: str
     formula: Formula | None
     relation: str
     note: str = ""
+    never: Formula | None = None
 
 
 def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = False) -> Iterator[Statement]:
@@ -35,7 +37,8 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
         elif condition.kind == "unwritten":
             yield Statement(requirement.label, None, requirement.relation, "too long to be written out")
         elif condition.kind == "never":
-            yield Statement(requirement.label, None, requirement.relation, "never holds")
+            never = Formula(ring, requirement.polynomial)
+            yield Statement(requirement.label, None, requirement.relation, "never holds", never)
         for polynomial in condition.nonzero:
             yield Statement(requirement.label, Formula(ring, polynomial), "!=", note)
 
@@ -56,7 +59,9 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
     return [
         CaseStatement(
             tuple(statements(ring, case.all_of)),
-            tuple(statements(ring, [r for r in case.any_of if not r.never])),
+            ()
+            if any(r.always for r in case.any_of)
+            else tuple(statements(ring, [r for r in case.any_of if not r.never])),
             case.verdict.word,
             case.verdict.theorem,
             case.verdict.explanation,
@@ -64,3 +69,54 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
         for case in found
         if not case.never
     ]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The statement ``label``: the polynomial that was shown as ``under`` stands in ``relation`` to 0."""
+
+    label: str
+    under: str
+    relation: str
+
+
+_OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
+
+
+class Shown:
+    """Which polynomials a text has shown, and as what, so that it need not show them again (nor their opposites)."""
+
+    def __init__(self) -> None:
+        self._shown: list[tuple[str, Formula]] = []
+
+    def show(self, statement: Statement) -> None:
+        if statement.formula is not None and self.reference(statement) is None:
+            self._shown.append((statement.label, statement.formula))
+
+    def reference(self, statement: Statement) -> Reference | None:
+        """How to refer to what was shown; None if it was not."""
+        if statement.formula is None:
+            return None
+        label, polynomial, relation = statement.label, statement.formula.polynomial, statement.relation
+        if label.startswith("-(") and label.endswith(")"):
+            label, polynomial, relation = label[2:-1], -polynomial, _OPPOSITE.get(relation, relation)
+        for own in (True, False):
+            for under, formula in self._shown:
+                opposite = under.startswith("-(") and under.endswith(")")
+                bare, shown = (under[2:-1], -formula.polynomial) if opposite else (under, formula.polynomial)
+                if (bare == label) is not own or len(shown) != len(polynomial):
+                    continue
+                if shown == polynomial:
+                    return Reference(label, bare, relation)
+                if shown == -polynomial and not own:
+                    return Reference(label, bare, _OPPOSITE.get(relation, relation))
+        return None
+
+
+def provided(conditions: int) -> str:
+    """What the verdicts presume where problem 4 left so many conditions."""
+    if conditions == 0:
+        return ""
+    return (
+        "provided the condition of problem 4 holds" if conditions == 1 else "provided the conditions of problem 4 hold"
+    )

@@ -5,17 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from math import gcd
 from typing import TYPE_CHECKING, Any
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from flint import fmpq
+
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_matrix, latex_names, latex_text
 from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
 from mbsym.problems.linearisation import Subsystem
-from mbsym.report.conditions import cases, statements
+from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
-from mbsym.report.python_module import prescribed_value
+from mbsym.report.latex_description import call, expression, load_in_words
+from mbsym.report.python_module import moving
 from mbsym.report.straight_line import Dialect, listing, programs_of
 
 if TYPE_CHECKING:
@@ -23,23 +26,17 @@ if TYPE_CHECKING:
 
 #: Matrices estimated wider than this (in ems) are written entry by entry.
 WIDEST = 40
+#: Longer lines of the file are broken: TeX reads whole lines into a buffer.
+LINE = 400
 #: Longer formulas are left to the machine-readable files: nobody reads them, and TeX's memory is finite.
 LONGEST = 6000
-
-_FUNCTIONS = {"atan": "arctan", "log": "ln"}
-
-
-def _call(function: str, argument: str) -> str:
-    if function == "sqrt":
-        return f"\\sqrt{{{argument}}}"
-    return f"\\{_FUNCTIONS.get(function, function)}({argument})"
 
 
 def _exact(value: Fraction) -> str:
     return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
 
 
-DIALECT = Dialect(call=_call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
+DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -50,7 +47,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
-    return rendered(
+    text = rendered(
         "report.tex.j2",
         {
             "tex": escaped,
@@ -63,6 +60,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "entries": entries,
             "sum": polynomial,
             "label": label,
+            "refer": refer,
+            "load": lambda value: load_in_words(value, names, escaped),
             "index": index,
             "displays": displays,
             "prose": prose,
@@ -70,17 +69,20 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         },
         system=system,
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
-        prescribed_value=prescribed_value,
+        moving=moving,
         found=found,
         problems=problems,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis, names) if 3 in stages and 3 not in found else None,
         statements=statements,
         cases=cases,
+        Shown=Shown,
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
+        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         checks=analysis.checks,
     )
+    return "\n".join(map(broken, text.split("\n")))
 
 
 _RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq"}
@@ -97,6 +99,30 @@ def escaped(words: str) -> str:
     """Plain text; characters that plain pdflatex cannot set become question marks."""
     plain = "".join(_SPECIAL.get(c, c if c < "\u0100" else "?") for c in " ".join(words.split()))
     return plain.replace("--", "-{}-")
+
+
+def broken(line: str) -> str:
+    """A line of the file as several, where it is long: to TeX the end of a line is a space."""
+    if len(line) <= LINE or line.startswith("%"):
+        return line
+    pieces: list[str] = []
+    size = LINE + 1
+    for word in line.split(" "):
+        # A backslash before a space belongs to it, and no line may be empty: that would end the paragraph.
+        if size + len(word) > LINE and word.strip() and not (pieces and pieces[-1].endswith("\\")):
+            pieces.append(word)
+            size = len(word)
+        elif pieces:
+            pieces[-1] += " " + word
+            size += 1 + len(word)
+    return "\n".join(pieces)
+
+
+def refer(reference: Reference) -> str:
+    """``v_4 < 0`` for a polynomial that was shown before."""
+    under = f"{label(reference.label)} \\colon\\quad " if reference.under != reference.label else ""
+    relation = _RELATIONS.get(reference.relation, reference.relation)
+    return f"{under}{label(reference.under)} {relation} 0"
 
 
 def prose(words: str) -> str:
@@ -136,11 +162,30 @@ def width(latex: str) -> float:
 
 def matrix(value: Matrix) -> str:
     """A pmatrix, or nothing if that would be too wide."""
+    return _matrix(value)[0]
+
+
+def _matrix(value: Matrix) -> tuple[str, float]:
+    """The pmatrix and its width."""
     if any(x.terms > 60 for row in value for x in row):
-        return ""
-    rows = _texts(value)
-    columns = [max(map(width, column)) for column in zip(*rows, strict=True)]
-    return latex_matrix(rows) if sum(columns) + 1.2 * len(columns) <= WIDEST else ""
+        return "", 0.0
+    number = _common_number(value)
+    if number > 1:
+        value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in row] for row in value.polynomials])
+    rows = [[x.latex() for x in row] for row in value]
+    wide = sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True))
+    text = latex_matrix(rows) if number == 1 else f"{number} {latex_matrix(rows)}"
+    return (text, wide) if wide <= WIDEST else ("", wide)
+
+
+def _common_number(value: Matrix) -> int:
+    """The whole number that stands in front of a matrix of several entries: 3 (b - a, f; f, f)."""
+    entries = [x.polynomial for row in value for x in row if not x.is_zero]
+    if len(entries) < 2:
+        return 1
+    coefficients = [c for x in entries for c in x.coeffs()]
+    whole = all(c.q == 1 for c in coefficients)
+    return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
 def displays(part: Subsystem, k: object) -> list[str]:
@@ -149,10 +194,10 @@ def displays(part: Subsystem, k: object) -> list[str]:
     room = 0.0
     for name in "MDGKN":
         value: Matrix = getattr(part, name)
-        text = "" if value.is_zero else matrix(value)
+        text, wide = ("", 0.0) if value.is_zero else _matrix(value)
         if not text:
             continue
-        needed = sum(max(map(width, column)) + 1.2 for column in zip(*_texts(value), strict=True)) + 6
+        needed = wide + 6
         shown = f"{name}{index(k)} = {text}"
         if needed <= room:
             lines[-1] += f",\\quad {shown}"
@@ -165,10 +210,6 @@ def displays(part: Subsystem, k: object) -> list[str]:
 
 def index(k: object) -> str:
     return f"_{{{k}}}" if k else ""
-
-
-def _texts(value: Matrix) -> list[list[str]]:
-    return [[x.latex() for x in row] for row in value]
 
 
 def row(values: Column) -> str:
@@ -205,52 +246,6 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
             text = LatexPrinter(coefficient.ring, breaks=True).factor(Factor(shape))
         written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
     return "".join(written) or "0"
-
-
-def expression(value: Expression, names: LatexNames) -> str:
-    """An expression of the description, as it stands."""
-    return _expression(value, names)[0]
-
-
-def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
-    """(text, precedence): 1 sum, 2 product, 3 power, 4 atom."""
-    match value:
-        case Number(number):
-            return _number(number), 4 if number >= 0 else 1
-        case Name("pi"):
-            return r"\pi", 4
-        case Name(name):
-            base, _, dots = name.rpartition("_")
-            if dots in ("dot", "ddot") and base:
-                return names[base].accented(dots), 4
-            return str(names[name]), 4
-        case Negative(operand):
-            return "-" + _bracketed(operand, 2, names), 1
-        case Call(function, argument):
-            return _call(function, expression(argument, names)), 4
-        case Operation("/", left, right):
-            return f"\\frac{{{expression(left, names)}}}{{{expression(right, names)}}}", 4
-        case Operation("**", base, exponent):
-            return f"{_bracketed(base, 4, names)}^{{{expression(exponent, names)}}}", 3
-        case Operation("*", left, right):
-            return f"{_bracketed(left, 2, names)} {_bracketed(right, 2, names)}", 2
-        case Operation(sign, left, right):
-            return f"{_bracketed(left, 1, names)} {sign} {_bracketed(right, 2 if sign == '-' else 1, names)}", 1
-    raise TypeError(f"not an expression: {value!r}")
-
-
-def _bracketed(value: Expression, wanted: int, names: LatexNames) -> str:
-    text, precedence = _expression(value, names)
-    return text if precedence >= wanted else f"({text})"
-
-
-def _number(value: Fraction) -> str:
-    if value.denominator == 1:
-        return str(value.numerator)
-    shown = repr(float(value))
-    if "e" not in shown and Fraction(shown) == value:
-        return shown
-    return f"\\frac{{{value.numerator}}}{{{value.denominator}}}"
 
 
 def _code(analysis: Analysis, names: LatexNames) -> Any:

@@ -88,7 +88,12 @@ def plain(words: str) -> str:
 
 def prescribed_value(item: Prescribed) -> Expression:
     """initial + rate*t."""
-    return add(item.initial or ZERO, multiply(item.rate, Name("t")))
+    return moving(item.initial, item.rate)
+
+
+def moving(initial: Expression | None, rate: Expression) -> Expression:
+    """initial + rate*t."""
+    return add(initial or ZERO, multiply(rate, Name("t")))
 
 
 def _default(value: Expression | None) -> str:

@@ -17,7 +17,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
-from mbsym.report.conditions import CaseStatement, Statement, cases, statements
+from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -131,7 +131,7 @@ def _stability(found: Stability, system: System) -> dict[str, Any]:
         "conditions": [statement_text(item) for items in wanted for item in items],
         "condition_labels": [[item.label for item in items] for items in wanted],
         "cases": [
-            [_case(case, {item.label for item in items}) for case in cases(part.ring, part.theory.cases)]
+            [_case(case, items) for case in cases(part.ring, part.theory.cases)]
             for part, items in zip(parts, wanted, strict=True)
         ],
         "verdict": found.verdict.word,
@@ -158,11 +158,15 @@ def statement_text(statement: Statement) -> str:
     return f"{statement.formula} {statement.relation} 0"
 
 
-def _case(case: CaseStatement, labels: set[str]) -> dict[str, Any]:
-    """Conditions that the list already holds are named by their labels."""
+def _case(case: CaseStatement, listed: Sequence[Statement]) -> dict[str, Any]:
+    """Conditions that the list already holds, or holds reversed, are named by their labels."""
+    shown = Shown()
+    for item in listed:
+        shown.show(item)
 
     def short(item: Statement) -> str:
-        return f"{item.label} {item.relation} 0" if item.label in labels else statement_text(item)
+        found = shown.reference(item)
+        return statement_text(item) if found is None else f"{found.under} {found.relation} 0"
 
     return {
         "all_of": [short(item) for item in case.all_of],

@@ -15,8 +15,9 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
-from mbsym.report.conditions import statements
+from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stability_theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
+from mbsym.report.conditions import Statement, cases, provided, statements
 from mbsym.report.results_json import statement_text
 
 if TYPE_CHECKING:
@@ -65,7 +66,11 @@ def _line(analysis: Analysis, number: int) -> Line:
     if stage.failure is not None:
         lines = [f"no result: {stage.failure.reason}", *([stage.failure.hint] if stage.failure.hint else [])]
         return Line(number, title, tuple(lines), stage.seconds, False)
-    return Line(number, title, tuple(_DESCRIPTIONS[number](stage.value)), stage.seconds, True)
+    if number == 6:
+        described = _stability(stage.value, provided(len(analysis.equilibrium.conditions)))
+    else:
+        described = _DESCRIPTIONS[number](stage.value)
+    return Line(number, title, tuple(described), stage.seconds, True)
 
 
 def _kinematics(found: Kinematics) -> Iterator[str]:
@@ -106,16 +111,38 @@ def _is_zero(matrix: Matrix) -> bool:
     return matrix.is_zero
 
 
-def _stability(found: Stability) -> Iterator[str]:
+def _stability(found: Stability, presumed: str) -> Iterator[str]:
     for part in found.subsystems:
-        yield f"{', '.join(part.coordinates)}: {_verdict(part.theory.verdict)}"
-        for item in statements(part.ring, part.theory.requirements):
-            size = 0 if item.formula is None else item.formula.terms
-            yield f"  {item.label}: {shortened(statement_text(item), size)}"
+        items = list(statements(part.ring, part.theory.requirements))
+        verdict = _verdict(part.theory.verdict)
+        if _depends(part) and items:
+            necessary = part.theory.method == EVEN_METHOD and part.theory.kind != "conservative"
+            verdict = f"depends on the parameters; {'necessary ' if necessary else ''}conditions:"
+        yield f"{', '.join(part.coordinates)}: {verdict}"
+        for item in items:
+            yield f"  {_condition(item)}"
     if len(found.subsystems) > 1:
-        yield f"whole system: {_verdict(found.verdict)}"
+        depends = found.verdict.word == UNDECIDED and any(map(_depends, found.subsystems))
+        yield f"whole system: {'depends on the parameters' if depends else _verdict(found.verdict)}"
+    if presumed:
+        yield f"all this {presumed}"
     if found.numerical is not None:
         yield f"at the given values: {_verdict(found.numerical)}"
+
+
+def _depends(part: SubsystemStability) -> bool:
+    """Whether nothing is proved because it is different for different parameters."""
+    return part.theory.verdict.word == UNDECIDED and bool(cases(part.ring, part.theory.cases))
+
+
+def _condition(item: Statement) -> str:
+    if item.label == UNWRITTEN:
+        return f"a condition is {item.note}"
+    if item.never is not None:
+        value = str(item.never)
+        left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
+        return f"{left} {item.relation} 0 {item.note}"
+    return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}"
 
 
 def _verdict(verdict: Any) -> str:
@@ -135,7 +162,6 @@ _DESCRIPTIONS: dict[int, Callable[[Any], Iterator[str]]] = {
     3: _equations,
     4: _equilibrium,
     5: _linearisation,
-    6: _stability,
     7: _integrals,
 }
 

@@ -18,7 +18,7 @@ from mbsym.formulas.wolfram import (
     wolfram_text,
 )
 from mbsym.model.system import System
-from mbsym.report.conditions import Statement, statements
+from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.python_module import prescribed_value
 from mbsym.report.straight_line import Dialect, Listing, listing, programs_of
@@ -60,6 +60,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         polynomial=polynomial,
         variable=free_name("\\[Lambda]", used),
         initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
+        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         checks=analysis.checks,
     )
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import ZERO, Expression, Name, Negative, is_number, subtract
+from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, Negative, is_number, subtract, walk
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
-from mbsym.source.reading import ZERO_VECTOR, Fields, Reading
-from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, did_you_mean, why_no_name
+from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
+from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
 
 MAX_BODIES = 100
 MAX_COORDINATES = 6
@@ -31,6 +31,7 @@ class Draft:
     name_span: Span
     fields: Fields
     coordinates: list[Scalar]
+    whole: bool = True  # False: a coordinate was forgotten, or its list cannot be read
 
 
 def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
@@ -47,8 +48,11 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
     _check_repeated(drafts, reading)
     for draft in drafts:
         _declare_listed(draft, reading)
+    slips: set[str] = set()
     for draft in drafts:
-        _declare_inferred(draft, reading)
+        _declare_inferred(draft, slips, reading)
+    for draft in drafts:
+        _assume_forgotten(draft, reading)
     return drafts
 
 
@@ -78,7 +82,7 @@ def _declare_listed(draft: Draft, reading: Reading) -> None:
     node = draft.fields.get("coordinates")
     if node is None:
         return
-    items = reading.items(node, "'coordinates'")
+    items = reading.lone_or_items(node, "'coordinates'")
     if len(items) > MAX_COORDINATES:
         reading.error("too-large", f"a joint introduces at most {MAX_COORDINATES} coordinates", node.span)
         return
@@ -88,18 +92,62 @@ def _declare_listed(draft: Draft, reading: Reading) -> None:
             draft.coordinates.append(scalar)
 
 
-def _declare_inferred(draft: Draft, reading: Reading) -> None:
-    """Without a list, the undeclared names that stand alone as angles are the coordinates of the joint."""
-    rotation = draft.fields.get("rotation")
-    if draft.fields.get("coordinates") is not None or not isinstance(rotation, Mapping):
+def _declare_inferred(draft: Draft, slips: set[str], reading: Reading) -> None:
+    """Without a list, the undeclared names that stand alone as angles are the coordinates of the joint.
+
+    ``slips`` collects those that resemble other names too much.
+    """
+    if draft.fields.get("coordinates") is not None:
         return
-    for entry in rotation.entries:
-        items = entry.value.items if entry.key.text == "angles" and isinstance(entry.value, Sequence) else ()
-        for item in items:
-            name = _bare_name(item)
-            if name is not None and name not in reading.scope.kinds and why_no_name(name) is None:
-                reading.scope.declare(name, "coordinate", item.span)
-                draft.coordinates.append(Scalar(name, item.span, literal=False))
+    for item in _angles(draft)[:MAX_COORDINATES]:
+        name = _bare_name(item)
+        if name is not None and name not in reading.scope.kinds and why_no_name(name) is None:
+            slip = slip_of(name, [one for one in reading.scope.kinds if one not in slips])
+            if slip is not None:
+                slips.add(name)
+                message = f"the undeclared angle '{name}' becomes a coordinate of its own"
+                hint = f"did you mean '{slip}'? If not, add 'coordinates: [{name}]' to this body"
+                reading.complaints.warning("resembling-name", message, item.span, hint)
+            reading.scope.declare(name, "coordinate", item.span)
+            draft.coordinates.append(Scalar(name, item.span, literal=False))
+
+
+def _angles(draft: Draft) -> tuple[Node, ...]:
+    """The angles of a joint as they stand in the file, misspelt keys and single values included."""
+    rotation = draft.fields.get("rotation")
+    for entry in rotation.entries if isinstance(rotation, Mapping) else ():
+        if closest(entry.key.text, ROTATION) == "angles":
+            return entry.value.items if isinstance(entry.value, Sequence) else (entry.value,)
+    return ()
+
+
+def _assume_forgotten(draft: Draft, reading: Reading) -> None:
+    """Undeclared names that place a body are most likely coordinates that nobody listed: said once, then read so."""
+    listed, scope = draft.fields.get("coordinates"), reading.scope
+    point = draft.fields.get("connection point")
+    for node in (*_angles(draft), *(point.items if isinstance(point, Sequence) else ())):
+        tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
+        for one in walk(tree) if tree is not None else ():
+            if not isinstance(one, Name) or one.name in (*CONSTANTS, *scope.assumed) or why_no_name(one.name):
+                continue
+            close = did_you_mean(one.name, scope.of_kind(*RADIUS.kinds))
+            if scope.kind_of(one.name) is not None or (close and isinstance(listed, Sequence)):
+                continue
+            if listed is None or isinstance(listed, (Scalar, Sequence)):
+                reading.error(
+                    "unknown-name", f"unknown name '{one.name}'", one.span, _coordinate_hint(one, draft, close)
+                )
+            scope.assumed.add(one.name)
+            draft.coordinates.append(Scalar(one.name, one.span or node.span, literal=False))
+            draft.whole = False
+
+
+def _coordinate_hint(name: Name, draft: Draft, close: str | None) -> str:
+    together = ", ".join([*(scalar.text for scalar in draft.coordinates), name.name])
+    listed = f"add 'coordinates: [{together}]' to this body"
+    if close:
+        return f"{close} If it is a coordinate of its own, {listed}"
+    return f"if it is a coordinate, {listed}; if it is a parameter, declare it under 'parameters'"
 
 
 def _bare_name(node: Node) -> str | None:
@@ -146,7 +194,7 @@ def _attached_to(draft: Draft, drafts: list[Draft], reading: Reading) -> str:
             draft.fields.require("attached to", "an earlier body, or 0 for the inertial frame")
         return INERTIAL
     name = read_body_name(node, "'attached to'", [other.name for other in drafts], reading)
-    later = {other.name for other in drafts[draft.number - 1 :]}
+    later = {other.name for other in drafts[draft.number - 1 :]} - {other.name for other in drafts[: draft.number - 1]}
     if name is None or name not in later:
         return name or INERTIAL
     assert isinstance(node, Scalar)
@@ -190,14 +238,14 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     axes_node, angles_node = fields.require("axes"), fields.require("angles")
     if axes_node is None or angles_node is None:
         return Rotation()
-    axes = [_axis(item, reading) for item in reading.items(axes_node, "'axes'")]
-    angle_items = reading.items(angles_node, "'angles'")
+    axes = [_axis(item, reading) for item in reading.lone_or_items(axes_node, "'axes'")]
+    angle_items = reading.lone_or_items(angles_node, "'angles'")
     angles = [reading.expression(item, ANGLE) for item in angle_items]
     if len(axes) > 3:
         reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
     if len(angles) != len(axes):
         message = f"each axis has its angle: {len(axes)} wanted, not {len(angles)}"
-        reading.error("wrong-shape", message, angles_node.span)
+        reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):
@@ -248,13 +296,13 @@ def _tensor(node: Node, reading: Reading) -> Tensor:
     if not any(isinstance(item, Sequence) for item in items):
         first, second, third = reading.vector(node, allowed)
         return (first, ZERO, ZERO), (ZERO, second, ZERO), (ZERO, ZERO, third)
-    errors = len(reading.complaints.errors)
+    errors = reading.errors
     rows = [reading.vector(item, allowed) for item in items]
     for row in range(3):
         for column in range(row):
             below = items[row]
             difference = subtract(rows[row][column], rows[column][row])
-            if len(reading.complaints.errors) == errors and vanishes(difference) is False:
+            if reading.errors == errors and vanishes(difference) is False:
                 assert isinstance(below, Sequence)
                 entries = f"{row + 1},{column + 1} and {column + 1},{row + 1}"
                 message = f"a tensor of inertia is symmetric: entries {entries} differ"

@@ -37,7 +37,7 @@ def build(node: Node, complaints: Complaints) -> System | None:
     for draft in drafts:
         before = len(complaints.errors)
         bodies.append(read_body(draft, drafts, reading))
-        sound.append(len(complaints.errors) == before)
+        sound.append(draft.whole and len(complaints.errors) == before)
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
     notation = read_notation(fields.get("notation"), reading)
     system = System(
@@ -58,6 +58,9 @@ def build(node: Node, complaints: Complaints) -> System | None:
     for draft, good in zip(drafts, sound, strict=True):
         if good:
             check_body(system, draft, values, reading)
+    if drafts and all(sound) and not system.coordinates:
+        hint = "a coordinate is an undeclared name used as an angle, or is listed in a body: 'coordinates: [x]'"
+        reading.error("no-coordinates", "nothing moves: there are no coordinates", fields.key_span("bodies"), hint)
     check_system(system, reading)
     return None if complaints.errors else system
 

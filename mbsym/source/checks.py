@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
 
 from mbsym.expressions.place import Span
@@ -28,6 +29,7 @@ from mbsym.expressions.tree import (
 from mbsym.model.admissibility import (
     NumberTensor,
     about_mass_centre,
+    impossible_alone,
     inertia_violation,
     number_of,
     surely_negative,
@@ -106,8 +108,8 @@ def _check_relative_velocity(system: System, body: Body, draft: Draft, reading: 
             reading.error("relative-velocity", message, span, _short(f"the derivative is {text(derived)}"))
 
 
-def _short(hint: str) -> str:
-    return hint if len(hint) <= 200 else "leave the relative velocity out: it is then derived"
+def _short(hint: str, instead: str = "leave the relative velocity out: it is then derived") -> str:
+    return hint if len(hint) <= 200 else instead
 
 
 def _rates(system: System) -> dict[str, Expression]:
@@ -172,11 +174,24 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
             reading.error("bad-inertia", f"no body has this inertia: {message}", span, _values_hint(*entries))
             return
     tensor = _numeric_tensor(body, values)
-    violation = None if tensor is None else inertia_violation(tensor)
+    alone = impossible_alone(body.inertia.tensor, signs, values)
+    if alone is not None:
+        message = f"no body has this inertia: 0 + 0 is less than the moment of inertia about axis {alone + 1}"
+        hint = _rod_hint(text(body.inertia.tensor[alone][alone]), alone)
+        reading.complaints.warning("single-moment", message, span, hint)
+    violation = None if tensor is None or alone is not None else inertia_violation(tensor)
     if violation is None and tensor is not None and body.inertia.about == "joint":
-        violation = _violation_about_mass_centre(tensor, body, values)
+        violation = _violation_about_mass_centre(tensor, body, values, alone)
     if violation is not None:
         reading.error("bad-inertia", f"no body has this inertia: {violation}", span, _values_hint(*entries))
+
+
+def _rod_hint(moment: str, axis: int) -> str:
+    """A body with the wanted moment about an axis, which is as good where it turns about this axis only."""
+    along = 0 if axis else 1
+    rod = ", ".join("0" if index == along else moment for index in range(3))
+    matter = f"in planar motion, turning about axis {axis + 1} only, the other moments do not matter"
+    return _short(f"[{rod}] is a thin rod along axis {along + 1}; {matter}", matter)
 
 
 def _numeric_tensor(body: Body, values: Mapping[str, Fraction]) -> NumberTensor | None:
@@ -190,12 +205,18 @@ def _numeric_tensor(body: Body, values: Mapping[str, Fraction]) -> NumberTensor 
     return rows[0], rows[1], rows[2]
 
 
-def _violation_about_mass_centre(tensor: NumberTensor, body: Body, values: Mapping[str, Fraction]) -> str | None:
+def _violation_about_mass_centre(
+    tensor: NumberTensor, body: Body, values: Mapping[str, Fraction], alone: int | None
+) -> str | None:
+    """What the parallel-axis theorem shows; of the only moment that was given, no more than its own sign."""
     mass = number_of(body.mass, values)
     first, second, third = (number_of(component, values) for component in body.mass_centre)
     if mass is None or first is None or second is None or third is None:
         return None
-    violation = inertia_violation(about_mass_centre(tensor, mass, (first, second, third)))
+    moved = about_mass_centre(tensor, mass, (first, second, third))
+    violation = inertia_violation(moved)
+    if alone is not None:
+        violation = f"the moment of inertia about axis {alone + 1} is negative" if moved[alone][alone] < 0 else None
     return None if violation is None else f"moved to the mass centre, {violation}"
 
 
@@ -206,6 +227,32 @@ def check_system(system: System, reading: Reading) -> None:
     """Relations must agree with the values that are given for both sides; assumptions should hold for them."""
     _check_relation_values(system, reading)
     _check_assumption_values(system, reading)
+    if not reading.complaints.errors:  # else a misspelt use would be complained about twice
+        _check_use(system, reading)
+
+
+def _check_use(system: System, reading: Reading) -> None:
+    """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
+    used = {one.name for one in system.relations}
+    used |= set(_occurring([getattr(system, one.name) for one in fields(system)]))
+    declared = [("parameter", one.name, one.span) for one in system.parameters]
+    declared += [("prescribed motion", one.name, one.span) for one in system.prescribed]
+    for what, name, span in declared:
+        if name not in used:
+            message = f"the {what} '{name}' is used nowhere"
+            reading.complaints.warning("unused-name", message, span, "leave it out, or put it where it belongs")
+
+
+def _occurring(value: object) -> Iterator[str]:
+    """The names in all expressions that a value holds."""
+    if isinstance(value, Name):
+        yield value.name
+    elif isinstance(value, tuple | list):
+        for item in value:
+            yield from _occurring(item)
+    elif is_dataclass(value):
+        for one in fields(value):
+            yield from _occurring(getattr(value, one.name))
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:

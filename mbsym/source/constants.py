@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Parameter, Prescribed, rational
@@ -51,7 +51,8 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
     value = parse_expression(scalar.text, Complaints(), scalar.place)
     number = rational(value)
     if number is None:
-        hint = did_you_mean(scalar.text.lower(), SIGNS) or f"write a number or one of: {', '.join(SIGNS)}"
+        close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
+        hint = close or f"write a number or one of: {', '.join(SIGNS)}"
         message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)
@@ -64,7 +65,10 @@ def _sign_of(value: Fraction) -> str:
 
 def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
     fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **dict.fromkeys(SIGNS, "")})
+    errors = reading.errors
     value = fields.expression("value", NUMBER)
+    if reading.errors != errors:
+        value = None
     number = rational(value)
     sign = _sign(fields, reading) or ("real" if number is None else _sign_of(number))
     parameter = Parameter(name, sign, value, fields.text("meaning"), span)
@@ -112,8 +116,11 @@ def read_values(node: Node | None, parameters: list[Parameter], reading: Reading
     by_name = {parameter.name: parameter for parameter in parameters}
     allowed = Allowed("the key of a value")
     for entry in reading.entries(node, "'values'"):
+        errors = reading.errors
         value = reading.expression(entry.value, NUMBER)
-        if not reading.scope.check_name(entry.key.text, entry.key.span, allowed) or entry.key.text not in by_name:
+        sound = reading.errors == errors
+        known = reading.scope.check_name(entry.key.text, entry.key.span, allowed)
+        if not known or not sound or entry.key.text not in by_name:
             continue
         parameter = by_name[entry.key.text]
         if parameter.value is not None and parameter.value != value:

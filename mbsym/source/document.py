@@ -9,8 +9,8 @@ from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
-from mbsym.source.text_reader import looks_like_text, read_text
-from mbsym.source.yaml_reader import read_yaml
+from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
+from mbsym.source.yaml_reader import has_yaml_marks, read_yaml
 
 MAX_COMPLAINTS = 200
 
@@ -27,7 +27,7 @@ class _BoundedComplaints(Complaints):
 def read(text: str, filename: str = "<string>") -> tuple[System | None, Complaints]:
     """The system that a text describes, or None, with all complaints; warnings may stand beside a system.
 
-    A name ending in ``.txt`` means editor text, any other known ending YAML; otherwise the text itself tells.
+    The text itself tells its spelling; where it does not, a name ending in ``.txt`` means editor text.
     """
     text = normalised(text)
     complaints = _BoundedComplaints()
@@ -45,11 +45,16 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
 
 
 def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:
-    """One of the two readers, by the ending of the name or by the look of the text."""
+    """One of the two readers, by the look of the text or by the ending of the name."""
+    return read_text(text, complaints) if _is_text(text, filename) else read_yaml(text, complaints)
+
+
+def _is_text(text: str, filename: str) -> bool:
+    editor, other = has_text_marks(text), has_yaml_marks(text)
+    if editor != other:
+        return editor
     ending = filename.lower().rpartition(".")[2]
-    if ending == "txt" or (ending not in ("yaml", "yml", "json") and looks_like_text(text)):
-        return read_text(text, complaints)
-    return read_yaml(text, complaints)
+    return ending == "txt" or (ending not in ("yaml", "yml", "json") and looks_like_text(text))
 
 
 def load(path: str | Path) -> tuple[System | None, Complaints, str]:

@@ -30,7 +30,7 @@ from mbsym.model.system import (
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import ALIASES, LOADS, POINT
 from mbsym.source.placed import Entry, Mapping, Node, Sequence
-from mbsym.source.reading import ZERO_VECTOR, Fields, Reading
+from mbsym.source.reading import MAX_SHOWN, ZERO_VECTOR, Fields, Reading
 from mbsym.source.scope import DISSIPATION, FORCE, POTENTIAL, Allowed, did_you_mean
 
 
@@ -44,8 +44,8 @@ class _Load:
     bodies: list[str]
     reading: Reading
 
-    def fields(self) -> Fields:
-        return self.reading.fields(self.value, f"'{self.kind}'", LOADS[self.kind])
+    def fields(self, hint: str | None = None) -> Fields:
+        return self.reading.fields(self.value, f"'{self.kind}'", LOADS[self.kind], hint)
 
     def body(self, fields: Fields, key: str) -> str:
         node = fields.require(key)
@@ -104,8 +104,9 @@ def _check_one_spelling(loads: list[Load], reading: Reading) -> None:
 def _newtonian_gravity(load: _Load) -> Load:
     fields = load.fields()
     constant = fields.required_expression("constant", Allowed("a gravitational constant"))
+    errors = load.reading.errors
     centre, about = load.body(fields, "centre"), load.body(fields, "about")
-    if fields.get("about") is not None and fields.get("centre") is not None and centre == about:
+    if load.reading.errors == errors and {"about", "centre"} <= fields.found.keys() and centre == about:
         message = "the field is expanded about a point away from the centre"
         load.reading.error("conflicting-keys", message, fields.key_span("about"))
     order = fields.get("order")
@@ -115,20 +116,29 @@ def _newtonian_gravity(load: _Load) -> Load:
 
 
 def _uniform_gravity(load: _Load) -> Load:
-    fields = load.fields()
+    fields = load.fields(_vector_hint(load.value))
     if fields.get("vector") is not None:
         fields.exclude("vector", ("acceleration", "direction"))
         return UniformGravity(load.vector(fields, "vector", Allowed("an acceleration")), load.span)
     size = fields.required_expression("acceleration", Allowed("an acceleration"))
+    errors = load.reading.errors
     direction = load.vector(fields, "direction", Allowed("a direction"))
+    sound = load.reading.errors == errors and "direction" in fields.found
     numbers = [rational(component) for component in direction]
     squares = [number * number for number in numbers if number is not None]
-    if len(squares) == 3 and sum(squares, Fraction(0)) != 1 and "direction" in fields.found:
+    if sound and len(squares) == 3 and sum(squares, Fraction(0)) != 1:
         hint = "for components of any length use 'vector'"
         load.reading.error("bad-direction", "a direction is a unit vector", fields.found["direction"].value.span, hint)
     return UniformGravity(
         (multiply(size, direction[0]), multiply(size, direction[1]), multiply(size, direction[2])), load.span
     )
+
+
+def _vector_hint(value: Node) -> str:
+    """How to write a gravity that was given as a bare list."""
+    texts = [getattr(item, "text", "") for item in value.items] if isinstance(value, Sequence) else []
+    vector = ", ".join(texts) if len(texts) == 3 and all(texts) else ""
+    return f"write {{vector: [{vector if 0 < len(vector) <= MAX_SHOWN else '0, -g, 0'}]}}"
 
 
 def _coordinate(fields: Fields, reading: Reading) -> str:
@@ -220,9 +230,10 @@ def _force(load: _Load) -> Load:
 
 def _torque(load: _Load) -> Load:
     fields = load.fields()
+    errors = load.reading.errors
     reaction = load.body(fields, "reaction on") if "reaction on" in fields.found else None
     body = load.moving_body(fields)
-    if reaction is not None and reaction == body:
+    if load.reading.errors == errors and reaction is not None and reaction == body:
         load.reading.error("conflicting-keys", "a body does not react on itself", fields.key_span("reaction on"))
     return Torque(body, load.vector(fields, "components", FORCE), load.body(fields, "axes"), reaction, load.span)
 

@@ -6,10 +6,12 @@ every mistake; a System is only returned when there was none.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
-from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Vector
@@ -20,8 +22,38 @@ from mbsym.source.scope import Allowed, Scope, closest, did_you_mean
 
 MAX_ENTRIES = 500
 MAX_FREE_TEXT = 4_000
+MAX_SHOWN = 60
+
+_TWO_IN_ONE = re.compile(r"(?<=[\w)])\s+(?=[-+]?[\w(])")
 
 ZERO_VECTOR: Vector = (ZERO, ZERO, ZERO)
+
+
+def comma_hint(items: tuple[Node, ...], wanted: int) -> str | None:
+    """What may be wrong with the commas of a list that has not as many items as it should have."""
+    texts = [item.text if isinstance(item, Scalar) else "" for item in items]
+    if len(texts) < wanted:
+        if any(";" in text for text in texts):
+            return "components are separated by commas"
+        double = next((text for text in texts if _TWO_IN_ONE.search(text) and len(text) <= MAX_SHOWN), None)
+        return double and f"is a comma missing: {_TWO_IN_ONE.sub(', ', double)}?"
+    tight = [isinstance(second, Scalar) and _is_decimal_comma(first, second) for first, second in pairwise(items)]
+    return "numbers have a decimal point: write 0.5 for 0,5" if any(tight) and not all(tight) else None
+
+
+def _is_decimal_comma(whole: Node, decimals: Scalar) -> bool:
+    """Whether nothing but a comma stands between two runs of digits."""
+    if not isinstance(whole, Scalar) or not whole.literal or not re.fullmatch("[0-9]+", decimals.text):
+        return False
+    end = whole.place(len(whole.text), len(whole.text) + 2)
+    return bool(re.fullmatch("[-+]?[0-9]+", whole.text)) and (end.line, end.column + 1) == (
+        decimals.span.line,
+        decimals.span.column,
+    )
+
+
+def _is_empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and not node.text.strip()
 
 
 @dataclass(slots=True)
@@ -33,6 +65,11 @@ class Reading:
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self.complaints.error(code, message, span, hint)
+
+    @property
+    def errors(self) -> int:
+        """How many errors there are so far: what was read without a new one is sound and may be judged."""
+        return len(self.complaints.errors)
 
     def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
         self.error("wrong-shape", f"{what} must be {wanted}, not {placed.kind(node)}", node.span, hint)
@@ -92,29 +129,57 @@ class Reading:
             self.shape_error(node, what, "a list of three", "write [0, 0, 0]")
             return None
         if len(node.items) != 3:
-            self.error("wrong-shape", f"{what} has three components, not {len(node.items)}", node.span)
+            message = f"{what} has three components, not {len(node.items)}"
+            self.error("wrong-shape", message, node.span, comma_hint(node.items, 3))
             return None
         return node.items
 
-    def entries(self, node: Node, what: str) -> Iterator[Entry]:
-        """The entries of a mapping, each key once."""
+    def entries(self, node: Node, what: str, hint: str | None = None) -> Iterator[Entry]:
+        """The entries of a mapping, each key once; ``hint`` is for what is no mapping."""
         if not isinstance(node, placed.Mapping):
             if isinstance(node, Scalar) and not node.text.strip():
                 self.error("missing-value", f"{what} is empty", node.span, "leave the key out")
             else:
-                self.shape_error(node, what, "a mapping (key: value)")
+                self.shape_error(node, what, "a mapping (key: value)", hint)
             return
         if len(node.entries) > MAX_ENTRIES:
             self.error("too-large", f"{what} has at most {MAX_ENTRIES} entries", node.span)
             return
         seen: set[str] = set()
-        for entry in node.entries:
+        for entry in self.with_decimals(node.entries):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in seen:
                 self.error("repeated-key", f"{ascii_safe(entry.key.text)} is given twice", entry.key.span)
             else:
                 seen.add(key)
                 yield entry
+
+    def with_decimals(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+        """Entries with ``{l: 0,5}``, which YAML takes for ``{l: 0, 5: }``, complained about and put together."""
+        last: Entry | None = None
+        for entry in entries:
+            if last is not None and _is_decimal_comma(last.value, entry.key) and _is_empty(entry.value):
+                assert isinstance(last.value, Scalar)
+                whole, decimals = last.value.text, entry.key.text
+                span = last.value.place(0, len(whole) + 1 + len(decimals))
+                message = f"here '{whole},{decimals}' is the number {whole} and a key {decimals}"
+                hint = decimal_comma(f"{whole.lstrip('+-')},{decimals}")
+                self.error("bad-number", message, span, hint)
+                last = Entry(last.key, Scalar(f"{whole}.{decimals}", span, literal=False))
+                continue
+            if last is not None:
+                yield last
+            last = entry
+        if last is not None:
+            yield last
+
+    def lone_or_items(self, node: Node, what: str) -> tuple[Node, ...]:
+        """The items of a list; a single value is complained about and taken for a list of one."""
+        if isinstance(node, Scalar) and node.text.strip():
+            hint = f"write [{node.text}]" if len(node.text) <= MAX_SHOWN else None
+            self.shape_error(node, what, "a list", hint)
+            return (node,)
+        return self.items(node, what)
 
     def items(self, node: Node, what: str) -> tuple[Node, ...]:
         if not isinstance(node, Sequence):
@@ -125,19 +190,19 @@ class Reading:
             return ()
         return node.items
 
-    def fields(self, node: Node, what: str, known: Mapping[str, str]) -> Fields:
+    def fields(self, node: Node, what: str, known: Mapping[str, str], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         found: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
-        for entry in self.entries(node, what):
+        for entry in self.entries(node, what, hint):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:
                 found[key] = entry
             else:
                 guess = closest(entry.key.text, known)
-                hint = f"did you mean '{guess}'?" if guess else f"the keys are: {', '.join(known)}"
+                keys = f"did you mean '{guess}'?" if guess else f"the keys are: {', '.join(known)}"
                 message = f"unknown key {ascii_safe(entry.key.text)} in {what}"
-                self.error("unknown-key", message, entry.key.span, hint)
+                self.error("unknown-key", message, entry.key.span, keys)
                 if guess:
                     misspelt[guess] = entry
         return Fields(self, what, {**misspelt, **found}, node.span, isinstance(node, placed.Mapping))

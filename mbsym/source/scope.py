@@ -6,14 +6,17 @@ import keyword
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 
-from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, Expression, Name, walk
 from mbsym.model.system import velocity_name
 
 MAX_NAME = 64
+
+#: Names that resemble each other as much (1: equal) are taken for slips.
+_SLIP = 0.8
 
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 
@@ -57,12 +60,14 @@ ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 class Scope:
     """All declared names with their kinds; complains about clashes and about unknown or misplaced names.
 
-    ``later`` holds the names of notation that is still to come.
+    ``later`` holds the names of notation that is still to come, ``assumed`` undeclared names that were complained about
+    and are since taken for whatever their place allows.
     """
 
     complaints: Complaints
     kinds: dict[str, str] = field(default_factory=dict)
     later: set[str] = field(default_factory=set)
+    assumed: set[str] = field(default_factory=set)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
@@ -101,6 +106,8 @@ class Scope:
                 self.check_name(node.name, node.span, allowed)
 
     def check_name(self, name: str, span: Span, allowed: Allowed) -> bool:
+        if name in self.assumed or name.removesuffix("_dot") in self.assumed:
+            return True
         kind = self.kind_of(name)
         if kind is None:
             message = f"unknown name {ascii_safe(name)}"
@@ -128,7 +135,9 @@ class Scope:
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)
         if reason is not None:
-            return reason[1] or f"it cannot be a name: {reason[0]}"
+            return f"it cannot be a name: {reason[0]}" + (f"; {reason[1]}" if reason[1] else "")
+        if not allowed.kinds:
+            return "a number is wanted here"
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
 
 
@@ -158,10 +167,28 @@ def did_you_mean(word: str, known: Iterable[str]) -> str | None:
     return None if close is None else f"did you mean '{close}'?"
 
 
+def slip_of(name: str, known: Iterable[str]) -> str | None:
+    """The known name that a name looks like a slip of the pen for; ``theta1`` and ``thetaB`` are none of ``theta2``."""
+    best: tuple[float, str] | None = None
+    for one in list(known)[:100]:
+        short, long = sorted((name, one), key=len)
+        if short.rstrip("0123456789") == long.rstrip("0123456789") or short[:-1] == long[:-1]:
+            continue
+        if long.startswith(short) and set(long[len(short) :]) != {short[-1]}:
+            continue
+        matcher = SequenceMatcher(None, name, one)
+        bar = best[0] if best is not None else _SLIP
+        if matcher.real_quick_ratio() >= bar and matcher.quick_ratio() >= bar and matcher.ratio() >= bar:
+            best = matcher.ratio(), one
+    return best and best[1]
+
+
 def why_no_name(name: str) -> tuple[str, str | None] | None:
     """Why a word cannot be the name of a parameter or coordinate (with a hint), or None if it can."""
     if not _IDENTIFIER.match(name):
-        return "names are Latin letters, digits and _, and begin with a letter", None
+        latin = in_latin(name[:MAX_NAME])
+        hint = f"write {latin}" if latin != name and _IDENTIFIER.match(latin) else None
+        return "names are Latin letters, digits and _, and begin with a letter", hint
     if len(name) > MAX_NAME:
         return f"names have at most {MAX_NAME} characters", None
     if name in FUNCTIONS:
@@ -171,7 +198,8 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
     if name == "t":
         return "it is the time", None
     if keyword.iskeyword(name):
-        return "it is a reserved word of Python, in which results are written", f"write {name[:3]} or {name}1"
+        hint = f"write {'lam or ' if name == 'lambda' else ''}{name}1"
+        return "it is a reserved word of Python, in which results are written", hint
     if name.endswith(("_dot", "_ddot")):
         return "the ending _dot is kept for velocities", None
     if "__" in name or name.endswith("_"):

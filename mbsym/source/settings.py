@@ -23,9 +23,10 @@ def read_relations(node: Node | None, reading: Reading) -> tuple[Relation, ...]:
         return ()
     relations = []
     for entry in reading.entries(node, "'relations'"):
+        errors = reading.errors
         known = reading.scope.check_name(entry.key.text, entry.key.span, Allowed("the left side of a relation"))
         value = reading.expression(entry.value, Allowed("a relation"))
-        if known:
+        if known and reading.errors == errors:
             relations.append(Relation(entry.key.text, value, entry.key.span))
     _check_circles(relations, reading)
     return tuple(relations)
@@ -79,11 +80,14 @@ def _comparisons(scalar: Scalar, reading: Reading) -> list[Assumption]:
                 "bad-assumption", "an assumption is an inequality", span, "an equation belongs to 'relations'"
             )
             return []
+    errors = reading.errors
     cuts = [0, *(edge for sign in signs for edge in sign.span()), len(scalar.text)]
     sides = [
         reading.expression(scalar.part(begin, end), ASSUMPTION)
         for begin, end in zip(cuts[::2], cuts[1::2], strict=True)
     ]
+    if reading.errors != errors:
+        return []
     relations = [_OPPOSITES.get(sign.group(), sign.group()) for sign in signs]
     return [
         Assumption(left, relation, right, scalar.span)
@@ -121,8 +125,9 @@ def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
     entries = [] if node is None else list(reading.entries(node, "'notation'"))
     reading.scope.later = {entry.key.text for entry in entries}
     for entry in entries:
+        errors = reading.errors
         value = reading.expression(entry.value, allowed)
-        if reading.scope.declare(entry.key.text, "notation", entry.key.span):
+        if reading.scope.declare(entry.key.text, "notation", entry.key.span) and reading.errors == errors:
             notation.append(Notation(entry.key.text, value, entry.key.span))
         reading.scope.later.discard(entry.key.text)
     return tuple(notation)

@@ -2,7 +2,7 @@
 
 A file is lines: ``label: value`` or ``label = value``, headings without a value (``Body description (2)``,
 ``Parameters``), rows of a tensor below its label, comments after ``#``.  Labels are those of the paper's Figure 3,
-in any case.  Vectors stand in ``( )`` or ``{ }``; records are ``positive; value = 2; meaning = length``.
+in any case.  Vectors stand in ``( )``, ``{ }`` or ``[ ]``; records are ``positive; value = 2; meaning = length``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,16 @@ from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 
 _HEADING = re.compile(r"(body|load) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
-_OPENING = {"(": ")", "{": "}"}
+_OPENING = {"(": ")", "{": "}", "[": "]"}
+
+
+def has_text_marks(text: str) -> bool:
+    """Whether some line can only be the editor's: its first label, or the heading of a body or a load."""
+    labels = ((line, _label_of(line)[0]) for line in _lines(text))
+    return any(
+        _HEADING.match(line.text) or (label is not None and _word(label.text) == "mechanical system")
+        for line, label in labels
+    )
 
 
 def looks_like_text(text: str) -> bool:
@@ -269,7 +278,7 @@ class _TextReader:
         return Sequence(tuple(parts), line.span)
 
     def items(self, value: Scalar) -> Node:
-        """``(a, b, c)`` or ``{a, b, c}``."""
+        """``(a, b, c)``, ``{a, b, c}`` or ``[a, b, c]``."""
         text = value.text
         if text[:1] not in _OPENING or not _encloses(text):
             return value

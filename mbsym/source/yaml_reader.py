@@ -7,6 +7,7 @@ plain tree, and what it says must not depend on YAML's finer points.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import yaml
@@ -20,8 +21,17 @@ _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_BRACKETS = 100
 
 
+#: Lines that can only be YAML (or JSON): keys that are no labels of the editor.
+_MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|loads)["']?[ \t]*:""", re.MULTILINE)
+
+
 class _Refused(Exception):
     """Internal: the document cannot be composed; the complaint is recorded."""
+
+
+def has_yaml_marks(text: str) -> bool:
+    """Whether some line can only be YAML."""
+    return bool(_MARKS.search(text))
 
 
 def read_yaml(text: str, complaints: Complaints) -> Node | None:
@@ -33,7 +43,12 @@ def read_yaml(text: str, complaints: Complaints) -> Node | None:
     except _Refused:
         return None
     except yaml.MarkedYAMLError as error:
-        complaints.error("syntax", _problem(error), _mark_span(text, error), _hint(error))
+        span = _mark_span(text, error)
+        tab = _tab(text, span)
+        if tab is not None:
+            complaints.error("syntax", "this is not YAML: a tab in the indentation", tab, "indent with blanks")
+        else:
+            complaints.error("syntax", _problem(error), span, _hint(error))
     except yaml.YAMLError as error:
         complaints.error("syntax", f"this is not YAML: {str(error).splitlines()[0]}")
     return None
@@ -54,6 +69,17 @@ def _brackets_bounded(text: str, complaints: Complaints) -> bool:
     return True
 
 
+def _tab(text: str, span: Span | None) -> Span | None:
+    """The tab that indents the line of an error, or the line above it."""
+    lines = text.split("\n")
+    for line in (span.line, span.line - 1) if span is not None else ():
+        content = lines[line - 1] if line else ""
+        column = content[: len(content) - len(content.lstrip(" \t"))].find("\t")
+        if column >= 0:
+            return Span(line, column + 1)
+    return None
+
+
 def _problem(error: yaml.MarkedYAMLError) -> str:
     problem = error.problem or error.context or "not YAML"
     return f"this is not YAML: {problem}"
@@ -61,8 +87,8 @@ def _problem(error: yaml.MarkedYAMLError) -> str:
 
 def _hint(error: yaml.MarkedYAMLError) -> str | None:
     problem = error.problem or ""
-    if "tab" in problem or "cannot start any token" in problem:
-        return "indent with blanks, and put values with special characters in quotes"
+    if "cannot start any token" in problem:
+        return "put values with special characters in quotes"
     if "mapping values are not allowed" in problem:
         return "is the line indented as its neighbours are? A value with ': ' in it needs quotes"
     if "expected ',' or" in problem or "did not find expected" in problem:
