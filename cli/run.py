@@ -57,7 +57,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option("--problems", "-p", default="1-7", callback=_problems, show_default=True, help="1-5 or 1,3,6.")
 @click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
-@click.option("--terms", default=400_000, show_default=True, help="Budget of terms for a closed formula.")
+@click.option("--terms", default=60_000, show_default=True, help="Budget of terms for one closed formula.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],

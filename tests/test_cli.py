@@ -96,7 +96,8 @@ def test_failed_self_check_is_exit_code_one(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_coordinate_without_inertia_is_named(tmp_path: Path) -> None:
-    text = PENDULUM.read_text().replace("mass centre: [0, -l, 0]", "mass centre: [0, 0, 0]").replace("inertia: [J, 0, J]", "inertia: [J, J, 0]")
+    text = PENDULUM.read_text().replace("mass centre: [0, -l, 0]", "mass centre: [0, 0, 0]")
+    text = text.replace("inertia: [J, 0, J]", "inertia: [J, J, 0]")
     (tmp_path / "idle.yaml").write_text(text)
     done = mbsym("run", tmp_path / "idle.yaml", "--out", tmp_path / "out", "-f", "json", "-p", "1-3")
     assert done.exit_code == 1

@@ -13,8 +13,11 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any
 
-from mbsym.algebra.base import Algebra, SingularPoint
+from mbsym.algebra.base import Algebra, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
+
+#: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
+MOST_BITS = 1_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +78,11 @@ class Program(Algebra):
         return known
 
     def number(self, value: Fraction | int) -> Node:
-        return self._node("constant", (), Fraction(value))
+        value = Fraction(value)
+        longest = max(value.numerator.bit_length(), value.denominator.bit_length())
+        if longest > MOST_BITS:
+            raise NoClosedForm(f"a number of {int(longest * 0.30103)} digits, beyond the range of floating point")
+        return self._node("constant", (), value)
 
     def input(self, name: str) -> Node:
         return self._node("input", (), name)

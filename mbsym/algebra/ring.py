@@ -34,7 +34,7 @@ Polynomial = Any
 
 #: Products with more candidate terms than this, and polynomials longer than the term budget, have "no closed form".
 PRODUCT_BUDGET = 40_000_000
-TERM_BUDGET = 400_000
+TERM_BUDGET = 60_000
 
 #: A product that may need more bytes than this is not begun: a library that runs out of memory ends the process.
 MEMORY_BUDGET = 1_500_000_000
@@ -46,6 +46,8 @@ SMALL = 20_000
 MOST_DEGREE = 1_000
 #: sin and cos of n*x are polynomials of degree n in sin and cos of x.
 MOST_MULTIPLE = 256
+#: Coefficients have at most so many bits (some 3000 digits).
+MOST_COEFFICIENT_BITS = 10_000
 #: What is factored, and what greatest common divisors are taken of: so many terms.
 MOST_FACTORED = 20_000
 #: Integers under a root are factored: so many bits may remain when the small primes are out.
@@ -193,12 +195,15 @@ class Ring(Algebra):
     def reduce(self, x: Polynomial) -> Polynomial:
         """Normal form: each relation's leading term eliminated, sin^2 -> 1 - cos^2 among them."""
         if x.is_constant():
+            if x:
+                _check_number(x.leading_coefficient())
             return x
         self._check(x)
         self.spend(len(x) + 8 * self._overhead)
         degrees = x.degrees()
         if max(degrees) > MOST_DEGREE:
             raise NoClosedForm(f"a formula of degree {_size(int(max(degrees)))}: at most {MOST_DEGREE} is supported")
+        _check_number(x.leading_coefficient())
         again = True
         while again:
             again = False
@@ -525,6 +530,10 @@ class Ring(Algebra):
         for span in spans:
             dense = min(dense * (1 + span), 2**64)
         candidates = min(terms * powers, terms * dense)
+        if candidates > PRODUCT_BUDGET:  # the same again, term by term
+            self.spend(10 * terms)
+            lengths = [(index, len(images[index])) for index in touched]
+            candidates = sum(min(dense, _expanded(monomial, lengths)) for monomial in x.monoms())
         if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
             raise NoClosedForm(f"a substitution into {terms} terms may lead to {_size(candidates)}")
         self.spend(candidates)
@@ -714,6 +723,23 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
         raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory")
     return 1 + first * second // 4
+
+
+def _expanded(monomial: Sequence[int], lengths: Sequence[tuple[int, int]]) -> int:
+    """How many terms a monomial becomes when generators are replaced by polynomials of these lengths."""
+    total = 1
+    for index, length in lengths:
+        degree = int(monomial[index])
+        if degree and length != 1:
+            total *= comb(degree + length - 1, degree) if degree + length < 64 else 2**64
+    return total
+
+
+def _check_number(value: fmpq) -> None:
+    """Raises NoClosedForm for a coefficient that nobody could read."""
+    bits = int(value.p).bit_length() + int(value.q).bit_length()
+    if bits > MOST_COEFFICIENT_BITS:
+        raise NoClosedForm(f"a formula with a number of {int(bits * 0.30103)} digits")
 
 
 def _bytes(x: Polynomial, degree: int) -> int:

@@ -11,6 +11,7 @@ helped.  Factoring is for people; polynomials too long for them are only grouped
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
@@ -28,6 +29,8 @@ FACTOR_MIXED = 24
 FACTOR_COEFFICIENTS = 3000
 #: Polynomials in the parameters with up to so many terms are collected by the variable that makes them shortest.
 COLLECT = 40
+#: Beyond so many terms only the variable that occurs most often is tried.
+COLLECT_BEST = 14
 
 Rational = Any  # flint.fmpq
 #: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
@@ -367,9 +370,11 @@ class _Presenter:
         """Collected by the parameter that leaves the fewest symbols to read."""
         best = self._plain(terms)
         fewest = leaves(best)
-        for variable in sorted({k for monomial in terms for k, _ in monomial}, key=self.place):
-            if sum(any(k == variable for k, _ in monomial) for monomial in terms) < 2:
-                continue
+        counts = Counter(k for monomial in terms for k, _ in monomial)
+        variables = sorted((k for k, count in counts.items() if count > 1), key=self.place)
+        if len(terms) > COLLECT_BEST:  # trying all, bracket within bracket, takes a time that grows exponentially
+            variables = sorted(variables, key=lambda k: -counts[k])[:1]
+        for variable in variables:
             candidate = self._grouped(terms, _by(variable), True)
             if leaves(candidate) < fewest:
                 best, fewest = candidate, leaves(candidate)

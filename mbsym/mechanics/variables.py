@@ -21,9 +21,15 @@ from mbsym.expressions.tree import (
     Number,
     Operation,
     add,
+    children,
     differentiate,
+    divide,
     multiply,
-    names,
+    negative,
+    number,
+    power,
+    substitute,
+    subtract,
     walk,
 )
 from mbsym.model.system import System, acceleration_name, velocity_name
@@ -50,15 +56,68 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
     With ``frozen`` the prescribed quantities and t stand still: only the coordinates move.
     """
     total: Expression = ZERO
-    present = names(expression)
+    present = _names(expression)
     rates: dict[str, Expression] = {}
     if not frozen:
         rates = {"t": ONE} | {item.name: item.rate for item in system.prescribed}
     rates |= {name: Name(velocity_name(name)) for name in system.coordinates}
     rates |= {velocity_name(name): Name(acceleration_name(name)) for name in system.coordinates}
     for name in sorted(present & rates.keys()):
-        total = add(total, multiply(differentiate(expression, name), rates[name]))
+        total = add(total, multiply(_Derivation(name)(expression), rates[name]))
     return total
+
+
+def _names(expression: Expression) -> set[str]:
+    """The names that occur; a part shared by many parents is looked at once."""
+    found: set[str] = set()
+    seen: set[int] = set()
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        if id(node) not in seen:
+            seen.add(id(node))
+            pending.extend(children(node))
+            if isinstance(node, Name):
+                found.add(node.name)
+    return found
+
+
+class _Derivation:
+    """``differentiate`` with a memory: second derivatives of a long expression share most of their parts."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.known: dict[int, Expression] = {}
+
+    def __call__(self, expression: Expression) -> Expression:
+        found = self.known.get(id(expression))
+        if found is None:
+            found = self.known[id(expression)] = self._derivative(expression)
+        return found
+
+    def _derivative(self, expression: Expression) -> Expression:
+        match expression:
+            case Negative(operand):
+                return negative(self(operand))
+            case Operation("+", left, right):
+                return add(self(left), self(right))
+            case Operation("-", left, right):
+                return subtract(self(left), self(right))
+            case Operation("*", left, right):
+                return add(multiply(self(left), right), multiply(left, self(right)))
+            case Operation("/", left, right):
+                second = divide(multiply(left, self(right)), power(right, number(2)))
+                return subtract(divide(self(left), right), second)
+            case Operation("**", inner, exponent):
+                return self._composed(Operation("**", Name("u"), exponent), inner)
+            case Call(function, inner):
+                return self._composed(Call(function, Name("u")), inner)
+        return ONE if expression == Name(self.name) else ZERO
+
+    def _composed(self, outer: Expression, inner: Expression) -> Expression:
+        """The chain rule for an expression in u."""
+        slope = self(inner)
+        return ZERO if slope == ZERO else multiply(substitute(differentiate(outer, "u"), {"u": inner}), slope)
 
 
 def angle_denominators(system: System) -> dict[str, int]:
