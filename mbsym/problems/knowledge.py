@@ -43,7 +43,20 @@ def signs(scene: Scene) -> Signs:
         if word not in ("unknown", "zero"):
             words[ring.index("parameter", item.name)] = word
     plain = Signs(ring.context, tuple(words))
-    return _with_reciprocals(scene, Signs(ring.context, tuple(words), _assumptions(scene, plain)))
+    told = Signs(ring.context, tuple(words), _assumptions(scene, plain))
+    return _with_reciprocals(scene, told.assuming(_bounds(scene, told)))
+
+
+def _bounds(scene: Scene, told: Signs) -> list[tuple[Polynomial, str]]:
+    """-1 <= cos <= 1 for every constant angle, strictly where its sine is known not to vanish; sin likewise."""
+    ring = scene.ring
+    facts = []
+    for name in (name for name in ring.angles if ring.has("parameter", name)):
+        pair = (ring.generator("sine", name), ring.generator("cosine", name))
+        for bounded, other in (pair, pair[::-1]):
+            strict = told.sign(other) in ("positive", "negative", "nonzero")
+            facts += [(ring.one + sign * bounded, ">" if strict else ">=") for sign in (1, -1)]
+    return facts
 
 
 def _with_reciprocals(scene: Scene, known: Signs) -> Signs:
