@@ -233,9 +233,7 @@ def test_a_quantity_stands_still_in_the_others() -> None:
     assert not ring.depends_on(formula, "y")
 
 
-@pytest.mark.parametrize(
-    "name", ["chi", "t"]
-)
+@pytest.mark.parametrize("name", ["chi", "t"])
 def test_an_angle_that_is_a_plain_name_moves_with_it(name: str) -> None:
     ring = Ring(["x"], ["chi"], [], {"t": 1, "chi": 1})
     sine, cosine = ring.sin_cos(LinearForm(((name, Fraction(1)),)))

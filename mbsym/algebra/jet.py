@@ -40,7 +40,6 @@ class Jet:
         return self + (-other)
 
 
-
 def _sum(a: dict[Any, Polynomial], b: dict[Any, Polynomial]) -> dict[Any, Polynomial]:
     total = dict(a)
     for key, value in b.items():

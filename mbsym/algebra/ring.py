@@ -309,7 +309,10 @@ class Ring(Algebra):
             for name in self._derivatives:
                 inner = self.derivative(argument, name)
                 if not inner.is_zero():
-                    self._derivatives[name] |= {s: self.times(self._gens[c], inner), c: -self.times(self._gens[s], inner)}
+                    self._derivatives[name] |= {
+                        s: self.times(self._gens[c], inner),
+                        c: -self.times(self._gens[s], inner),
+                    }
         return self._gens[index], self._gens[index + 1]
 
     # --- adjoined elements -------------------------------------------------------------------------------------------
@@ -519,7 +522,9 @@ class Ring(Algebra):
             grown = max(grown, degree * max(0, *map(int, images[index].degrees())))
             powers *= comb(degree + length - 1, degree) if degree + length < 64 or length == 1 else 2**64
         if grown > MOST_DEGREE:
-            raise NoClosedForm(f"a substitution makes a formula of degree {_size(grown)}: up to {MOST_DEGREE} is supported")
+            raise NoClosedForm(
+                f"a substitution makes a formula of degree {_size(grown)}: up to {MOST_DEGREE} is supported"
+            )
         if terms * powers <= SMALL:
             return
         spans = [0 if k in images else max(0, int(degree)) for k, degree in enumerate(degrees)]
