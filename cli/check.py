@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, OK, read_description
+from mbsym_cli.console import BAD_INPUT, OK, counted, read_description
 
 
 @click.command("check")
@@ -27,7 +27,7 @@ def command(files: tuple[Path, ...]) -> None:
         if system is None:
             worst = BAD_INPUT
             continue
-        n = len(system.coordinates)
-        freedom = f"{n} degree{'s' if n != 1 else ''} of freedom ({', '.join(system.coordinates)})"
-        click.echo(f"{path}: ok: {system.name}; {len(system.bodies)} bodies, {freedom}")
+        bodies = counted(len(system.bodies), "body", "bodies")
+        freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
+        click.echo(f"{path}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
     sys.exit(worst)

@@ -33,8 +33,13 @@ def read_description(path: Path) -> System | None:
         print(render(complaint, text, str(path)), file=sys.stderr)
     errors = len(complaints.errors)
     if errors:
-        print(f"{path}: {errors} error{'s' if errors > 1 else ''}; nothing was written.", file=sys.stderr)
+        print(f"{path}: {counted(errors, 'error', 'errors')}; nothing was written.", file=sys.stderr)
     return system
+
+
+def counted(n: int, one: str, many: str) -> str:
+    """``1 body``, ``4 bodies``."""
+    return f"{n} {one if n == 1 else many}"
 
 
 def numbers(text: str) -> tuple[int, ...]:

@@ -80,6 +80,8 @@ def command(
     """
     options = Options(problems, formats, terms, quiet)
     paths = list(_descriptions(files))
+    if not paths:
+        raise click.UsageError(f"no descriptions ({', '.join(SUFFIXES)}) in {', '.join(map(str, files))}")
     worst = OK
     for path, folder in zip(paths, _folders(paths, out), strict=True):
         worst = max(worst, _run_one(path, folder, options))

@@ -81,6 +81,12 @@ def test_a_folder_stands_for_its_descriptions(tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"a", "a.yaml", "b"}
 
 
+def test_a_folder_without_descriptions_is_an_error(tmp_path: Path) -> None:
+    done = mbsym("run", tmp_path)
+    assert done.exit_code == 2
+    assert "no descriptions" in done.stderr
+
+
 def test_failed_self_check_is_exit_code_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A planted mistake in the kinetic energy: reports are still written, and say so."""
     from mbsym.algebra.ring import Ring

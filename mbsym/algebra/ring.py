@@ -727,7 +727,7 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     first, second = _words(a), _words(b)
     if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
         raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory")
-    return 1 + first * second // 4
+    return 1 + first * second // 64
 
 
 def _expanded(monomial: Sequence[int], lengths: Sequence[tuple[int, int]]) -> int:

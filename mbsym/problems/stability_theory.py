@@ -692,7 +692,7 @@ def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
         inertia(matrix)  # raises where it is not symmetric
     potential, undamped, gyroscopic = _no(n), _no(d), not _no(g)
     if roots.right:
-        why = f"{roots.right} roots with positive real part."
+        why = f"{roots.right} root{'s' if roots.right > 1 else ''} with positive real part."
         if massive and potential and damped and k.det() != 0:
             return Verdict(UNSTABLE, KELVIN_CHETAEV, why + " Complete dissipation, and K is not positive definite.")
         if massive and potential and undamped and gyroscopic and k.det() < 0:
