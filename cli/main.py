@@ -31,7 +31,7 @@ class LazyGroup(click.Group):
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        # Formulas are many small objects and hardly ever cycles: looking for those less often saves a tenth of the time.
+        # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
         gc.set_threshold(200_000, 20, 20)
         command: click.Command = importlib.import_module(COMMANDS[name]).command
         return command

@@ -132,7 +132,8 @@ def _run_one(path: Path, folder: Path, options: Options) -> int:
 
 
 def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
-    from mbsym.analysis import PROBLEMS, Analysis
+    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.analysis import PROBLEMS, Analysis, Unavailable
     from mbsym.report.targets import TARGETS
 
     started = time.perf_counter()
@@ -143,17 +144,22 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
             analysis.stage(number)
         say(f"{path.name}: self-check")
         failed = [check for check in analysis.checks if check.failed]
-        texts = {}
+        texts, missing = {}, []
         for name in options.formats:
             say(f"{path.name}: writing {TARGETS[name].filename}")
-            texts[folder / TARGETS[name].filename] = TARGETS[name].render(analysis, analysis.problems)
+            try:
+                texts[folder / TARGETS[name].filename] = TARGETS[name].render(analysis, analysis.problems)
+            except (NoClosedForm, SingularPoint, Unavailable, ValueError) as reason:  # numbers of thousands of digits
+                missing.append(f"{path}: {TARGETS[name].filename} cannot be written: {reason}")
     for target, text in texts.items():
         write_whole(target, text)
+    for line in missing:
+        print(line, file=sys.stderr)
     if not options.quiet:
         _print_summary(analysis, path, list(texts), time.perf_counter() - started)
     for check in failed:
         print(f"{path}: SELF-CHECK FAILED: {check.name}: {check.detail}", file=sys.stderr)
-    return FAILED if failed else OK
+    return FAILED if failed or missing else OK
 
 
 @contextmanager

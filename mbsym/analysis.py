@@ -7,7 +7,7 @@ it took.  The dependency graph is plain attribute access.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -276,26 +276,50 @@ class Analysis:
         return self._result("checks", self._checks)
 
     def _checks(self) -> tuple[Check, ...]:
-        ring, done = self.ring, []
-        truth = checks.oracles(self.system, ring)
-        closed = self._optional("equations") if 3 in self.problems else None
-        if 1 in self.problems and (own := self._optional("kinematics")) is not None:
-            done.append(checks.check_kinematics(truth, own))
-        if 2 in self.problems and (own := self._optional("energy")) is not None:
-            done.append(checks.check_energy(truth, own))
-        if closed is not None:
-            done.append(checks.check_equations(truth, closed))
-        if 3 in self.problems and (own := self._optional("programs")) is not None:
-            done.append(checks.check_program(truth, own))
-            done.append(checks.check_mass_matrix(truth, own))
-        if closed is not None and 4 in self.problems and (own := self._optional("equilibrium")) is not None:
-            again = equilibrium.equilibrium(self.scene, [x.polynomial for x in closed.forcing], self.signs)
-            done.append(checks.check_residuals(ring, own.residuals, again.residuals))
-        if closed is not None and 5 in self.problems and (own := self._optional("linearisation")) is not None:
-            second = linearisation.by_equations(self.scene, closed, self.equilibrium)
-            done.append(checks.check_linearisation(ring, own, second))
-        if 5 in self.problems and (own := self._optional("linearisation")) is not None:
-            done.append(perturbation.check_perturbed_motion(self.system, ring, own, self._dependent()))
-        if 7 in self.problems and (own := self._optional("integrals")):
-            done.append(perturbation.check_integrals(truth, self.programs, own))
+        done = []
+        for name, check in self._second_routes():
+            try:
+                done.append(check())
+            except (NoClosedForm, NotRational, SingularPoint, Unavailable) as reason:
+                done.append(Check(name, "", "", checks.UNDECIDED, str(reason)))
         return tuple(done)
+
+    def _second_routes(self) -> Iterator[tuple[str, Callable[[], Check]]]:
+        """Name and computation of every check that the asked-for problems and their results allow."""
+        ring = self.ring
+        truth = checks.oracles(self.system, ring)
+        asked = {PROBLEMS[number].attribute: self._optional(PROBLEMS[number].attribute) for number in self.problems}
+        closed, linear = asked.get("equations"), asked.get("linearisation")
+        if asked.get("kinematics") is not None:
+            yield "kinematics", lambda: checks.check_kinematics(truth, asked["kinematics"])
+        if asked.get("energy") is not None:
+            yield "energy", lambda: checks.check_energy(truth, asked["energy"])
+        if closed is not None:
+            yield "equations of motion", lambda: checks.check_equations(truth, closed)
+        if 3 in self.problems and self._optional("programs") is not None:
+            yield "straight-line program", lambda: checks.check_program(truth, self.programs)
+            yield "mass matrix", lambda: checks.check_mass_matrix(truth, self.programs)
+        if closed is not None and asked.get("equilibrium") is not None:
+            yield (
+                "equilibrium",
+                lambda: checks.check_residuals(ring, self.residuals_of(closed), self.equilibrium.residuals),
+            )
+        if closed is not None and linear is not None:
+            yield "linearisation", lambda: checks.check_linearisation(ring, linear, self.linearised(closed))
+        if linear is not None:
+            dependent = self._dependent()
+            yield (
+                "perturbed motion",
+                lambda: perturbation.check_perturbed_motion(self.system, ring, linear, dependent),
+            )
+        if asked.get("integrals"):
+            yield "first integrals", lambda: perturbation.check_integrals(truth, self.programs, asked["integrals"])
+
+    def residuals_of(self, closed: Equations) -> Column:
+        """The motion substituted into the closed equations: the second route of problem 4."""
+        forcing = [x.polynomial for x in closed.forcing]
+        return equilibrium.equilibrium(self.scene, forcing, self.signs).residuals
+
+    def linearised(self, closed: Equations) -> Linearisation:
+        """The closed equations differentiated on the motion: the second route of problem 5."""
+        return linearisation.by_equations(self.scene, closed, self.equilibrium)

@@ -57,11 +57,16 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
     """
     total: Expression = ZERO
     present = _names(expression)
+    if not present:
+        return total
     rates: dict[str, Expression] = {}
     if not frozen:
         rates = {"t": ONE} | {item.name: item.rate for item in system.prescribed}
-    rates |= {name: Name(velocity_name(name)) for name in system.coordinates}
-    rates |= {velocity_name(name): Name(acceleration_name(name)) for name in system.coordinates}
+    for name in system.coordinates:
+        if name in present:
+            rates[name] = Name(velocity_name(name))
+        if velocity_name(name) in present:
+            rates[velocity_name(name)] = Name(acceleration_name(name))
     for name in sorted(present & rates.keys()):
         total = add(total, multiply(_Derivation(name)(expression), rates[name]))
     return total
