@@ -142,10 +142,50 @@ CHAIN = " ".join(f"a{i}" for i in range(61))
 TALL = "sin(" * 45 + "x" + "".join(f"*y) + {'zabcx'[i % 5]}" for i in range(45))
 WIDE = "/".join(f"({'xyzabc'[i % 6]} + {i + 1})" for i in range(70))
 DIGITS = "9" * 60
-WORDS = """
-    np E I pi1 Sin N D C O S Pi Null math rhs forcing energy state qd p q x x0 M f dict beta zeta Gamma
-    w tau e i j inf nan omega_0 omega0 omega_00 theta1 theta_1 theta_1_1 theta11
-""".split()
+WORDS = [
+    "np",
+    "E",
+    "I",
+    "pi1",
+    "Sin",
+    "N",
+    "D",
+    "C",
+    "O",
+    "S",
+    "Pi",
+    "Null",
+    "math",
+    "rhs",
+    "forcing",
+    "energy",
+    "state",
+    "qd",
+    "p",
+    "q",
+    "x",
+    "x0",
+    "M",
+    "f",
+    "dict",
+    "beta",
+    "zeta",
+    "Gamma",
+    "w",
+    "tau",
+    "e",
+    "i",
+    "j",
+    "inf",
+    "nan",
+    "omega_0",
+    "omega0",
+    "omega_00",
+    "theta1",
+    "theta_1",
+    "theta_1_1",
+    "theta11",
+]
 
 CASES = {
     # angles
