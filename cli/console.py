@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
+#: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
+BROKEN_DOWN, INTERRUPTED = 3, 130
+
 
 @cache
 def console(stderr: bool = False) -> Console:

@@ -15,6 +15,8 @@ import mbsym
 #: name -> module of this package that defines ``command``.
 COMMANDS = {
     "run": "mbsym_cli.run",
+    "simulate": "mbsym_cli.simulate",
+    "tradeoff": "mbsym_cli.tradeoff",
     "check": "mbsym_cli.check",
     "convert": "mbsym_cli.convert",
     "schema": "mbsym_cli.schema",

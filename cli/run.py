@@ -31,6 +31,7 @@ class Options:
     formats: tuple[str, ...]
     terms: int
     quiet: bool
+    strict_claims: bool = False
 
 
 def _problems(context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, ...]:
@@ -58,6 +59,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default=60_000, show_default=True, help="Budget of terms for one closed formula.")
+@click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
@@ -65,20 +67,23 @@ def command(
     formats: tuple[str, ...],
     out: Path | None,
     terms: int,
+    strict_claims: bool,
     quiet: bool,
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
 
     Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals.
     One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
-    failed or a report could not be written, 2 a description has errors.
+    failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
+    in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
+    unless --strict-claims is given.
 
     \b
     Examples:
       mbsym run systems/satellite.yaml
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
     """
-    options = Options(problems, formats, terms, quiet)
+    options = Options(problems, formats, terms, quiet, strict_claims)
     paths = list(_descriptions(files))
     if not paths:
         raise click.UsageError(f"no descriptions ({', '.join(SUFFIXES)}) in {', '.join(map(str, files))}")
@@ -142,6 +147,9 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
         for number in analysis.problems:
             say(f"{path.name}: problem {number}, {PROBLEMS[number].title}")
             analysis.stage(number)
+        if system.claims:
+            say(f"{path.name}: claims")
+            _ = analysis.claims
         say(f"{path.name}: self-check")
         failed = [check for check in analysis.checks if check.failed]
         texts, missing = {}, []
@@ -157,9 +165,13 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
         print(line, file=sys.stderr)
     if not options.quiet:
         _print_summary(analysis, path, list(texts), time.perf_counter() - started)
+    open_claims = [result for result in analysis.claims if not result.holds] if options.strict_claims else []
+    for result in open_claims:
+        place = f"{result.claim.place}: " if result.claim.place else ""
+        print(f"{path}: CLAIM DOES NOT HOLD: {place}{result.title}: {result.outcome}", file=sys.stderr)
     for check in failed:
         print(f"{path}: SELF-CHECK FAILED: {check.name}: {check.detail}", file=sys.stderr)
-    return FAILED if failed or missing else OK
+    return FAILED if failed or missing or open_claims else OK
 
 
 @contextmanager

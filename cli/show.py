@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,9 +14,11 @@ from mbsym_cli.console import console
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
+    from mbsym.report.claims import ClaimLine
     from mbsym.report.summary import Line, Summary
 
 _COLOURS = {"exact": "green", "verified numerically": "green", "undecided": "yellow", "FAILED": "bold red"}
+_CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
 
 
 def show(found: Summary, path: Path, seconds: float) -> None:
@@ -23,6 +27,7 @@ def show(found: Summary, path: Path, seconds: float) -> None:
     out.print(Text.assemble((found.system, "bold"), (f"  {path}, {seconds:.2f} s", "dim")))
     for line in found.problems:
         _problem(line)
+    _claims(found.claims)
     _checks(found.checks)
     if found.files:
         names = ", ".join(path.name for path in found.files)
@@ -41,6 +46,35 @@ def _indented(text: Text, indent: int) -> None:
     """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
     out = console()
     out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)
+
+
+def _claims(claims: tuple[ClaimLine, ...]) -> None:
+    """How many hold; then each with its place, and by what it differs."""
+    if not claims:
+        return
+    words = [claim.word for claim in claims]
+    counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]
+    console().print(Text(f"  claims: {', '.join(counts)}", style="bold cyan"))
+    width = min(28, max(len(claim.place) for claim in claims))
+    for together in _alike(claims):
+        claim = together[0]
+        place = f"{claim.place:<{width}}  " if width else ""
+        told = (f"{claim.title}: ", claim.outcome)
+        if len(together) > 1:
+            told = (f"{len(together)} claims ", claim.outcome.replace("holds", "hold", 1))
+        _indented(Text.assemble(place + told[0], (told[1], _CLAIM_COLOURS[claim.word])), 4)
+        for text in claim.lines:
+            _indented(Text(text.strip()), 6 + len(text) - len(text.lstrip()))
+
+
+def _alike(claims: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
+    """Claims from one place that hold in the same way are told in one line."""
+    for _, group in groupby(claims, lambda claim: (claim.word == "held" and claim.place, claim.outcome, claim.lines)):
+        found = list(group)
+        if found[0].word == "held" and found[0].place:
+            yield found
+        else:
+            yield from ([claim] for claim in found)
 
 
 def _checks(checks: tuple[Check, ...]) -> None:

@@ -21,10 +21,13 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
-from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.mechanics.rotation_orders import rotation_orders
+from mbsym.mechanics.variables import angle_denominators, ring_environment, ring_of
+from mbsym.model.claims import Claim
 from mbsym.model.system import System
 from mbsym.problems import (
     checks,
+    claims,
     energy,
     equations,
     equilibrium,
@@ -36,6 +39,7 @@ from mbsym.problems import (
     stability,
 )
 from mbsym.problems.checks import Check
+from mbsym.problems.claims import ClaimResult
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
@@ -74,6 +78,10 @@ PROBLEMS = {
 ALL_PROBLEMS = tuple(PROBLEMS)
 
 
+#: One claim may take this part of the work that a whole run may take.
+CLAIM_SHARE = 8
+
+
 @dataclass(frozen=True)
 class NoResult:
     """Why a stage has no result, and what to try next; a value, not a crash."""
@@ -104,13 +112,17 @@ class Analysis:
     """Everything that can be derived from one system, lazily.
 
     ``problems`` are the numbers that reports and self-checks are about; any attribute may be asked for nevertheless.
-    ``terms`` is the budget of terms a closed formula may have.
+    ``terms`` is the budget of terms a closed formula may have.  With ``suggests`` false no other coordinates are tried
+    where a motion is not steady.
     """
 
-    def __init__(self, system: System, problems: Iterable[int] = ALL_PROBLEMS, terms: int = TERM_BUDGET) -> None:
+    def __init__(
+        self, system: System, problems: Iterable[int] = ALL_PROBLEMS, terms: int = TERM_BUDGET, suggests: bool = True
+    ) -> None:
         self.system = system
         self.problems = tuple(sorted(set(problems)))
         self.terms = terms
+        self._suggests = suggests
         self._stages: dict[str, Stage] = {}
         self._nested = 0.0
 
@@ -239,8 +251,26 @@ class Analysis:
         if self.equilibrium.unsteady:
             varying = ", ".join(self.equilibrium.unsteady)
             reason = f"on the given motion the equations still vary with {varying}"
-            raise Unavailable("motion", NoResult(reason, "it is no steady motion in these coordinates"))
-        return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
+            hint = self._steady_order() or "it is no steady motion in these coordinates"
+            raise Unavailable("motion", NoResult(reason, hint))
+        try:
+            return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
+        except linearisation.TimePeriodic as reason:
+            raise Unavailable("linearisation", NoResult(str(reason), self._steady_order())) from None
+
+    def _steady_order(self) -> str:
+        """A hint at the rotation sequence in which the first approximation is steady; "" where none is known."""
+        if not self._suggests:
+            return ""
+        for other in rotation_orders(self.system):
+            try:
+                Analysis(other.system, (), self.terms, suggests=False).linearisation  # noqa: B018
+            except (Unavailable, NoClosedForm, NotRational, SingularPoint):
+                continue
+            axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
+            order = f"rotation: {{axes: [{axes}], angles: [{angles}]}}"
+            return f"with '{order}' of body '{other.body}' the coefficients are constant"
+        return ""
 
     @property
     def stability(self) -> Stability:
@@ -259,6 +289,41 @@ class Analysis:
 
     def _integrals(self) -> tuple[Integral, ...]:
         return integrals.integrals(self.scene, self.energy, self.equations, self.programs)
+
+    # --- claims ---
+
+    @property
+    def claims(self) -> tuple[ClaimResult, ...]:
+        """Every claim of the description against what is derived; the results themselves do not depend on claims."""
+        return self._result("claims", self._claims)
+
+    def _claims(self) -> tuple[ClaimResult, ...]:
+        if not self.system.claims:
+            return ()
+        arguments = list(claims.Symbols(self.system).arguments())
+        source = self
+        if angle_denominators(self.system, arguments) != self.ring.angles:  # sines that only the claims hold
+            source = Analysis(self.system, self.problems, self.terms)
+            source.ring = ring_of(self.system, self.terms, arguments)
+        allowance = source.ring.work_budget
+        found = []
+        for claim in self.system.claims:
+            result, spent = self._claim(source, claim, allowance)
+            allowance -= spent
+            found.append(result)
+        return tuple(found)
+
+    def _claim(self, source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:
+        """One claim and the work that it took: bounded by itself, so that claims cost the reports nothing."""
+        ring = source.ring
+        work, budget = ring.work, ring.work_budget
+        ring.work, ring.work_budget = 0, min(budget // CLAIM_SHARE, max(allowance, 0))
+        try:
+            result = claims.examine(source, claim)
+        except (NoClosedForm, NotRational, SingularPoint, Unavailable) as reason:
+            result = claims.undecided(self.system, claim, str(reason))
+        spent, ring.work, ring.work_budget = ring.work, work, budget
+        return result, spent
 
     # --- self-check ---
 

@@ -112,7 +112,7 @@ def about_joint(central: Sequence[Sequence[str]], mass: str, c: Sequence[str]) -
 
 @st.composite
 def matters(draw: Draw, number: int, solid: bool, about: str | None = None) -> Description:
-    """Mass, mass centre and inertia; ``solid`` bodies have a positive definite central tensor."""
+    """Mass, mass centre, inertia and sometimes rotors; ``solid`` bodies have a positive definite central tensor."""
     mass = draw(st.sampled_from([f"m{number}", "2", "3/2"]))
     centre = [f"{x}*l1" if draw(st.booleans()) else str(x) for x in draw(vectors)]
     kind = "tensor" if solid else draw(st.sampled_from(["tensor", "tensor", "point", "massless"]))
@@ -124,6 +124,8 @@ def matters(draw: Draw, number: int, solid: bool, about: str | None = None) -> D
         central = tensor([*principal, draw(vectors)], mass)
         matter["inertia about"] = about or draw(st.sampled_from(["joint", "mass centre"]))
         matter["inertia"] = about_joint(central, mass, centre) if matter["inertia about"] == "joint" else central
+    if draw(st.integers(0, 3)) == 0:
+        matter["gyrostatic moment"] = [f"{x}*b" for x in draw(nonzero_vectors)]
     return matter
 
 

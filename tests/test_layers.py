@@ -25,12 +25,13 @@ BELOW = {
     "mechanics": "expressions algebra model",
     "problems": "expressions algebra model mechanics formulas",
     "analysis": "expressions algebra model mechanics formulas problems",
-    "report": "expressions algebra model mechanics formulas problems analysis",
+    "numerics": "expressions algebra model mechanics formulas problems analysis",
+    "report": "expressions algebra model mechanics formulas problems analysis numerics",
     "__init__": "source analysis",
-    "cli": "expressions algebra model source mechanics formulas problems analysis report __init__",
+    "cli": "expressions algebra model source mechanics formulas problems analysis numerics report __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
-HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib")
+HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")
 
 
 def layer_of(path: Path) -> str:

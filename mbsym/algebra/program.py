@@ -7,11 +7,11 @@ outwards (``a*(-b)`` is ``-(a*b)``) so that more nodes turn out equal.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 from mbsym.algebra.base import Algebra, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
@@ -31,7 +31,7 @@ class Node:
         return self.program.plus(self, other)
 
     def __sub__(self, other: Node) -> Node:
-        return self.program.plus(self, -other)
+        return self.program.difference(self, other)
 
     def __mul__(self, other: Node) -> Node:
         return self.program.product(self, other)
@@ -40,8 +40,7 @@ class Node:
         return self.program.minus(self)
 
 
-@dataclass(frozen=True, slots=True)
-class Instruction:
+class Instruction(NamedTuple):
     """``operation`` is input, constant, add, subtract, multiply, negative, divide or a function's name.
 
     ``operands`` are numbers of earlier instructions; ``payload`` is an input's name or a constant's value.
@@ -58,6 +57,9 @@ class Program(Algebra):
     def __init__(self) -> None:
         self.instructions: list[Instruction] = []
         self._known: dict[Instruction, Node] = {}
+        self._whole: dict[int, Node] = {}  # whole numbers, which occur most often
+        self._values: list[Fraction | None] = []  # of constants, by number
+        self._opposites: list[Node | None] = []  # a where the node is -a, by number
         self.zero = self.number(0)
         self.one = self.number(1)
 
@@ -75,76 +77,102 @@ class Program(Algebra):
         if known is None:
             known = self._known[instruction] = Node(self, len(self.instructions))
             self.instructions.append(instruction)
+            self._values.append(payload if isinstance(payload, Fraction) else None)
+            self._opposites.append(None)
         return known
 
     def number(self, value: Fraction | int) -> Node:
-        value = Fraction(value)
-        longest = max(value.numerator.bit_length(), value.denominator.bit_length())
+        if isinstance(value, int) and value in self._whole:
+            return self._whole[value]
+        exact = Fraction(value)
+        longest = max(exact.numerator.bit_length(), exact.denominator.bit_length())
         if longest > MOST_BITS:
             raise NoClosedForm(f"a number of {int(longest * 0.30103)} digits, beyond the range of floating point")
-        return self._node("constant", (), value)
+        node = self._node("constant", (), exact)
+        if isinstance(value, int):
+            self._whole[value] = node
+        return node
+
+    def node(self, number: int) -> Node:
+        """The value of an instruction."""
+        return Node(self, number)
 
     def input(self, name: str) -> Node:
         return self._node("input", (), name)
 
     def _constant(self, node: Node) -> Fraction | None:
-        payload = self.instructions[node.number].payload
-        return payload if isinstance(payload, Fraction) else None
+        return self._values[node.number]
 
     def _negated(self, node: Node) -> Node | None:
         """a where node is -a."""
-        instruction = self.instructions[node.number]
-        return Node(self, instruction.operands[0]) if instruction.operation == "negative" else None
+        return self._opposites[node.number]
 
     def vanishes(self, x: Node) -> bool:
-        return x.number == self.zero.number
+        return x.number == 0  # the constant 0 is the first instruction of every program
 
     def minus(self, a: Node) -> Node:
-        value = self._constant(a)
+        value = self._values[a.number]
         if value is not None:
             return self.number(-value)
-        inner = self._negated(a)
+        inner = self._opposites[a.number]
         if inner is not None:
             return inner
         instruction = self.instructions[a.number]
         if instruction.operation == "subtract":
             return self._node("subtract", instruction.operands[::-1])
-        return self._node("negative", (a.number,))
+        negative = self._node("negative", (a.number,))
+        self._opposites[negative.number] = a
+        return negative
 
     def plus(self, a: Node, b: Node) -> Node:
-        if self.vanishes(a):
+        i, j = a.number, b.number
+        if i == 0:
             return b
-        if self.vanishes(b):
+        if j == 0:
             return a
-        x, y = self._constant(a), self._constant(b)
+        x, y = self._values[i], self._values[j]
         if x is not None and y is not None:
             return self.number(x + y)
-        minus_a, minus_b = self._negated(a), self._negated(b)
-        if minus_a is not None and minus_b is not None:
-            return self.minus(self.plus(minus_a, minus_b))
+        minus_a, minus_b = self._opposites[i], self._opposites[j]
         if minus_b is not None:
-            return self.zero if minus_b == a else self._node("subtract", (a.number, minus_b.number))
+            if minus_a is not None:
+                return self.minus(self.plus(minus_a, minus_b))
+            return self._difference(a, minus_b)
         if minus_a is not None:
-            return self.zero if minus_a == b else self._node("subtract", (b.number, minus_a.number))
-        first, second = sorted((a.number, b.number))
-        return self._node("add", (first, second))
+            return self._difference(b, minus_a)
+        return self._node("add", (i, j) if i < j else (j, i))
+
+    def _difference(self, a: Node, b: Node) -> Node:
+        return self.zero if a.number == b.number else self._node("subtract", (a.number, b.number))
+
+    def difference(self, a: Node, b: Node) -> Node:
+        """a - b, without an instruction for -b."""
+        i, j = a.number, b.number
+        if j == 0:
+            return a
+        if self._values[j] is None and self._opposites[j] is None and self._opposites[i] is None and i != 0:
+            return self._difference(a, b)
+        return self.plus(a, self.minus(b))
 
     def product(self, a: Node, b: Node) -> Node:
-        x, y = self._constant(a), self._constant(b)
-        if x is not None and y is not None:
-            return self.number(x * y)
-        value, other = (x, b) if x is not None else (y, a)
-        if value is not None:
-            if value in (0, 1, -1):
-                return self.zero if value == 0 else (other if value == 1 else self.minus(other))
+        i, j = a.number, b.number
+        if i == 0 or j == 0:
+            return self.zero
+        x, y = self._values[i], self._values[j]
+        if x is not None or y is not None:
+            if x is not None and y is not None:
+                return self.number(x * y)
+            value, other = (x, b) if x is not None else (y, a)
+            assert value is not None
+            if value == 1 or value == -1:
+                return other if value == 1 else self.minus(other)
             if value < 0:
                 return self.minus(self.product(self.number(-value), other))
-        minus_a, minus_b = self._negated(a), self._negated(b)
+        minus_a, minus_b = self._opposites[i], self._opposites[j]
         if minus_a is not None or minus_b is not None:
             inner = self.product(a if minus_a is None else minus_a, b if minus_b is None else minus_b)
             return self.minus(inner) if (minus_a is None) != (minus_b is None) else inner
-        first, second = sorted((a.number, b.number))
-        return self._node("multiply", (first, second))
+        return self._node("multiply", (i, j) if i < j else (j, i))
 
     def divide(self, a: Node, b: Node) -> Node:
         y = self._constant(b)
@@ -159,9 +187,9 @@ class Program(Algebra):
     def times(self, a: Node, b: Node) -> Node:
         """a*b; a product with a reciprocal is one division."""
         for x, y in ((a, b), (b, a)):
-            instruction = self.instructions[y.number]
-            if instruction.operation == "divide" and instruction.operands[0] == self.one.number:
-                return self.divide(x, Node(self, instruction.operands[1]))
+            operation, operands, _ = self.instructions[y.number]
+            if operation == "divide" and operands[0] == self.one.number:
+                return self.divide(x, Node(self, operands[1]))
         return self.product(a, b)
 
     def reciprocal(self, x: Node) -> Node:
@@ -209,10 +237,23 @@ class Program(Algebra):
                 pending.extend(self.instructions[number].operands)
         return sorted(needed)
 
-    def operations(self, outputs: Iterable[Node]) -> int:
-        """How many arithmetic operations the outputs cost."""
-        free = ("input", "constant")
-        return sum(self.instructions[number].operation not in free for number in self.live(outputs))
+    def operations(self, outputs: Iterable[Node], given: Collection[str] = ()) -> int:
+        """How many arithmetic operations the outputs cost; what depends only on the inputs ``given`` is free.
+
+        With the constants of a system given, this is what one more state costs: the rest is computed once.
+        """
+        counted = 0
+        steady: set[int] = set()
+        for number in self.live(outputs):
+            operation, operands, payload = self.instructions[number]
+            if operation == "constant" or (operation == "input" and payload in given):
+                steady.add(number)
+            elif operation != "input":
+                if given and all(operand in steady for operand in operands):
+                    steady.add(number)
+                else:
+                    counted += 1
+        return counted
 
     def evaluate(self, outputs: Sequence[Node], inputs: Mapping[str, Any], algebra: Algebra) -> list[Any]:
         """The outputs over any algebra whose scalars divide through ``algebra.reciprocal``.
@@ -255,7 +296,7 @@ class Program(Algebra):
             case "negative", [a]:
                 return -a
             case "divide", [a, b]:
-                return a * algebra.reciprocal(b)
+                return algebra.times(a, algebra.reciprocal(b))
             case "sqrt", [a]:
                 return algebra.square_root(a)
             case name, [a]:

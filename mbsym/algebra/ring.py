@@ -76,8 +76,8 @@ class Ring(Algebra):
 
     coordinates, prescribed, parameters: declared names, disjoint.  angles: the names that stand under sin and cos,
     each with the common denominator of its coefficients there (sin(q/2) makes it 2).  positive: the parameters known to
-    be positive (a root of their squares is taken exactly).  spare: how many generators may be adjoined.  terms: the
-    budget of terms a formula may have; beyond it NoClosedForm is raised.
+    be positive (a root of their squares is taken exactly).  nonnegative: those that may be zero besides.  spare: how
+    many generators may be adjoined.  terms: the budget of terms a formula may have; beyond it NoClosedForm is raised.
     """
 
     def __init__(
@@ -87,6 +87,7 @@ class Ring(Algebra):
         parameters: Sequence[str],
         angles: Mapping[str, int],
         positive: Iterable[str] = (),
+        nonnegative: Iterable[str] = (),
         spare: int = 8,
         terms: int = TERM_BUDGET,
     ) -> None:
@@ -111,6 +112,9 @@ class Ring(Algebra):
         self.one = self.context.constant(1)
         self._overhead = 20 + len(layout) // 3  # what an operation costs before it looks at the second term
         self._positive = {self._index["parameter", name] for name in positive if ("parameter", name) in self._index}
+        self._nonnegative = self._positive | {
+            self._index["parameter", name] for name in nonnegative if ("parameter", name) in self._index
+        }
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
         self._derivatives: dict[str, dict[int, Polynomial]] = {}
         self.angles = dict(angles)
@@ -451,9 +455,10 @@ class Ring(Algebra):
         return self._gens[index]
 
     def is_positive(self, x: Polynomial) -> bool:
-        """Whether x is a sum of positive terms in positive parameters: sufficient, never wrong."""
+        """Whether x is a sum of terms that are not negative, one of them positive: sufficient, never wrong."""
+        nonnegative = self._nonnegative | self._positive
         return all(
-            coefficient > 0 and all(k in self._positive or e % 2 == 0 for k, e in enumerate(monomial) if e)
+            coefficient > 0 and all(k in nonnegative or e % 2 == 0 for k, e in enumerate(monomial) if e)
             for monomial, coefficient in x.terms()
         ) and any(all(k in self._positive for k, e in enumerate(monomial) if e) for monomial in x.monoms())
 
@@ -662,6 +667,7 @@ class ParameterRing(Ring):
         self._index = {(g.kind, g.name): k for k, g in enumerate(self.generators)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self._positive = {self.indices.index(k) for k in whole._positive if k in self.indices}
+        self._nonnegative = {self.indices.index(k) for k in whole._nonnegative if k in self.indices}
         self._relations, self._derivatives, self.angles = [], {}, {}
 
     def project(self, x: Polynomial) -> Polynomial:
@@ -689,7 +695,7 @@ class _Evaluation:
             term = arb(coefficient)
             for k in used:
                 if monomial[k]:
-                    term *= base[k] ** int(monomial[k])
+                    term *= _ball_power(base[k], int(monomial[k]))
             total += term
         return total
 
@@ -714,6 +720,16 @@ class _Evaluation:
             case "acceleration":
                 return arb(self.values[g.name + "_ddot"])
         return arb.pi() if g.name == "pi" else arb(self.values[g.name])
+
+
+def _ball_power(base: Any, exponent: int) -> Any:
+    """By squaring: the library's own power goes through the logarithm, which a ball around 0 does not have."""
+    result = base if exponent & 1 else arb(1)
+    while exponent := exponent >> 1:
+        base = base * base
+        if exponent & 1:
+            result = result * base
+    return result
 
 
 def _check_product(a: Polynomial, b: Polynomial) -> int:

@@ -2,6 +2,11 @@
 
 T = sum over bodies of  m/2 V_O^2 + m V_O.(omega x r_C) + 1/2 omega.Theta_O omega     (tensor about the joint)
                         m/2 V_C^2 + 1/2 omega.Theta_C omega                           (about the mass centre)
+                        + h.omega                                                     (gyrostatic moment h)
+
+The last term is linear in the velocities: T is Routh's function of the rotors inside the bodies, and T + U the
+Lagrangian.  The energy that a free system keeps, T_2 - T_0 - U, does not contain it unless a body is carried by a
+prescribed rotation.
 """
 
 from __future__ import annotations
@@ -13,11 +18,21 @@ from mbsym.mechanics.kinematics import BodyMotion, Scene
 
 
 def kinetic_energy(scene: Scene) -> Scalar:
-    """T of the whole system."""
+    """T of the whole system, the gyrostatic term included."""
+    algebra = scene.algebra
+    total = gyrostatic_term(scene)
+    for motion in scene.motions.values():
+        total = total + _body_energy(scene, motion)
+    return algebra.reduce(total)
+
+
+def gyrostatic_term(scene: Scene) -> Scalar:
+    """sum of h.omega."""
     algebra = scene.algebra
     total = algebra.zero
     for motion in scene.motions.values():
-        total = total + _body_energy(scene, motion)
+        if motion.gyrostatic_moment is not None:
+            total = total + algebra.dot(motion.gyrostatic_moment, motion.angular_velocity)
     return algebra.reduce(total)
 
 

@@ -25,7 +25,10 @@ from mbsym.model.system import INERTIAL, Body, System
 
 @dataclass(frozen=True, slots=True)
 class BodyMotion:
-    """One body's motion in its own axes; ``offset`` is r^j_Ok in the axes of the body it is attached to."""
+    """One body's motion in its own axes; ``offset`` is r^j_Ok in the axes of the body it is attached to.
+
+    ``gyrostatic_moment`` is None where the body has none.
+    """
 
     body: Body
     turns: tuple[Turn, ...]
@@ -37,6 +40,7 @@ class BodyMotion:
     mass: Scalar
     mass_centre: Vector
     inertia: tuple[Vector, Vector, Vector] | None
+    gyrostatic_moment: Vector | None
 
 
 class Scene:
@@ -44,7 +48,8 @@ class Scene:
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
     it and carried over.  With ``frozen`` the prescribed quantities and t stand still;
-    without ``bodies`` only expressions are lowered.
+    without ``bodies`` only expressions are lowered.  Seen from frames that are ``falling`` their origins are at rest and
+    gravity is what it is there beyond that at the origin (``mbsym.mechanics.falling``).
     """
 
     def __init__(
@@ -55,11 +60,13 @@ class Scene:
         ring: Ring,
         frozen: bool = False,
         bodies: bool = True,
+        falling: frozenset[str] = frozenset(),
     ) -> None:
         self.system = system
         self.algebra = algebra
         self.ring = ring
         self.frozen = frozen
+        self.falling = falling
         self.lower = Lowering(algebra, environment)
         self.environment = environment
         self._carrier = Carrier(ring, algebra, environment)
@@ -84,6 +91,8 @@ class Scene:
         sliding = lower.vector([self.rate(x) for x in body.connection_point])
         carried = algebra.add(parent_velocity, algebra.cross(parent_spin, offset))
         velocity = forward(algebra, turns, algebra.add(carried, sliding))
+        if body.name in self.falling:
+            velocity = algebra.zero_vector
         centre = lower.vector(body.mass_centre)
         tensor = None
         if body.inertia is not None:
@@ -100,6 +109,7 @@ class Scene:
             mass=lower(body.mass),
             mass_centre=centre,
             inertia=tensor,
+            gyrostatic_moment=None if body.gyrostatic_moment is None else lower.vector(body.gyrostatic_moment),
         )
 
     def _turns(self, body: Body) -> list[Turn]:

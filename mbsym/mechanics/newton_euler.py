@@ -4,7 +4,7 @@ Forwards, in each body's axes (turn by turn alpha <- C alpha + x'' e + omega x x
 
     a_Ok = R (a_Oj + alpha_j x r + omega_j x (omega_j x r) + 2 omega_j x r' + r'')
     F_k  = m (a_Ok + alpha x c + omega x (omega x c))
-    N_k  = Theta_O alpha + omega x Theta_O omega + m c x a_Ok
+    N_k  = Theta_O alpha + omega x (Theta_O omega + h) + m c x a_Ok        (h: gyrostatic moment)
 
 and backwards: the joint must supply what the body and everything beyond it need less what the loads supply.  Its
 projections on the joint's partial velocities are the residuals  M q'' - forcing.
@@ -52,6 +52,11 @@ class _Accelerations:
         self.spin[name], self.angular[name] = spin, angular
 
 
+def origin_acceleration(scene: Scene, body: str) -> Vector:
+    """a_Ok of one body, in its axes."""
+    return _Accelerations(scene).origin[body]
+
+
 def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: Vector) -> tuple[Vector, Vector]:
     """(F, N): the rate of momentum, and of angular momentum referred to O_k."""
     algebra = scene.algebra
@@ -67,6 +72,8 @@ def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: V
     if motion.inertia is not None:
         moment = algebra.add(moment, algebra.apply(motion.inertia, angular))
         moment = algebra.add(moment, algebra.cross(spin, algebra.apply(motion.inertia, spin)))
+    if motion.gyrostatic_moment is not None:
+        moment = algebra.add(moment, algebra.cross(spin, motion.gyrostatic_moment))
     return force, moment
 
 

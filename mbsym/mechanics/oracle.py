@@ -178,6 +178,12 @@ class Placement:
         axes = self.axes[body.name]
         return _product(_product(axes, tensor), _transpose(axes))
 
+    def gyrostatic_moment(self, body: model.Body) -> Triple | None:
+        """h, fixed in the body, in inertial axes: its rate comes from the turning of the axes alone."""
+        if body.gyrostatic_moment is None:
+            return None
+        return self.direction(body.name, self.lower.vector(body.gyrostatic_moment))
+
     def spin(self, body: str) -> tuple[list[Scalar], list[Scalar]]:
         """omega and domega/ds from A' A^T, in inertial axes."""
         if body not in self._spins:
@@ -255,19 +261,23 @@ class Oracle:
 
     @cached_property
     def momentum_rates(self) -> list[tuple[model.Body, list[Scalar], list[Scalar] | None]]:
-        """(body, m r_C'', dH_C/dt) of every body that has mass or inertia."""
+        """(body, m r_C'', dH_C/dt) of every body that has mass, inertia or a gyrostatic moment."""
         two = self.numbers.number(2)
         found = []
         for body in self.system.bodies:
             mass = self.moving.lower(body.mass).a
             tensor = self.moving.inertia(body)
-            if self.numbers.vanishes(mass) and tensor is None:
+            internal = self.moving.gyrostatic_moment(body)
+            if self.numbers.vanishes(mass) and tensor is None and internal is None:
                 continue
             force = [mass * two * x.c for x in self.moving.mass_centre(body)]
             change = None
             if tensor is not None:
                 omega, rate = self.moving.spin(body.name)
                 change = [_dot([x.a for x in row], rate) + _dot([x.b for x in row], omega) for row in tensor]
+            if internal is not None:
+                turning = [x.b for x in internal]
+                change = turning if change is None else [a + b for a, b in zip(change, turning, strict=True)]
             found.append((body, force, change))
         return found
 
@@ -300,7 +310,22 @@ class Oracle:
 
     @cached_property
     def kinetic_energy(self) -> Scalar:
-        """(1/2) sum of m V_C^2 + omega . A Theta_C A^T omega."""
+        """(1/2) sum of m V_C^2 + omega . A Theta_C A^T omega, and the gyrostatic term."""
+        return self.energy_of_motion + self.gyrostatic_term
+
+    @cached_property
+    def gyrostatic_term(self) -> Scalar:
+        """sum of (A h) . omega."""
+        total = self.numbers.zero
+        for body in self.system.bodies:
+            internal = self.moving.gyrostatic_moment(body)
+            if internal is not None:
+                total = total + _dot([x.a for x in internal], self.moving.spin(body.name)[0])
+        return total
+
+    @cached_property
+    def energy_of_motion(self) -> Scalar:
+        """(1/2) sum of m V_C^2 + omega . A Theta_C A^T omega: what T - (gyrostatic term) must be."""
         twice = self.numbers.zero
         for body in self.system.bodies:
             mass = self.moving.lower(body.mass).a
@@ -339,6 +364,93 @@ def _uniform(load: model.UniformGravity, place: Placement) -> Series:
 
 
 def _newtonian(load: model.NewtonianGravity, place: Placement) -> Series:
+    if load.order == model.EXACT:
+        return _newtonian_exact(load, place)
+    return _newtonian_quadratic(load, place) if load.order == 2 else _newtonian_in_size(load, place, int(load.order))
+
+
+def _attracted(load: model.NewtonianGravity, place: Placement) -> list[model.Body]:
+    """The bodies that the frame ``about`` carries; the centre does not attract itself."""
+    return [x for x in place.system.bodies if load.about in place.system.path(x.name) and x.name != load.centre]
+
+
+def _from(start: str, end: Triple, place: Placement) -> Triple:
+    return [a - b for a, b in zip(end, place.origin[start], strict=True)]
+
+
+def _central_second_moments(body: model.Body, place: Placement) -> list[Triple] | None:
+    """P = int x x^T dm = (tr J)/2 1 - J about the mass centre, in inertial axes."""
+    tensor = place.inertia(body)
+    if tensor is None:
+        return None
+    half_trace = place.algebra.number(Fraction(1, 2)) * (tensor[0][0] + tensor[1][1] + tensor[2][2])
+    return [[half_trace - tensor[i][j] if i == j else -tensor[i][j] for j in range(3)] for i in range(3)]
+
+
+def _newtonian_exact(load: model.NewtonianGravity, place: Placement) -> Series:
+    """U = nu sum of m/|r| + (1/2) P : grad grad 1/|r|, with P the second moments about the mass centre."""
+    algebra = place.algebra
+    total = algebra.zero
+    for body in _attracted(load, place):
+        r = _from(load.centre, place.mass_centre(body), place)
+        inverse = algebra.reciprocal(algebra.square_root(_dot(r, r)))
+        total = total + place.lower(body.mass) * inverse
+        moments = _central_second_moments(body, place)
+        if moments is None:
+            continue
+        for i in range(3):
+            for j in range(3):  # d^2/dx_i dx_j of 1/|r|
+                curvature = algebra.number(3) * r[i] * r[j] * inverse * inverse
+                curvature = curvature - algebra.one if i == j else curvature
+                cube = inverse * inverse * inverse
+                total = total + algebra.number(Fraction(1, 2)) * moments[i][j] * curvature * cube
+    return place.lower(load.constant) * total
+
+
+def _newtonian_in_size(load: model.NewtonianGravity, place: Placement, order: int) -> Series:
+    """The exact field of bodies s times as large, r = p + s x, P s^2: Taylor polynomial in s to the order, at s = 1.
+
+    |r|^-1 is the binomial series in u = |r|^2/|p|^2 - 1; everything else is products of polynomials in s.
+    """
+    algebra = place.algebra
+    p = _from(load.centre, place.origin[load.about], place)
+    square = _dot(p, p)
+    inverse_square = algebra.reciprocal(square)
+    inverse = algebra.reciprocal(algebra.square_root(square))
+    two, half = algebra.number(2), algebra.number(Fraction(1, 2))
+
+    def product(a: list[Series], b: list[Series]) -> list[Series]:
+        found = [algebra.zero] * (order + 1)
+        for i, first in enumerate(a):
+            for j, second in enumerate(b[: order + 1 - i]):
+                found[i + j] = found[i + j] + first * second
+        return found
+
+    total = algebra.zero
+    for body in _attracted(load, place):
+        x = _from(load.about, place.mass_centre(body), place)
+        u = [algebra.zero, two * inverse_square * _dot(p, x), inverse_square * _dot(x, x)]
+        power, binomial, reciprocal = [inverse], Fraction(1), [algebra.zero] * (order + 1)
+        for k in range(order + 1):
+            for degree, term in enumerate(power):
+                reciprocal[degree] = reciprocal[degree] + algebra.number(binomial) * term
+            power, binomial = product(power, u), binomial * (Fraction(-1, 2) - k) / (k + 1)
+        mass, moments = place.lower(body.mass), _central_second_moments(body, place)
+        for part in reciprocal:
+            total = total + mass * part
+        if moments is None:
+            continue
+        cube = product(reciprocal, product(reciprocal, reciprocal))
+        turned = [_dot(row, p) for row in moments]
+        quadratic = [_dot(p, turned), two * _dot(x, turned), _dot(x, [_dot(row, x) for row in moments])]
+        fifth = product(cube, product(reciprocal, reciprocal))
+        spread = moments[0][0] + moments[1][1] + moments[2][2]
+        for along, across in zip(product(quadratic, fifth)[: order - 1], cube[: order - 1], strict=True):
+            total = total + half * (algebra.number(3) * along - spread * across)
+    return place.lower(load.constant) * total
+
+
+def _newtonian_quadratic(load: model.NewtonianGravity, place: Placement) -> Series:
     """U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
     algebra = place.algebra
     outward = [a - b for a, b in zip(place.origin[load.about], place.origin[load.centre], strict=True)]
@@ -347,9 +459,7 @@ def _newtonian(load: model.NewtonianGravity, place: Placement) -> Series:
     e = [inverse * x for x in outward]
     total = algebra.zero
     half, three = algebra.number(Fraction(1, 2)), algebra.number(3)
-    for body in place.system.bodies:
-        if load.about not in place.system.path(body.name):
-            continue
+    for body in _attracted(load, place):
         mass = place.lower(body.mass)
         x = [a - b for a, b in zip(place.mass_centre(body), place.origin[load.about], strict=True)]
         second = [[mass * x[i] * x[j] for j in range(3)] for i in range(3)]

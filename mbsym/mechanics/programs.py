@@ -1,24 +1,34 @@
 """The equations as one straight-line program: what numbers are computed from.
 
-    column j of M = Newton-Euler residuals at q' = 0, q'' = e_j, without loads
-    forcing       = - Newton-Euler residuals at q'' = 0
-    energy        = T - U
+    M         by composite bodies (``mbsym.mechanics.composite``)
+    forcing   by the lean Newton-Euler recursion at q'' = 0 (``mbsym.mechanics.coasting``)
+    energy    = T - U, without the gyrostatic term h.omega, which no energy contains
 
-All over one hash-consed program, so what the columns share is computed once, and zeros (branches that do not feel a
-joint) never become instructions.
+All over one hash-consed program, so what they share is computed once, and zeros (branches that do not feel a joint)
+never become instructions.  Where a coordinate occurs in several joints (absolute angles), terms of the composite bodies
+may cancel that the general recursion never forms; then
+
+    column j of M = Newton-Euler residuals at q' = 0, q'' = e_j, without loads
+
+is written down too, and the shorter of the two is taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from flint import arb, arb_mat, fmpq_mat
 
+from mbsym.algebra.derivative import gradient
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.articulated import applies
+from mbsym.mechanics.articulation import Articulation, articulation
+from mbsym.mechanics.coasting import coasting, forcing
+from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
@@ -29,19 +39,66 @@ from mbsym.model.system import System, acceleration_name, velocity_name
 
 @dataclass(frozen=True)
 class Programs:
-    """M (n x n nodes), forcing (n nodes) and energy over ``program``, whose inputs bear the declared names."""
+    """M (n x n nodes), forcing (n nodes) and energy over ``program``, whose inputs bear the declared names.
+
+    The Lagrangian is kinetic_energy + force_function; the kinetic energy holds the gyrostatic term.
+    """
 
     program: Program
     environment: Mapping[str, Node]
     mass_matrix: tuple[tuple[Node, ...], ...]
     forcing: tuple[Node, ...]
     energy: Node
+    kinetic_energy: Node
+    force_function: Node
+
+
+def coasting_scene(system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]) -> Scene:
+    """The system over a program, at q'' = 0."""
+    still = {acceleration_name(name): program.zero for name in system.coordinates}
+    return Scene(system, program, dict(inputs) | still, ring)
+
+
+def constants(system: System) -> frozenset[str]:
+    """The inputs of a program that do not change with the state."""
+    return frozenset((*system.parameter_names, "pi"))
 
 
 def programs(system: System, ring: Ring) -> Programs:
     """Mass matrix, forcing and energy as straight-line code."""
     program = Program()
     inputs = program_environment(system, program)
+    scene = coasting_scene(system, ring, program, inputs)
+    frames = articulation(scene)
+    kinetic, force = kinetic_energy(scene), force_function(scene)
+    return Programs(
+        program=program,
+        environment=inputs,
+        mass_matrix=lean_mass_matrix(frames, program, inputs),
+        forcing=forcing(frames, coasting(frames)),
+        energy=kinetic - force - gyrostatic_term(scene),
+        kinetic_energy=kinetic,
+        force_function=force,
+    )
+
+
+def lean_mass_matrix(
+    frames: Articulation, program: Program, inputs: Mapping[str, Node]
+) -> tuple[tuple[Node, ...], ...]:
+    """M by composite bodies or column by column, whichever costs less for one more state."""
+    composite = mass_matrix(frames)
+    if applies(frames):
+        return composite
+    columns = mass_matrix_by_columns(frames.scene.system, frames.scene.ring, program, inputs)
+    given = constants(frames.scene.system)
+    costs = [program.operations([x for row in rows for x in row], given) for rows in (composite, columns)]
+    return composite if costs[0] <= costs[1] else columns
+
+
+def mass_matrix_by_columns(
+    system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]
+) -> tuple[tuple[Node, ...], ...]:
+    """Column j = what the joints must supply for q'' = e_j at rest; the entries above the diagonal count."""
     names = system.coordinates
     at_rest = dict(inputs) | {velocity_name(name): program.zero for name in names}
     columns = []
@@ -49,16 +106,23 @@ def programs(system: System, ring: Ring) -> Programs:
         unit = {acceleration_name(name): program.one if name == moving else program.zero for name in names}
         column = residuals(Scene(system, program, at_rest | unit, ring, frozen=True), loads=False)
         columns.append([column[name] for name in names])
-    coasting = dict(inputs) | {acceleration_name(name): program.zero for name in names}
-    scene = Scene(system, program, coasting, ring)
-    forcing = residuals(scene)
-    return Programs(
-        program=program,
-        environment=inputs,
-        mass_matrix=tuple(tuple(columns[j][i] for j in range(len(names))) for i in range(len(names))),
-        forcing=tuple(-forcing[name] for name in names),
-        energy=kinetic_energy(scene) - force_function(scene),
-    )
+    n = len(names)
+    return tuple(tuple(columns[max(i, j)][min(i, j)] for j in range(n)) for i in range(n))
+
+
+def momenta(found: Programs, system: System) -> tuple[Node, ...]:
+    """p_i = dL/dq'_i with L = T + U, as nodes of the same program."""
+    return _lagrangian_gradient(found, [velocity_name(name) for name in system.coordinates])
+
+
+def momentum_rates(found: Programs, system: System) -> tuple[Node, ...]:
+    """dL/dq_i: what the momenta's rates are where no force lacks a force function."""
+    return _lagrangian_gradient(found, system.coordinates)
+
+
+def _lagrangian_gradient(found: Programs, names: Sequence[str]) -> tuple[Node, ...]:
+    lagrangian = found.kinetic_energy + found.force_function
+    return gradient(found.program, lagrangian, [found.environment[name] for name in names])
 
 
 def accelerated(system: System, state: State, found: Programs) -> State:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from math import lcm
 from typing import Any
@@ -32,13 +32,17 @@ from mbsym.expressions.tree import (
     subtract,
     walk,
 )
-from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.model.system import EXACT, NewtonianGravity, System, acceleration_name, velocity_name
 
 _NODES = (Number, Name, Negative, Operation, Call)
 
 
+#: What a system holds besides its mechanics: expressions there take no part in it.
+_ASIDE = ("span", "claims", "abbreviations")
+
+
 def expressions(part: Any) -> Iterator[Expression]:
-    """Every expression held by a system or a part of it."""
+    """Every expression held by a system or a part of it; of a system without its claims."""
     if isinstance(part, _NODES):
         yield part
     elif isinstance(part, tuple):
@@ -46,7 +50,7 @@ def expressions(part: Any) -> Iterator[Expression]:
             yield from expressions(item)
     elif is_dataclass(part):
         for field in fields(part):
-            if field.name != "span":
+            if field.name not in _ASIDE:
                 yield from expressions(getattr(part, field.name))
 
 
@@ -125,8 +129,10 @@ class _Derivation:
         return ZERO if slope == ZERO else multiply(substitute(differentiate(outer, "u"), {"u": inner}), slope)
 
 
-def angle_denominators(system: System) -> dict[str, int]:
+def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> dict[str, int]:
     """The names under sin and cos anywhere, each with the common denominator of its coefficients there.
+
+    ``arguments`` are further angles.
 
     A coordinate's unperturbed value takes the coordinate's place, so its names count with the same coefficients.
     """
@@ -151,14 +157,22 @@ def angle_denominators(system: System) -> dict[str, int]:
         for node in walk(expression):
             if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
                 note(node.argument)
+    for argument in arguments:
+        note(argument)
     declared = [*system.coordinates, *(item.name for item in system.prescribed), *system.parameter_names, "t"]
     return {name: found[name] for name in declared if name in found}
 
 
-def ring_of(system: System, terms: int = TERM_BUDGET) -> Ring:
-    """The exact ring of a system, with the user's notation among its parameters."""
+def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expression] = ()) -> Ring:
+    """The exact ring of a system, with the user's notation among its parameters.
+
+    ``arguments`` are angles under sin and cos besides those of the system.
+    """
     adjunctions = 12 + 4 * len(system.loads)
-    for expression in expressions(system):
+    # Every mass centre has a distance of its own in the exact field, and on the unperturbed motion another one.
+    exact = sum(isinstance(load, NewtonianGravity) and load.order == EXACT for load in system.loads)
+    adjunctions += 4 * exact * sum(body.mass != ZERO or body.inertia is not None for body in system.bodies)
+    for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):
             if isinstance(node, Call) or (isinstance(node, Operation) and node.operator in ("/", "**")):
                 adjunctions += 2
@@ -166,8 +180,9 @@ def ring_of(system: System, terms: int = TERM_BUDGET) -> Ring:
         system.coordinates,
         [item.name for item in system.prescribed],
         [*system.parameter_names, *(item.name for item in system.notation)],
-        angle_denominators(system),
+        angle_denominators(system, arguments),
         positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
+        nonnegative=[parameter.name for parameter in system.parameters if parameter.sign == "nonnegative"],
         spare=min(adjunctions, 64),
         terms=terms,
     )

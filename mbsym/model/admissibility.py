@@ -7,11 +7,11 @@ for principal moments that is the triangle inequality A <= B + C in its three fo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number, text
 from mbsym.model.system import Tensor
 
 Numbers = tuple[Fraction, Fraction, Fraction]
@@ -22,19 +22,140 @@ _MAX_BITS = 20_000
 
 
 def inertia_violation(tensor: NumberTensor) -> str | None:
-    """Why no body has this tensor of inertia, or None if some body has it."""
+    """Why no body has this tensor of inertia, with the inequality in numbers, or None if some body has it."""
     for index in range(3):
         if tensor[index][index] < 0:
-            return f"the moment of inertia about axis {index + 1} is negative"
+            return f"the moment of inertia about axis {index + 1} is negative: {decimal(tensor[index][index])} < 0"
     if _is_diagonal(tensor):
         for index in range(3):
             others = [tensor[other][other] for other in range(3) if other != index]
             if tensor[index][index] > sum(others, Fraction(0)):
-                return f"the moment of inertia about axis {index + 1} exceeds the sum of the other two"
+                numbers = f"{decimal(tensor[index][index])} > {' + '.join(map(decimal, others))}"
+                return f"the moment of inertia about axis {index + 1} exceeds the sum of the other two: {numbers}"
         return None
     if any(minor < 0 for minor in principal_minors(second_moments(tensor))):
         return "its principal moments violate the triangle inequality (tr(J)/2 - J is not positive semidefinite)"
     return None
+
+
+def offset_violation(
+    tensor: NumberTensor, mass: Fraction, centre: Numbers, axes: Sequence[int] = (0, 1, 2)
+) -> str | None:
+    """Why no body with the inertia ``tensor`` about O has its mass centre at ``centre`` from O, or None if some has.
+
+    About the axis i through O the mass alone, were it all at its centre, has m (c.c - c_i^2); no body has less.  What is
+    left about the mass centre must be the inertia of a body.  Where only some moments were meant, ``axes`` are theirs.
+    """
+    square = sum((component * component for component in centre), Fraction(0))
+    for index in axes:
+        least = mass * (square - centre[index] * centre[index])
+        if tensor[index][index] < least:
+            numbers = f"{decimal(tensor[index][index])} < {_offset_words(index)} = {decimal(least)}"
+            return f"moved to the mass centre, the moment of inertia about axis {index + 1} is negative: {numbers}"
+    violation = inertia_violation(about_mass_centre(tensor, mass, centre)) if len(axes) == 3 else None
+    return None if violation is None else f"moved to the mass centre, {violation}"
+
+
+def _offset_words(index: int) -> str:
+    first, second = (other + 1 for other in range(3) if other != index)
+    return f"m (c{first}^2 + c{second}^2)"
+
+
+def symbolic_violation(
+    tensor: Tensor, mass: Expression, centre: Sequence[Expression], about_joint: bool, signs: Mapping[str, str]
+) -> str | None:
+    """What the signs of the parameters alone decide: a principal moment larger than the other two together, or smaller
+    than m (c.c - c_i^2) allows.  None if they decide nothing.
+    """
+    for index in range(3):
+        others = [other for other in range(3) if other != index]
+        if about_joint:
+            lever = Operation("+", *(Operation("*", centre[other], centre[other]) for other in others))
+            left = Operation("-", tensor[index][index], Operation("*", mass, lever))
+            if _surely_negative_sum(left, signs):
+                reason = f"{text(tensor[index][index])} < {_offset_words(index)}"
+                return f"moved to the mass centre, the moment of inertia about axis {index + 1} is negative: {reason}"
+        if all(is_number(tensor[row][column], 0) for row in range(3) for column in range(3) if row != column):
+            first, second = (tensor[other][other] for other in others)
+            if _surely_negative_sum(Operation("-", Operation("+", first, second), tensor[index][index]), signs):
+                reason = f"{text(tensor[index][index])} > {text(first)} + {text(second)}"
+                return f"the moment of inertia about axis {index + 1} exceeds the sum of the other two: {reason}"
+    return None
+
+
+#: Sums longer than this are not looked at.
+_MAX_MONOMIALS = 200
+_Monomials = dict[tuple[tuple[str, int], ...], Fraction]
+
+
+def _surely_negative_sum(expression: Expression, signs: Mapping[str, str]) -> bool:
+    """Whether, multiplied out, nothing but negative multiples of products of positive parameters is left."""
+    terms = _monomials(expression)
+    if not terms or any(coefficient >= 0 for coefficient in terms.values()):
+        return False
+    return all(signs.get(name) == "positive" or name == "pi" for monomial in terms for name, _ in monomial)
+
+
+def _monomials(expression: Expression) -> _Monomials | None:
+    """Coefficients by monomials, or None for what is no polynomial (in names and their reciprocals) of modest size."""
+    match expression:
+        case Number(value):
+            return {(): value} if value else {}
+        case Name(name):
+            return {((name, 1),): Fraction(1)}
+        case Negative(operand):
+            inner = _monomials(operand)
+            return None if inner is None else {key: -value for key, value in inner.items()}
+        case Operation("**", base, Number(exponent)) if exponent.denominator == 1 and abs(exponent) <= 8:
+            inner, power = _monomials(base), int(exponent)
+            if inner is None or (power < 0 and len(inner) != 1):
+                return None
+            if power < 0:
+                ((key, value),) = inner.items()
+                inner = {tuple((name, -degree) for name, degree in key): 1 / value}
+            result: _Monomials | None = {(): Fraction(1)}
+            for _ in range(abs(power)):
+                result = None if result is None else _product(result, inner)
+            return result
+        case Operation(operator, left, right) if operator in ("+", "-", "*", "/"):
+            other = Operation("**", right, Number(Fraction(-1))) if operator == "/" else right
+            first, second = _monomials(left), _monomials(other)
+            if first is None or second is None:
+                return None
+            if operator in ("*", "/"):
+                return _product(first, second)
+            return _sum(first, second, 1 if operator == "+" else -1)
+    return None
+
+
+def _sum(first: _Monomials, second: _Monomials, sign: int) -> _Monomials:
+    total = dict(first)
+    for key, value in second.items():
+        total[key] = total.get(key, Fraction(0)) + sign * value
+    return {key: value for key, value in total.items() if value}
+
+
+def _product(first: _Monomials, second: _Monomials) -> _Monomials | None:
+    if len(first) * len(second) > _MAX_MONOMIALS:
+        return None
+    total: _Monomials = {}
+    for one, a in first.items():
+        for other, b in second.items():
+            degrees = dict(one)
+            for name, degree in other:
+                degrees[name] = degrees.get(name, 0) + degree
+            key = tuple(sorted((name, degree) for name, degree in degrees.items() if degree))
+            total[key] = total.get(key, Fraction(0)) + a * b
+    total = {key: value for key, value in total.items() if value}
+    return total if all(map(_is_short, total.values())) else None
+
+
+def decimal(value: Fraction) -> str:
+    """A number as a message shows it."""
+    try:
+        return f"{float(value):.10g}"
+    except OverflowError:
+        return "a huge number"
 
 
 def impossible_alone(tensor: Tensor, signs: Mapping[str, str], values: Mapping[str, Fraction]) -> int | None:

@@ -9,6 +9,10 @@ Conventions (all of mbsym follows them; the reports state them):
 * An inertia tensor is the symmetric matrix J of T = w.J w / 2, so its products carry the minus sign
   (J13 = -int x z dm).
 * L = T + U with the force function U = -potential energy.
+* A gyrostatic moment h is the constant angular momentum of symmetric rotors inside a body, in the body's axes.  It
+  adds h.omega to T and no coordinate.  T is then Routh's function of the rotors, additive constants dropped: with h_a =
+  J_a (omega_a + s') constant for a rotor that spins freely about its axis a (its axial moment J_a is not part of the
+  body's tensor), with h_a = J_a s' for one driven at the constant rate s' (J_a is part of it).
 
 Spans point back into the description; they take no part in equality, so two spellings of one system compare equal.
 """
@@ -22,12 +26,17 @@ from fractions import Fraction
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
+from mbsym.model.claims import Abbreviation, Claim
 
 Vector = tuple[Expression, Expression, Expression]
 Tensor = tuple[Vector, Vector, Vector]
 
 #: The name of the inertial frame.
 INERTIAL = "0"
+
+#: The order of a Newtonian field that is not expanded, and all orders there are.
+EXACT = "exact"
+GRAVITY_ORDERS: tuple[int | str, ...] = (2, 3, 4, EXACT)
 
 
 def velocity_name(coordinate: str) -> str:
@@ -95,7 +104,8 @@ class Body:
 
     ``relative_velocity`` is V^j_Ok as the description gives it (it must equal the derivative of the radius vector),
     or None where it is left to be derived.  ``coordinates`` are the generalised coordinates that this joint
-    introduces, in the order in which they count.
+    introduces, in the order in which they count.  ``gyrostatic_moment`` is h in the axes of the body, None where it is
+    zero.
     """
 
     name: str
@@ -107,6 +117,7 @@ class Body:
     mass: Expression
     inertia: Inertia | None
     coordinates: tuple[str, ...]
+    gyrostatic_moment: Vector | None = None
     span: Span | None = _span()
 
 
@@ -120,16 +131,18 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class NewtonianGravity:
-    """Approximate Newtonian field of a distant centre, expanded to ``order`` 2 about the origin of a frame.
+    """Newtonian field of a centre, acting on the bodies that the frame ``about`` carries.
 
-    ``constant`` is nu = G M; ``centre`` the frame whose origin attracts (the inertial one); ``about`` the frame
-    whose origin O1 is the point of expansion.
+    ``constant`` is nu = G M; ``centre`` the frame whose origin attracts (mostly the inertial one).  With ``order`` 2, 3
+    or 4 the field is expanded about the origin O1 of ``about`` in (size)/R up to that degree; with ``EXACT`` every mass
+    centre has its exact distance (``mbsym.mechanics.loads.newtonian_orders`` defines both), and ``about`` may be the
+    centre itself.
     """
 
     constant: Expression
     centre: str
     about: str
-    order: int = 2
+    order: int | str = 2
     span: Span | None = _span()
 
 
@@ -313,6 +326,8 @@ class System:
     notation: tuple[Notation, ...] = ()
     time_scale: Expression | None = None
     initial: tuple[InitialValue, ...] = ()
+    abbreviations: tuple[Abbreviation, ...] = ()
+    claims: tuple[Claim, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:

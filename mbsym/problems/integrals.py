@@ -7,8 +7,8 @@ Found are
   loads do no work;
 * a cyclic momentum  p_i = dT/dq'_i,  with  dp_i/dt = E_i,  for every coordinate that L and Q_i do not contain;
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
-  above: candidates are tried at exact rational states, and proved through multipliers, det(M) dI/dt = sum mu_i E_i
-  with mu = adj(M) dI/dq', where that is small enough.
+  above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
+  mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted.
 
 ``status`` is "proved" (an identity of the ring) or "verified numerically" (at random states: exactly
 where they are rational, else by narrow balls around zero).
@@ -121,8 +121,6 @@ def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tup
 
     Rates of momentum are sums over the bodies in inertial axes, so that no formula is formed for nothing.
     """
-    if system.prescribed:  # whatever drives a prescribed motion exchanges momentum with the system
-        return set()
     for states in (rational_states(system, ring, STATES), ball_states(system, ring, STATES)):
         for state in states:
             try:
@@ -154,9 +152,9 @@ def _momenta(
         for kind, axis, formula in _candidates(scene):
             others = [*known, *(item.formula.polynomial for item in found)]
             wanted = (kind, axis) in conserved and _is_new(formula, others)
-            if wanted and _conserved(scene, equations, formula):
+            if wanted and is_conserved(scene, equations, formula):
                 name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
-                status = PROVED if _proved(scene, equations, formula) else NUMERICAL
+                status = PROVED if is_proved(scene, equations, formula) else NUMERICAL
                 found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
     except (NoClosedForm, NotRational):
         pass  # what was found so far is right; the rest is not known
@@ -164,7 +162,7 @@ def _momenta(
 
 
 def _candidates(scene: Scene) -> list[tuple[str, int, Polynomial]]:
-    """Components along the inertial axes of sum m V_C and of sum (r_C x m V_C + Theta_C omega).
+    """Components along the inertial axes of sum m V_C and of sum (r_C x m V_C + Theta_C omega + h).
 
     Axes are turned outwards to the bodies, so that nothing is turned inwards: P.e = sum m V_C.e_k, and
     H.e = sum m (e_k x r_k).V_C + omega.Theta_C e_k with r_k the mass centre from the inertial origin.
@@ -190,6 +188,8 @@ def _candidates(scene: Scene) -> list[tuple[str, int, Polynomial]]:
                 angular = angular + algebra.dot(carried, algebra.cross(along, motion.mass_centre))
             if motion.inertia is not None:
                 angular = angular + algebra.dot(motion.angular_velocity, algebra.apply(motion.inertia, along))
+            if motion.gyrostatic_moment is not None:
+                angular = angular + algebra.dot(motion.gyrostatic_moment, along)
         found.append(("linear momentum", axis, algebra.reduce(linear)))
         found.append(("angular momentum", axis, algebra.reduce(angular)))
     order = {"linear momentum": 0, "angular momentum": 1}
@@ -206,7 +206,7 @@ def _is_new(formula: Polynomial, others: Sequence[Polynomial]) -> bool:
     return bool(table.rank() == len(columns)) if len(others) else True
 
 
-def _conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
+def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
     """Whether dI/dt = 0, q'' from the equations, at random states, and I holds a velocity at all.
 
     Exact at rational states; where roots or exponentials make the values irrational, balls that contain zero and are
@@ -253,12 +253,60 @@ def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iter
     return False
 
 
-def _proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
-    """det(M) dI/dt = sum mu_i E_i with mu = adj(M) dI/dq', as polynomials."""
+def is_proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
+    """dI/dt = sum mu_i E_i as polynomials, with simple multipliers or with those of ``remainder``."""
+    multipliers = _simple_multipliers(scene, equations, formula)
+    if multipliers is not None:
+        left = total_rate(scene, formula)
+        for i, multiplier in enumerate(multipliers):
+            if not multiplier.is_zero():
+                left = left - scene.ring.times(multiplier, residual(scene, equations, i))
+        if scene.ring.is_zero(left):
+            return True
+    left = remainder(scene, equations, formula)
+    return left is not None and scene.ring.is_zero(left) is True
+
+
+def _simple_multipliers(scene: Scene, equations: Equations, formula: Polynomial) -> list[Polynomial] | None:
+    """mu = M^-1 dI/dq', if that is linear in coordinates and velocities with rational coefficients: a guess.
+
+    Such are the multipliers of momenta (Noether: the displacement that leaves L unchanged) and of the energy.  They are
+    fitted to exact values at rational states, so that no formula is inverted.
+    """
+    ring, names = scene.ring, scene.system.coordinates
+    n = len(names)
+    unknowns = [ring.one, *(ring.generator(kind, name) for kind in ("coordinate", "velocity") for name in names)]
+    slopes = [ring.velocity_derivative(formula, name) for name in names]
+    basis: list[Any] = []
+    values: list[Any] = []
+    try:
+        for state in rational_states(scene.system, ring, 4 * STATES + len(unknowns)):
+            carry = Carrier(ring, state.numbers, state.values)
+            try:
+                mass = fmpq_mat(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
+                solved = mass.solve(fmpq_mat(n, 1, [carry(x) for x in slopes]))
+            except (SingularPoint, ZeroDivisionError):
+                continue
+            basis.append([carry(x) for x in unknowns])
+            values.append([solved[i, 0] for i in range(n)])
+            if len(basis) == len(unknowns):
+                found = fmpq_mat(basis).solve(fmpq_mat(values))
+                columns = [[found[k, i] for k in range(len(unknowns))] for i in range(n)]
+                return [sum((x * c for x, c in zip(unknowns, column, strict=True)), ring.zero) for column in columns]
+    except (NotRational, ZeroDivisionError):
+        pass
+    return None
+
+
+def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polynomial | None:
+    """det(M) dI/dt - sum mu_i E_i with mu = adj(M) dI/dq': det(M) dI/dt on the equations of motion.
+
+    None where that is too long to be formed.
+    """
     ring, names = scene.ring, scene.system.coordinates
     n = len(names)
     if n > MOST_COORDINATES or len(formula) > MOST_TERMS or equations.mass_matrix.terms > MOST_TERMS:
-        return False
+        return None
     mass = [list(row) for row in equations.mass_matrix.polynomials]
     slopes = [ring.velocity_derivative(formula, name) for name in names]
     cofactors = [[_cofactor(scene, mass, i, j) for j in range(n)] for i in range(n)]
@@ -267,7 +315,7 @@ def _proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
     left = ring.times(determinant, total_rate(scene, formula))
     for i in range(n):
         left = left - ring.times(multipliers[i], residual(scene, equations, i))
-    return ring.is_zero(left) is True
+    return ring.reduce(left)
 
 
 def _cofactor(scene: Scene, matrix: list[list[Polynomial]], i: int, j: int) -> Polynomial:

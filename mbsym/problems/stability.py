@@ -25,7 +25,7 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -42,13 +42,14 @@ from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.motion import relations
+from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
 from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
-from mbsym.problems.stability_theory import LinearSystem, Verdict, analyse, combine
+from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine
 from mbsym.problems.stability_theory import Stability as Theory
 
 _DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
@@ -80,17 +81,39 @@ class SubsystemStability:
 
         Known-positive factors are dropped; one that cannot hold is given as it arose.
         """
-        found = []
-        for wanted in self.theory.requirements:
+        return tuple(self._open(self.theory.requirements))
+
+    @property
+    def sufficient(self) -> tuple[tuple[str, Formula, str], ...]:
+        """The same for the conditions that together are sufficient for a stability other than the weakest.
+
+        They are those of the case with a theorem, such as K > 0; empty where the conditions above are all there is.
+        """
+        certain = [case for case in self.theory.cases if case.verdict.theorem and not case.any_of and not case.never]
+        return tuple(
+            (f"{label} (sufficient: {case.verdict.word}, {case.verdict.theorem})", formula, relation)
+            for case in certain[:1]
+            if case.all_of is not self.theory.requirements
+            for label, formula, relation in self._open(case.all_of)
+        )
+
+    @property
+    def guaranteed(self) -> tuple[tuple[str, Formula, str], ...]:
+        """The same for the conditions that hold because the kinetic energy is positive definite."""
+        wanted = [item for item in self.theory.requirements if item.by_mass]
+        return tuple((item.label, self._formula(item.polynomial), item.relation) for item in wanted)
+
+    def _open(self, requirements: Sequence[Requirement]) -> Iterator[tuple[str, Formula, str]]:
+        for wanted in requirements:
             condition = wanted.condition
             if wanted.always:
                 continue
             if condition.kind == "inequality":
-                found.append((wanted.label, self._formula(condition.polynomial), wanted.relation))
+                yield wanted.label, self._formula(condition.polynomial), wanted.relation
             elif condition.kind != "nonzero":
-                found.append((wanted.label, self._formula(wanted.polynomial), wanted.relation))
-            found += [(wanted.label, self._formula(x), "!=") for x in condition.nonzero]
-        return tuple(found)
+                yield wanted.label, self._formula(wanted.polynomial), wanted.relation
+            for x in condition.nonzero:
+                yield wanted.label, self._formula(x), "!="
 
     def _formula(self, x: Polynomial) -> Formula:
         whole = self.factor.ring
@@ -121,8 +144,10 @@ def stability(
     """
     elimination = _elimination(scene)
     values = parameter_values(scene, equilibrium)
+    spin = free_spin(scene.system)
     judged = tuple(
-        _judge(scene, part, elimination, signs, values, energy_conserved, cyclic) for part in linear.subsystems
+        _judge(scene, part, elimination, signs, values, energy_conserved, cyclic, turned)
+        for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
     )
     numerical = _motion_at(scene, equilibrium, values)
     if numerical is None and all(part.theory.at_point is not None for part in judged):
@@ -138,6 +163,7 @@ def _judge(
     values: Mapping[str, Fraction] | None,
     energy_conserved: bool,
     cyclic: Sequence[str],
+    turned: Sequence[Polynomial],
 ) -> SubsystemStability:
     matrices, factor = _polynomial(scene, part, elimination, signs)
     rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
@@ -146,13 +172,34 @@ def _judge(
         for i, name in enumerate(part.coordinates)
         if name in cyclic and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
-    ring, known = _in_parameters(scene.ring, rows, signs)
+    turned = [elimination(x) for x in turned]
+    ring, known = _in_parameters(scene.ring, [*rows, [turned]], signs)
     if isinstance(ring, ParameterRing):
         rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
+        turned = [ring.project(x) for x in turned]
     mass, damping, gyroscopic, stiffness, circulatory = rows
-    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, energy_conserved, idle)
+    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, energy_conserved, idle, tuple(turned))
     point = None if values is None else _point(scene, ring, rows, values)
     return SubsystemStability(part.coordinates, matrices, factor, ring, analyse(system, known, point))
+
+
+def _turned(
+    scene: Scene, part: Subsystem, spin: Spin | None, equilibrium: Equilibrium
+) -> tuple[Polynomial, Polynomial] | tuple[()]:
+    """(p, q): p lambda^2 + q divides the determinant of the part that holds the tilts of a free steady spin."""
+    if spin is None or not {*spin.tilts} <= {*part.coordinates}:
+        return ()
+    ring = scene.ring
+    images = relations(scene) | {ring.index("parameter", name): x.polynomial for name, x in equilibrium.solved}
+    rate = ring.substitute(scene.lower(spin.rate), images)
+    scale = scene.system.time_scale
+    unit = ring.one if scale is None else ring.substitute(scene.lower(scale), images)
+    ratio = ring.reduce(rate * ring.reciprocal(unit))
+    top, bottom = ring.fraction(ring.reduce(ratio * ratio))
+    below = ring.one
+    for factor, exponent in bottom:
+        below = ring.times(below, factor**exponent)
+    return below, top
 
 
 def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], signs: Signs) -> tuple[Ring, Signs]:

@@ -11,6 +11,11 @@ approximation goes; the theorems below go further.  Nothing is claimed on a bord
 * D > 0, N = 0: asymptotically stable if K > 0, unstable if K is not and det K != 0 (Kelvin-Chetaev).
 * Otherwise all Re lambda < 0 by Lienard-Chipart: asymptotically stable; one Re lambda > 0: unstable, both by
   Lyapunov's first method.
+* A steady spin in a space without preferred directions: turned in space it is a spin again, which puts the roots
+  +- i omega into the determinant, whatever the system.  With all other roots to the left it is asymptotically stable
+  in every variable that does not change when everything is turned (Lyapunov-Malkin: the critical roots are those of a
+  family of steady motions).
+* Cyclic coordinates on which no damping acts have constant momenta: they are ignored after Routh.
 
 M is taken to be positive definite, as a mass matrix is.  Rows may be scaled, by one positive factor per row through
 all five matrices: neither the roots nor the signs of leading minors change.
@@ -24,7 +29,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import fmpq, fmpq_mat
+from flint import fmpq, fmpq_mat, fmpq_poly
 
 from mbsym.algebra.characteristic import (
     Coefficients,
@@ -55,11 +60,14 @@ UNDECIDED = "undecided"
 #: With cyclic coordinates nothing better can hold: they drift.
 STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates drift"
 ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable with respect to the other variables; the cyclic coordinates drift"
+#: A turned steady spin is a steady spin: it does not come back.
+ASYMPTOTIC_BUT_TURNED = "asymptotically stable up to a rotation of space"
 
 LAGRANGE = "Lagrange-Dirichlet"
 ROUTH = "Routh"
 KELVIN_CHETAEV = "Kelvin-Chetaev"
 LYAPUNOV = "Lyapunov's first method"
+MALKIN = "Lyapunov-Malkin"
 
 EVEN_METHOD = "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
 HURWITZ_METHOD = "all roots to the left of the imaginary axis: Lienard-Chipart"
@@ -73,8 +81,9 @@ class LinearSystem:
 
     ``conservative``: the nonlinear system has the (generalised) energy integral, apart from the dissipative forces.
     ``cyclic``: indices of coordinates that do not occur in the nonlinear equations (only their velocities do); their
-    rows and columns in K and N must vanish.  ``ValueError`` for wrong shapes and for a pattern of zeros that no
-    (row-scaled) symmetric or skew matrix has.
+    rows and columns in K and N must vanish.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p the squared rate of a
+    steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong shapes and for a pattern
+    of zeros that no (row-scaled) symmetric or skew matrix has.
     """
 
     M: Matrix
@@ -84,6 +93,7 @@ class LinearSystem:
     N: Matrix
     conservative: bool = False
     cyclic: tuple[int, ...] = ()
+    turned: tuple[Polynomial, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -222,6 +232,7 @@ class Stability:
     remarks: tuple[str, ...] = ()
     at_point: PointVerdict | None = None
     reduced: Stability | None = None  # with cyclic coordinates ignored after Routh
+    turned: bool = False  # the roots of a turned steady spin are left out of the requirements
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -296,7 +307,8 @@ def _analyse(system: LinearSystem, signs: Signs) -> Stability:
     polynomial, removed = _without_known_factor(raw[zero_power:], known)
     even = all(c == 0 for c in polynomial[1::2])
     factors = _factors(polynomial[::2] if even else polynomial)
-    requirements, remarks = _requirements(system, factors, even, signs, known)
+    turned = None if even else _turned_factor(system, factors)
+    requirements, remarks = _requirements(system, factors, even, signs, known, turned)
     if mass.word != "positive definite":
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
@@ -311,6 +323,7 @@ def _analyse(system: LinearSystem, signs: Signs) -> Stability:
         method=EVEN_METHOD if even else HURWITZ_METHOD,
         requirements=requirements,
         remarks=tuple(remarks),
+        turned=turned is not None,
     )
     if zero_power:
         cases, reduced = _cases_with_zero_roots(system, found, known)
@@ -333,18 +346,20 @@ def kind_of(system: LinearSystem) -> str:
 
 
 def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
-    """Sylvester's criterion, each leading minor reduced by ``signs``."""
-    minors = leading_minors(matrix)
-    requirements = tuple(
-        Requirement(f"minor {i} of {name}", minor, signs.condition(minor)) for i, minor in enumerate(minors, start=1)
-    )
+    """Sylvester's criterion, each leading minor reduced by ``signs`` and by the minors before it being positive."""
+    requirements: list[Requirement] = []
+    for i, minor in enumerate(leading_minors(matrix), start=1):
+        condition = signs.condition(minor)
+        requirements.append(Requirement(f"minor {i} of {name}", minor, condition))
+        if condition.kind == "inequality" and len(condition.polynomial) <= MOST_TERMS:
+            signs = signs.assuming([(condition.polynomial, ">"), *((p, "!=") for p in condition.nonzero)])
     if all(r.always for r in requirements):
         word = "positive definite"
     elif any(r.never for r in requirements):
         word = "not positive definite"
     else:
         word = UNDECIDED
-    return Definiteness(word, requirements)
+    return Definiteness(word, tuple(requirements))
 
 
 def combine(verdicts: Iterable[Verdict]) -> Verdict:
@@ -359,6 +374,9 @@ def combine(verdicts: Iterable[Verdict]) -> Verdict:
         found = [v for v in parts if v.word == word]
         if found:
             return found[0]
+    moving = tuple(v for v in parts if v != _coasting())
+    if moving and len(moving) < len(parts) and {v.word for v in moving} <= _ASYMPTOTIC:
+        return _beside_constant_momenta(combine(moving))
     words = {v.word for v in parts}
     theorems = ", ".join(sorted({v.theorem for v in parts if v.theorem}))
     if len(words) == 1:
@@ -373,14 +391,42 @@ def combine(verdicts: Iterable[Verdict]) -> Verdict:
     return Verdict(CRITICAL, theorems, "Some parts are asymptotically stable, others not; no theorem covers both.")
 
 
+_ASYMPTOTIC = {ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED}
+
+
+def _beside_constant_momenta(verdict: Verdict) -> Verdict:
+    """The rest is asymptotically stable, and stays so for momenta that differ a little."""
+    word = ASYMPTOTIC_BUT_CYCLIC if verdict.word == ASYMPTOTIC else verdict.word
+    why = " The momenta of cyclic coordinates are constant, so their velocities stay near theirs."
+    return replace(verdict, word=word, explanation=verdict.explanation + why)
+
+
+def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
+    """The position of the simple factor that a turned steady spin explains."""
+    if not system.turned:
+        return None
+    top, bottom = system.turned
+    for i, factor in enumerate(factors):
+        p = factor.coefficients
+        if len(p) == 3 and p[1] == 0 and p[0] * top == p[2] * bottom and factor.multiplicity == 1:
+            return i
+    return None
+
+
 def _requirements(
-    system: LinearSystem, factors: tuple[Factor, ...], even: bool, signs: Signs, known: Signs
+    system: LinearSystem, factors: tuple[Factor, ...], even: bool, signs: Signs, known: Signs, turned: int | None
 ) -> tuple[tuple[Requirement, ...], list[str]]:
-    """The conditions on the factors of the characteristic polynomial, and remarks on what they leave open."""
+    """The conditions on the factors of the characteristic polynomial, and remarks on what they leave open.
+
+    Nothing is required of the factor number ``turned``.
+    """
     requirements: list[Requirement] = []
     remarks: list[str] = []
     for index, factor in enumerate(factors, start=1):
         suffix = f" of factor {index}" if len(factors) > 1 else ""
+        if index - 1 == turned:
+            remarks.append(f"Factor {index} belongs to the steady spins about other directions of space.")
+            continue
         p = factor.coefficients
         lead, word = p[-1], known.sign(p[-1])
         if word == "negative":
@@ -397,7 +443,8 @@ def _requirements(
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
             requirements.append(_unwritten(p[0]))
             continue
-        requirements += [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
+        reduced = [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
+        requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
     if even and not _is_potential(system):
         requirements += _simple(system, factors, known, remarks)
     elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
@@ -406,6 +453,34 @@ def _requirements(
             "K > 0 is necessary and sufficient, a vanishing discriminant (equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
+
+
+def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
+    """Lienard-Chipart needs, besides a_0 and the minors, only every second coefficient: the simpler half is kept.
+
+    ``wanted`` begins with a_(n-1), ..., a_0; for even n the first of them is the minor Delta_1 and stays.
+    """
+    if degree < 3 or any(r.never for r in wanted):
+        return wanted
+    halves = [[r for k, r in zip(range(degree - 1, 0, -1), wanted, strict=False) if k % 2 == odd] for odd in (0, 1)]
+    weight = [sum(len(r.condition.polynomial) for r in half if not r.always) for half in halves]
+    left_out = halves[0] if weight[0] > weight[1] else halves[1]
+    spared = [r for r in left_out if not (degree % 2 == 0 and r is wanted[0])]
+    return [r for r in wanted if not any(r is other for other in spared)]
+
+
+def _without_implied(wanted: list[Requirement]) -> list[Requirement]:
+    """f != 0 goes without saying where a product with f is required to be positive."""
+    strict = [f for r in wanted for f in r.condition.factors]
+    found = []
+    for r in wanted:
+        left = tuple(f for f in r.condition.nonzero if not any(f in (g, -g) for g in strict))
+        if r.condition.kind == "nonzero" and not left:
+            r = replace(r, condition=Condition("always", r.condition.polynomial))
+        elif left != r.condition.nonzero:
+            r = replace(r, condition=replace(r.condition, nonzero=left))
+        found.append(r)
+    return found
 
 
 def _power_name(even: bool, i: int) -> str:
@@ -467,7 +542,7 @@ def _cases(system: LinearSystem, found: Stability, known: Signs) -> tuple[Case, 
             why = "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
             return (Case((), odd, Verdict(UNSTABLE, LYAPUNOV, why)),)
         if not _is_zero(system.N) or found.dissipation.word != "positive definite":
-            return Case(wanted, (), _asymptotic()), *unstable
+            return Case(wanted, (), _turned(_asymptotic()) if found.turned else _asymptotic()), *unstable
     negative = _reversed(stiff, known)
     if found.dissipation is not None:
         nonsingular = _differs("det K", stiff[-1].polynomial, known)
@@ -498,9 +573,9 @@ def _cases_with_zero_roots(
         return (Case(by_mass, (), _coasting()),), None
     if _momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
-        return tuple(replace(c, verdict=_drifting(c.verdict)) for c in reduced.cases), reduced
+        return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), _drifting(_asymptotic())), *unstable), None
+        return (Case(found.requirements, (), drifting(_asymptotic())), *unstable), None
     return unstable, None
 
 
@@ -516,16 +591,17 @@ def _coasting() -> Verdict:
 
 
 def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
-    """Routh's reduction for D = N = 0: cyclic velocities expressed by their constant momenta.
+    """Routh's reduction, D and N without cyclic rows: cyclic velocities expressed by their constant momenta.
 
     With c the cyclic and r the other coordinates, M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
 
         M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
 
-    everything here times det M_cc > 0.  K_R is the second derivative of the effective potential.
+    and D_R = D_rr, N_R = N_rr; everything here times det M_cc > 0.  K_R is the second derivative of the effective
+    potential.
     """
     if not _momenta_are_constant(system):
-        raise ValueError("Routh's reduction needs cyclic and other coordinates, D = N = 0 and no G between cyclic ones")
+        raise ValueError("Routh's reduction needs cyclic coordinates without D and N and no G between them, and others")
     cyclic = system.cyclic
     rest = [i for i in range(system.size) if i not in cyclic]
     block = [[system.M[i][j] for j in cyclic] for i in cyclic]
@@ -550,15 +626,21 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         )
 
     m, g = system.M, system.G
-    nothing = tuple(tuple(scale * 0 for _ in rest) for _ in rest)
     return LinearSystem(
-        schur(m, (m, m)), nothing, schur(g, (m, g), (g, m)), schur(system.K, (g, g)), nothing, system.conservative
+        schur(m, (m, m)),
+        schur(system.D),
+        schur(g, (m, g), (g, m)),
+        schur(system.K, (g, g)),
+        schur(system.N),
+        system.conservative,
+        turned=system.turned,
     )
 
 
 def _momenta_are_constant(system: LinearSystem) -> bool:
     between = any(system.G[i][j] != 0 for i in system.cyclic for j in system.cyclic)
-    return _is_zero(system.D) and _is_zero(system.N) and not between and 0 < len(system.cyclic) < system.size
+    acted_on = any(x != 0 for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i])
+    return not acted_on and not between and 0 < len(system.cyclic) < system.size
 
 
 def _first_certain(cases: Sequence[Case]) -> Verdict:
@@ -620,6 +702,19 @@ def _asymptotic() -> Verdict:
     return Verdict(ASYMPTOTIC, LYAPUNOV, "All roots have negative real parts.")
 
 
+def _turned(verdict: Verdict) -> Verdict:
+    return replace(
+        verdict,
+        word=ASYMPTOTIC_BUT_TURNED,
+        theorem=MALKIN,
+        explanation=(
+            "All roots have negative real parts but those of the steady spins about other directions of space: a "
+            "disturbed motion tends to a steady spin about an axis near by, and every variable that does not change "
+            "when everything is turned in space tends to its value there."
+        ),
+    )
+
+
 def _critical(explanation: str) -> Verdict:
     return Verdict(CRITICAL, "", explanation + " Terms of higher order decide.")
 
@@ -641,7 +736,7 @@ def _gyroscopic() -> Verdict:
     )
 
 
-def _drifting(verdict: Verdict) -> Verdict:
+def drifting(verdict: Verdict) -> Verdict:
     words = {STABLE: STABLE_BUT_CYCLIC, ASYMPTOTIC: ASYMPTOTIC_BUT_CYCLIC}
     return replace(
         verdict,
@@ -672,14 +767,17 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     characteristic = tuple(a.charpoly().coeffs())
     roots = count_roots(characteristic)
     if not system.cyclic or roots.right:
-        return PointVerdict(_judge(m, d, g, k, n, system.conservative), characteristic, roots)
+        verdict = _judge(m, d, g, k, n, system.conservative)
+        if system.turned and not roots.right and not (_no(d) and _no(n)):
+            verdict = _judge_turned(a, [_number(x, point) for x in system.turned], verdict)
+        return PointVerdict(verdict, characteristic, roots)
     if roots.left + len(system.cyclic) == 2 * system.size:
-        return PointVerdict(_drifting(_asymptotic()), characteristic, roots)
+        return PointVerdict(drifting(_asymptotic()), characteristic, roots)
     if _only_momenta(system):
         return PointVerdict(_coasting(), characteristic, roots)
     if _momenta_are_constant(system):
         reduced = verdict_at(ignoring_cyclic(system), point)
-        return PointVerdict(_drifting(reduced.verdict), characteristic, roots)
+        return PointVerdict(drifting(reduced.verdict), characteristic, roots)
     why = "Cyclic coordinates give zero roots, and no theorem decides about the rest."
     return PointVerdict(Verdict(UNDECIDED, "", why), characteristic, roots)
 
@@ -722,6 +820,21 @@ def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
     return _critical("No root has a positive real part, but some are imaginary.")
 
 
+def _judge_turned(a: Numbers, turned: Sequence[Any], whole: Verdict) -> Verdict:
+    """The roots that remain without those of p lambda^2 + q, (p, q) = ``turned``, decide; none has Re > 0."""
+    top, bottom = turned
+    polynomial, remainder = divmod(a.charpoly(), fmpq_poly([bottom, 0, top]))
+    if remainder != 0:
+        return whole
+    roots = count_roots(polynomial.coeffs())
+    if roots.left == roots.degree:
+        return _turned(_asymptotic())
+    if roots.zero or roots.imaginary_multiplicity > 1:
+        return Verdict(UNDECIDED, "", "Besides the turned steady spins there are zero or multiple imaginary roots.")
+    why = "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
+    return _critical(why)
+
+
 def inertia(matrix: Numbers) -> tuple[int, int, int]:
     """(positive, zero, negative) eigenvalues of a symmetric rational matrix, by Descartes' rule, which is exact here.
 
@@ -743,14 +856,15 @@ def _changes_of_sign(numbers: Sequence[Any]) -> int:
 
 def _evaluate(matrix: Matrix, point: Mapping[int, Fraction]) -> Numbers:
     n = len(matrix)
-    context = matrix[0][0].context()
-    values = [rational(point.get(i, 0)) for i in range(context.nvars())]
-    for row in matrix:
-        for entry in row:
-            missing = [i for i, degree in enumerate(entry.degrees()) if degree > 0 and i not in point]
-            if missing:
-                raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
-    return fmpq_mat(n, n, [fmpq(entry(*values)) for row in matrix for entry in row])
+    return fmpq_mat(n, n, [_number(entry, point) for row in matrix for entry in row])
+
+
+def _number(entry: Polynomial, point: Mapping[int, Fraction]) -> Any:
+    context = entry.context()
+    missing = [i for i, degree in enumerate(entry.degrees()) if degree > 0 and i not in point]
+    if missing:
+        raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
+    return fmpq(entry(*(rational(point.get(i, 0)) for i in range(context.nvars()))))
 
 
 def _first_order(m: Numbers, c: Numbers, k: Numbers) -> Numbers:

@@ -43,6 +43,18 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
             yield Statement(requirement.label, Formula(ring, polynomial), "!=", note)
 
 
+def _alternative(ring: Ring, requirement: Requirement) -> Statement:
+    """One requirement as one statement: p > 0 and f != 0 together are p f^2 > 0, several f != 0 are their product."""
+    condition = requirement.condition
+    if condition.kind not in ("inequality", "nonzero"):
+        return next(statements(ring, [requirement]))
+    whole, power = condition.polynomial, 2 if condition.kind == "inequality" else 1
+    for polynomial in condition.nonzero:
+        whole = whole * polynomial**power
+    relation = requirement.relation if condition.kind == "inequality" else "!="
+    return Statement(requirement.label, Formula(ring, whole), relation)
+
+
 @dataclass(frozen=True)
 class CaseStatement:
     """If ``all_of`` and one of ``any_of`` hold: the verdict.  Requirements that always hold are left out."""
@@ -61,7 +73,7 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
             tuple(statements(ring, case.all_of)),
             ()
             if any(r.always for r in case.any_of)
-            else tuple(statements(ring, [r for r in case.any_of if not r.never])),
+            else tuple(_alternative(ring, r) for r in case.any_of if not r.never),
             case.verdict.word,
             case.verdict.theorem,
             case.verdict.explanation,

@@ -8,6 +8,7 @@ from fractions import Fraction
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import (
+    EXACT,
     INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
@@ -86,11 +87,30 @@ def _number(value: Fraction) -> str:
 
 # --- loads ---
 
-#: The force function of the approximate Newtonian field.
+#: The force function of the Newtonian field of second order.
 _NEWTONIAN = (
     r"U = \sum \Bigl[ \frac{\nu\, m}{R} - \frac{\nu\, m}{R^2}\, e \cdot c + \frac{\nu}{R^3} \Bigl( "
     r"\frac{m}{2} \bigl(3 (e \cdot c)^2 - c \cdot c\bigr) + \frac{1}{2} \operatorname{tr} \Theta_C "
     r"- \frac{3}{2}\, e \cdot \Theta_C\, e \Bigr) \Bigr]"
+)
+
+#: The terms that the third and the fourth order add, with x = e.c and y = c.c.
+_NEWTONIAN_MORE = {
+    3: (
+        r"\frac{\nu}{R^4} \Bigl( -\frac{m}{2} (5 x^3 - 3 x y) - \frac{3}{2}\, x \operatorname{tr} \Theta_C "
+        r"+ \frac{15}{2}\, x\, e \cdot \Theta_C\, e - 3\, e \cdot \Theta_C\, c \Bigr)"
+    ),
+    4: (
+        r"\frac{\nu}{R^5} \Bigl( \frac{m}{8} (35 x^4 - 30 x^2 y + 3 y^2) + \frac{3}{4} (5 x^2 - y) \operatorname{tr} "
+        r"\Theta_C - \frac{15}{4} (7 x^2 - y)\, e \cdot \Theta_C\, e + 15\, x\, e \cdot \Theta_C\, c "
+        r"- \frac{3}{2}\, c \cdot \Theta_C\, c \Bigr)"
+    ),
+}
+
+#: The force function with exact distances.
+_NEWTONIAN_EXACT = (
+    r"U = \sum \Bigl[ \frac{\nu\, m}{|r|} + \frac{\nu}{2 |r|^3} \Bigl( \operatorname{tr} \Theta_C "
+    r"- 3\, \frac{r \cdot \Theta_C\, r}{|r|^2} \Bigr) \Bigr]"
 )
 
 
@@ -110,15 +130,7 @@ class _Loads:
                 g = self.vector(acceleration)
                 return f"Uniform gravity, $g = {g}$ in inertial axes: $U = \\sum m\\, g \\cdot r_C$."
             case NewtonianGravity(constant, centre, about, order):
-                nu = self.math(constant)
-                given = "\\nu" if nu == "\\nu" else f"\\nu = {nu}"
-                return (
-                    f"Newtonian field of a centre at the origin of {self.frame(centre)}, approximate, with "
-                    f"${given}$, expanded to order {order} about the origin $O$ of "
-                    f"{self.frame(about)}: \\[ {_NEWTONIAN} \\] over the bodies that this frame carries, with $R$ the "
-                    "distance of $O$ from the centre, $e$ the unit vector from the centre to $O$, $c$ the mass centre "
-                    "seen from $O$ and $\\Theta_C$ the inertia about the mass centre."
-                )
+                return self.newtonian(constant, centre, about, order)
             case CoordinateSpring(coordinate, stiffness, rest):
                 q = str(self.names[coordinate])
                 stretched = q if rest == ZERO else f"({q} - {_bracketed(rest, 2, self.names)})"
@@ -157,6 +169,28 @@ class _Loads:
                 opposite = "" if reaction_on is None else f"; the opposite one on {self.frame(reaction_on)}"
                 where = f"in the axes of {self.frame(axes)}, on {self.frame(body)}"
                 return f"Torque ${self.vector(components)}$ {where}{opposite}."
+
+    def newtonian(self, constant: Expression, centre: str, about: str, order: int | str) -> str:
+        nu = self.math(constant)
+        given = "\\nu" if nu == "\\nu" else f"\\nu = {nu}"
+        field = f"Newtonian field of a centre at the origin of {self.frame(centre)}"
+        if order == EXACT:
+            return (
+                f"{field}, with ${given}$ and exact distances: \\[ {_NEWTONIAN_EXACT} \\] over the bodies that "
+                f"{self.frame(about)} carries, with $r$ the mass centre seen from the attracting centre and "
+                "$\\Theta_C$ the inertia about the mass centre (MacCullagh's formula: exact for point masses; of an "
+                "extended body the third and higher moments are dropped)."
+            )
+        more = [text for degree, text in _NEWTONIAN_MORE.items() if degree <= int(order)]
+        formula = "".join(f" \\] \\[ {{}} + \\sum {text}" for text in more)
+        symbols = ", $x = e \\cdot c$, $y = c \\cdot c$" if more else ""
+        return (
+            f"{field}, approximate, with "
+            f"${given}$, expanded to order {order} about the origin $O$ of "
+            f"{self.frame(about)}: \\[ {_NEWTONIAN}{formula} \\] over the bodies that this frame carries, with $R$ the "
+            "distance of $O$ from the centre, $e$ the unit vector from the centre to $O$, $c$ the mass centre "
+            f"seen from $O${symbols} and $\\Theta_C$ the inertia about the mass centre."
+        )
 
     def math(self, value: Expression) -> str:
         return expression(value, self.names)

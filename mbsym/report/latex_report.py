@@ -14,12 +14,14 @@ from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_matrix, latex_names, latex_text
 from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
+from mbsym.report.claims import claim_line, repair
 from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
+from mbsym.report.functions import moving
 from mbsym.report.latex_description import call, expression, load_in_words
-from mbsym.report.python_module import moving
-from mbsym.report.straight_line import Dialect, listing, programs_of
+from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -43,6 +45,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
     names = latex_names(analysis.ring)
     system = analysis.system
+    printed = claimed_names(analysis)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
@@ -65,6 +68,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "index": index,
             "displays": displays,
             "prose": prose,
+            "claim_line": claim_line,
+            "printed": lambda value: expression(value, printed),
+            "printed_name": lambda name: str(printed[name]),
+            "same": lambda words: same(words, printed),
             "zero": lambda values: all(x.is_zero for x in values),
         },
         system=system,
@@ -80,6 +87,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        claims=analysis.claims,
+        repair=repair,
         checks=analysis.checks,
     )
     return "\n".join(map(broken, text.split("\n")))
@@ -246,6 +255,22 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
             text = LatexPrinter(coefficient.ring, breaks=True).factor(Factor(shape))
         written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
     return "".join(written) or "0"
+
+
+def claimed_names(analysis: Analysis) -> LatexNames:
+    """The names of the system, and those of a publication's abbreviations besides."""
+    kinds = ("coordinate", "prescribed", "parameter")
+    own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
+    variables = [claim.variable for claim in analysis.system.claims if claim.variable]
+    return LatexNames([*own, *(item.name for item in analysis.system.abbreviations), *variables])
+
+
+def same(words: str, names: LatexNames) -> str:
+    """``-2*c18``: a number and an abbreviation."""
+    number, star, name = words.rpartition("*")
+    sign = "-" if not star and name.startswith("-") else ""
+    bare = str(names[name.removeprefix("-")])
+    return f"{number}\\, {bare}" if star else sign + bare
 
 
 def _code(analysis: Analysis, names: LatexNames) -> Any:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import builtins
 import keyword
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
 from textwrap import fill
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.program import Node, Program
-from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, text
-from mbsym.formulas.names import injective
+from mbsym.algebra.program import Program
+from mbsym.expressions.tree import Expression, text
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.mechanics.variables import program_environment
-from mbsym.model.system import Prescribed, System, rational
+from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
-from mbsym.report.straight_line import Dialect, Listing, listing, programs_of
+from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -37,17 +37,6 @@ DIALECT = Dialect(
     local=lambda count: f"s{count}",
     angle=lambda function, name: f"{function}_{name}",
 )
-
-
-@dataclass(frozen=True)
-class Function:
-    """A function's body: which names it unpacks, its assignments, and what it stores."""
-
-    coordinates: tuple[tuple[int, str], ...]
-    velocities: tuple[tuple[int, str], ...]
-    parameters: tuple[tuple[int, str], ...]
-    assignments: tuple[tuple[str, str], ...]
-    results: tuple[str, ...]
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -86,16 +75,6 @@ def plain(words: str) -> str:
     return " ".join(words.replace("\\", "/").replace('"', "'").split())
 
 
-def prescribed_value(item: Prescribed) -> Expression:
-    """initial + rate*t."""
-    return moving(item.initial, item.rate)
-
-
-def moving(initial: Expression | None, rate: Expression) -> Expression:
-    """initial + rate*t."""
-    return add(initial or ZERO, multiply(rate, Name("t")))
-
-
 def _default(value: Expression | None) -> str:
     """A number as Python reads it, or None: nothing is made up."""
     if value is None:
@@ -113,43 +92,12 @@ def _decimal(number: Fraction) -> str:
     return shown if Fraction(shown) == number else f"{number.numerator} / {number.denominator}"
 
 
-class _Module:
+class _Module(Functions):
     """Turns nodes of a program into function bodies with names that Python lets us use."""
 
     def __init__(self, system: System) -> None:
-        self.system = system
-        names = [*system.coordinates, *system.velocities, *system.parameter_names]
-        names += [item.name for item in system.prescribed]
         reserved = RESERVED
-        self.names = injective(names, lambda name: name + "_" if name in reserved else name, taken=reserved)
-        self.names |= {"t": "t", "pi": "np.pi"}
-
-    def function(self, program: Program, outputs: Iterable[Node]) -> Function:
-        """A body for the outputs, prescribed quantities computed from the time first."""
-        body = listing(program, outputs, self.names, DIALECT, RESERVED)
-        driven = self._prescribed(set(body.inputs), {name for name, _ in body.assignments})
-        used = {*body.inputs, *driven.inputs}
-        system = self.system
-        return Function(
-            coordinates=self._unpacked(system.coordinates, used),
-            velocities=self._unpacked(system.velocities, used),
-            parameters=self._unpacked(system.parameter_names, used),
-            assignments=(*driven.assignments, *body.assignments),
-            results=body.results,
-        )
-
-    def _unpacked(self, names: Sequence[str], used: set[str]) -> tuple[tuple[int, str], ...]:
-        return tuple((place, self.names[name]) for place, name in enumerate(names) if name in used)
-
-    def _prescribed(self, used: set[str], taken: set[str]) -> Listing:
-        """x = initial + rate*t for the prescribed quantities that occur."""
-        program = Program()
-        lower = Lowering(program, program_environment(self.system, program))
-        wanted = [item for item in self.system.prescribed if item.name in used]
-        values = [lower(prescribed_value(item)) for item in wanted]
-        found = listing(program, values, self.names, DIALECT, RESERVED | taken)
-        named = tuple((self.names[item.name], x) for item, x in zip(wanted, found.results, strict=True))
-        return Listing((*found.assignments, *named), (), found.inputs)
+        super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
     def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
         """M, D, G, K, N entry by entry, zeros left out."""

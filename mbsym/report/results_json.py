@@ -10,6 +10,7 @@ from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.names import free_name
 from mbsym.model.system import System
+from mbsym.problems.claims import ClaimResult
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
@@ -17,6 +18,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
+from mbsym.report.claims import claim_line
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
 
 if TYPE_CHECKING:
@@ -47,7 +49,39 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
             found[key] = _SECTIONS[number](stage.value, system)
         else:
             unavailable[key] = stage.failure.reason
+    if system.claims:
+        found["claims"] = [_claim(result, system) for result in analysis.claims]
     return found | {"unavailable": unavailable}
+
+
+def _claim(result: ClaimResult, system: System) -> dict[str, Any]:
+    """One claim; what does not concern it is left out."""
+    shape = {key: value for key, value in vars(claim_line(result)).items() if key in ("place", "title", "word")}
+    found: dict[str, Any] = {**shape, "outcome": result.outcome}
+    claimed = result.claim.printed or text(result.claim.equals)
+    if result.claim.right is None:
+        found["claimed"] = claimed
+    for key in ("derived", "difference", "factor"):
+        formula = getattr(result, key)
+        if formula is not None:
+            found[key] = str(formula)
+    if result.value:
+        found["value"] = result.value
+    if result.digits is not None:
+        found |= {"digits_right": result.digits, "digits_printed": result.printed_digits}
+    if result.remark:
+        found["remark"] = result.remark
+    if result.parts:
+        found["parts"] = [
+            {
+                "of": str(part.factor) if part.power is None else f"{result.claim.variable}**{part.power}",
+                "difference": str(part.difference),
+                "same_as": part.same_as,
+                "repairs": [{"abbreviation": name, "add": str(change)} for name, change in part.repairs],
+            }
+            for part in result.parts
+        ]
+    return found
 
 
 def _parameters(system: System) -> list[dict[str, str | None]]:

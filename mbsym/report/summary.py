@@ -17,6 +17,7 @@ from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability_theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
+from mbsym.report.claims import ClaimLine, claim_line
 from mbsym.report.conditions import Statement, cases, provided, statements
 from mbsym.report.results_json import statement_text
 
@@ -45,6 +46,7 @@ class Summary:
     problems: tuple[Line, ...]
     checks: tuple[Check, ...]
     files: tuple[Path, ...]
+    claims: tuple[ClaimLine, ...] = ()
 
 
 def summary(analysis: Analysis, problems: Sequence[int], files: Iterable[Path]) -> Summary:
@@ -55,6 +57,7 @@ def summary(analysis: Analysis, problems: Sequence[int], files: Iterable[Path]) 
         problems=tuple(_line(analysis, number) for number in problems),
         checks=analysis.checks,
         files=tuple(files),
+        claims=tuple(map(claim_line, analysis.claims)),
     )
 
 

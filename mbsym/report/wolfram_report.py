@@ -9,6 +9,7 @@ from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import free_name
+from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.formulas.wolfram import (
     WolframNames,
     wolfram_call,
@@ -20,8 +21,8 @@ from mbsym.formulas.wolfram import (
 from mbsym.model.system import System
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
-from mbsym.report.python_module import prescribed_value
-from mbsym.report.straight_line import Dialect, Listing, listing, programs_of
+from mbsym.report.functions import prescribed_value
+from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -177,6 +177,7 @@ def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
         mass=mass,
         inertia=_inertia(fields, reading),
         coordinates=tuple(scalar.text for scalar in draft.coordinates),
+        gyrostatic_moment=_gyrostatic_moment(fields),
         span=draft.name_span,
     )
 
@@ -184,6 +185,12 @@ def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
 def _vector(fields: Fields, key: str, allowed: Allowed) -> Vector | None:
     node = fields.get(key)
     return None if node is None else fields.reading.vector(node, allowed)
+
+
+def _gyrostatic_moment(fields: Fields) -> Vector | None:
+    """Constants only; three zeros are no moment at all."""
+    moment = _vector(fields, "gyrostatic moment", Allowed("a gyrostatic moment"))
+    return None if moment is None or all(is_number(component, 0) for component in moment) else moment
 
 
 def _attached_to(draft: Draft, drafts: list[Draft], reading: Reading) -> str:

@@ -6,11 +6,14 @@ can show (:mod:`mbsym.source.checks`).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.system import System
 from mbsym.source.bodies import draft_bodies, read_body
 from mbsym.source.checks import check_body, check_system, known_values
+from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, read_parameters, read_prescribed, read_values
 from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.loads import read_loads
@@ -53,7 +56,11 @@ def build(node: Node, complaints: Complaints) -> System | None:
         notation=notation,
         time_scale=fields.expression("dimensionless time", Allowed("the rate of dimensionless time")),
         initial=read_initial(fields.get("initial"), reading),
+        abbreviations=read_abbreviations(fields.get("abbreviations"), reading),
     )
+    names = [body.name for body in bodies]
+    claims = read_claims(fields.get("claims"), names, system.coordinates, reading)
+    system = replace(system, claims=claims)
     values = known_values(system)
     for draft, good in zip(drafts, sound, strict=True):
         if good:

@@ -28,11 +28,13 @@ from mbsym.expressions.tree import (
 )
 from mbsym.model.admissibility import (
     NumberTensor,
-    about_mass_centre,
+    decimal,
     impossible_alone,
     inertia_violation,
     number_of,
+    offset_violation,
     surely_negative,
+    symbolic_violation,
 )
 from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
@@ -184,6 +186,13 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
         violation = _violation_about_mass_centre(tensor, body, values, alone)
     if violation is not None:
         reading.error("bad-inertia", f"no body has this inertia: {violation}", span, _values_hint(*entries))
+    elif alone is None:
+        about_joint = body.inertia.about == "joint"
+        doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
+        if doubt is not None:
+            own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
+            hint = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+            reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, hint)
 
 
 def _rod_hint(moment: str, axis: int) -> str:
@@ -213,11 +222,7 @@ def _violation_about_mass_centre(
     first, second, third = (number_of(component, values) for component in body.mass_centre)
     if mass is None or first is None or second is None or third is None:
         return None
-    moved = about_mass_centre(tensor, mass, (first, second, third))
-    violation = inertia_violation(moved)
-    if alone is not None:
-        violation = f"the moment of inertia about axis {alone + 1} is negative" if moved[alone][alone] < 0 else None
-    return None if violation is None else f"moved to the mass centre, {violation}"
+    return offset_violation(tensor, mass, (first, second, third), (0, 1, 2) if alone is None else (alone,))
 
 
 # --- the whole -------------------------------------------------------------------------------------------------------
@@ -261,7 +266,7 @@ def _check_relation_values(system: System, reading: Reading) -> None:
         left, right = values.get(relation.name), number_of(relation.value, values)
         if left is None or right is None or left == right:
             continue
-        message = f"the given values break this relation: {_decimal(left)} is not {_decimal(right)}"
+        message = f"the given values break this relation: {decimal(left)} is not {decimal(right)}"
         if abs(left - right) > abs(right) / _ROUNDED:
             reading.error("conflicting-values", message, relation.span)
         else:
@@ -278,7 +283,7 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
         left, right = number_of(assumption.left, values), number_of(assumption.right, values)
         if left is None or right is None or _holds(left, assumption.relation, right):
             continue
-        message = f"the given values break this assumption: {_decimal(left)} {assumption.relation} {_decimal(right)}"
+        message = f"the given values break this assumption: {decimal(left)} {assumption.relation} {decimal(right)}"
         reading.complaints.warning("broken-assumption", message, assumption.span)
 
 
@@ -290,10 +295,3 @@ def _holds(left: Fraction, relation: str, right: Fraction) -> bool:
         ">=": left >= right,
         "!=": left != right,
     }[relation]
-
-
-def _decimal(value: Fraction) -> str:
-    try:
-        return f"{float(value):.10g}"
-    except OverflowError:
-        return "a huge number"

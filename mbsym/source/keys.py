@@ -21,6 +21,8 @@ SYSTEM = {
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
     "values": "numerical values of parameters: {l: 2}",
     "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}}",
+    "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
+    "claims": "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
 }
 
 PARAMETER = {
@@ -45,6 +47,7 @@ BODY = {
     "mass": "0 for a massless frame",
     "inertia about": "joint (the connection point O_k) or mass centre; required with an inertia",
     "inertia": "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm)",
+    "gyrostatic moment": "constant angular momentum of rotors inside the body, in its axes: adds h.omega to T",
     "coordinates": "the coordinates that this joint introduces; when left out, the undeclared names used as angles",
 }
 
@@ -61,9 +64,9 @@ POINT = {
 LOADS: dict[str, dict[str, str]] = {
     "newtonian gravity": {
         "constant": "gravitational parameter nu of the attracting centre",
-        "centre": "the frame whose origin attracts: 0",
-        "about": "the frame whose origin is the point of the orbit about which the field is expanded",
-        "order": "2: order of the expansion",
+        "centre": "the frame whose origin attracts, mostly 0",
+        "about": "the frame that carries the attracted bodies; its origin, a point of the orbit, is that of the expansion",
+        "order": "2, 3 or 4: order of the expansion (2 when left out); exact: the exact distance of every mass centre",
     },
     "uniform gravity": {
         "vector": "the acceleration in inertial axes, such as [0, -g, 0]",
@@ -102,7 +105,7 @@ LOADS: dict[str, dict[str, str]] = {
 
 #: What the kinds of load that hold an expression, or free keys, mean; the others are described by their keys.
 LOAD_MEANINGS = {
-    "newtonian gravity": "approximate Newtonian field of a distant centre, of second order",
+    "newtonian gravity": "Newtonian field of a centre: expanded about a point of the orbit, or exact",
     "uniform gravity": "the same acceleration everywhere",
     "spring": "on a coordinate or between two points",
     "damper": "viscous, on a coordinate or between two points",
@@ -124,11 +127,25 @@ INITIAL = {
     "velocity": "value of its derivative",
 }
 
+CLAIM = {
+    "claim": "what is claimed: kinetic energy, coefficient, mass matrix, first integral, ...",
+    "of": "the coordinate, body, quantity or (for a value) expression that it is about",
+    "entry": "row and column, numbers from 1 or coordinates: [theta, delta]",
+    "component": "number of an axis, 1 to 3",
+    "at": "the product of velocities whose coefficient is claimed: x_dot*phi_dot (1/2*c*x_dot**2 has c/2 at x_dot**2)",
+    "variable": "the symbol of the characteristic polynomial",
+    "that": "the inequality that is claimed, for a condition",
+    "equals": "the formula or number as it was printed",
+    "state": "'initial' or {name: number}: the claim is about numbers at this state, to the digits printed",
+    "place": "where it was printed: eq. (3)",
+}
+
 #: Other spellings of keys.
 ALIASES = {
     "mass center": "mass centre",
     "center": "centre",
     "generalised force": "generalized force",
     "inertia at": "inertia about",
+    "gyrostatic momentum": "gyrostatic moment",
     "dimensionless_time": "dimensionless time",
 }

@@ -20,6 +20,7 @@ BODY = {
     "rotation angles": "angles",
     "inertia about": "inertia about",
     "tensor of inertia": "inertia",
+    "gyrostatic moment": "gyrostatic moment",
     "generalized coordinates": "coordinates",
 }
 
@@ -32,6 +33,7 @@ SECTIONS: dict[str, tuple[str, str | None]] = {
     "notation": ("notation", None),
     "values": ("values", None),
     "initial state": ("initial", "position"),
+    "abbreviations": ("abbreviations", None),
 }
 
 ASSUMPTIONS = "assumptions"

@@ -10,6 +10,8 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, multiply
 from mbsym.model.system import (
+    EXACT,
+    GRAVITY_ORDERS,
     INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
@@ -106,13 +108,21 @@ def _newtonian_gravity(load: _Load) -> Load:
     constant = fields.required_expression("constant", Allowed("a gravitational constant"))
     errors = load.reading.errors
     centre, about = load.body(fields, "centre"), load.body(fields, "about")
-    if load.reading.errors == errors and {"about", "centre"} <= fields.found.keys() and centre == about:
+    sound = load.reading.errors == errors and {"about", "centre"} <= fields.found.keys()
+    order = _order(load, fields)
+    if sound and centre == about and order != EXACT:
         message = "the field is expanded about a point away from the centre"
-        load.reading.error("conflicting-keys", message, fields.key_span("about"))
-    order = fields.get("order")
-    if order is not None:
-        load.reading.word(order, "the order of the field", ("2",))
-    return NewtonianGravity(constant, centre, about, 2, load.span)
+        hint = f"only with order: {EXACT} the field is not expanded"
+        load.reading.error("conflicting-keys", message, fields.key_span("about"), hint)
+    return NewtonianGravity(constant, centre, about, order, load.span)
+
+
+def _order(load: _Load, fields: Fields) -> int | str:
+    """The order of the field; 2 when it is left out or wrong."""
+    known = {str(order): order for order in GRAVITY_ORDERS}
+    node = fields.get("order")
+    word = None if node is None else load.reading.word(node, "the order of the field", known)
+    return known.get(word or "", 2)
 
 
 def _uniform_gravity(load: _Load) -> Load:

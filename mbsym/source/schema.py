@@ -7,9 +7,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from mbsym.model.claims import CLAIMS, INITIAL_STATE
+from mbsym.model.system import EXACT, GRAVITY_ORDERS
 from mbsym.source.keys import (
     ALIASES,
     BODY,
+    CLAIM,
     INITIAL,
     LOAD_MEANINGS,
     LOADS,
@@ -74,6 +77,8 @@ def _system_values() -> dict[str, Schema]:
         "notation": _named(expression),
         "values": _named(expression),
         "initial": _named({"anyOf": [expression, _record(INITIAL, {})]}),
+        "abbreviations": _named(expression),
+        "claims": {"type": "array", "items": _reference("claim")},
     }
 
 
@@ -91,6 +96,7 @@ def _definitions() -> dict[str, Schema]:
         "parameter": {"anyOf": [{"enum": list(SIGNS)}, _reference("expression"), _parameter_record()]},
         "body": _record(BODY, _body_values(), required=("name", "mass")),
         "point": _record(POINT, {"body": _BODY_NAME, "point": _reference("vector")}, required=("body", "point")),
+        "claim": _record(CLAIM, _claim_values(), required=("claim",)),
         "load": {"oneOf": [_load(kind) for kind in LOADS], "description": "one kind of load with its data"},
     }
 
@@ -115,7 +121,22 @@ def _body_values() -> dict[str, Schema]:
         "mass centre": vector,
         "inertia about": {"enum": ["joint", "mass centre", "mass center"]},
         "inertia": {"anyOf": [vector, matrix]},
+        "gyrostatic moment": vector,
         "coordinates": {"type": "array", "items": {"type": "string", "pattern": _NAME}},
+    }
+
+
+def _claim_values() -> dict[str, Schema]:
+    state: Schema = {"type": "object", "patternProperties": {_NAME: _reference("expression")}}
+    return {
+        "claim": {"enum": list(CLAIMS)},
+        "of": {"type": ["string", "integer"]},
+        "entry": {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 2, "maxItems": 2},
+        "component": {"enum": [1, 2, 3, "1", "2", "3"]},
+        "variable": {"type": "string", "pattern": _NAME},
+        "that": {"type": "string"},
+        "state": {"anyOf": [{"const": INITIAL_STATE}, {**state, "additionalProperties": False}]},
+        "place": {"type": "string"},
     }
 
 
@@ -133,7 +154,7 @@ def _load(kind: str) -> Schema:
     values: dict[str, Schema] = {
         **dict.fromkeys(("vector", "direction", "components"), vector),
         **dict.fromkeys(("body", "axes", "centre", "about", "reaction on"), _BODY_NAME),
-        "order": {"enum": [2]},
+        "order": {"enum": [*GRAVITY_ORDERS, *(str(order) for order in GRAVITY_ORDERS if order != EXACT)]},
         "coordinate": {"type": "string", "pattern": _NAME},
         "between": {"type": "array", "items": _reference("point"), "minItems": 2, "maxItems": 2},
         "point": vector,

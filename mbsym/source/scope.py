@@ -11,7 +11,7 @@ from difflib import SequenceMatcher, get_close_matches
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, Expression, Name, walk
-from mbsym.model.system import velocity_name
+from mbsym.model.system import acceleration_name, velocity_name
 
 MAX_NAME = 64
 
@@ -27,6 +27,9 @@ _KINDS = {
     "velocity": "a velocity",
     "time": "the time",
     "notation": "a notation",
+    "acceleration": "an acceleration",
+    "abbreviation": "an abbreviation",
+    "variable": "a variable",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -35,6 +38,9 @@ _PLURALS = {
     "velocity": "velocities",
     "time": "t",
     "notation": "notation",
+    "acceleration": "accelerations",
+    "abbreviation": "abbreviations",
+    "variable": "the variable",
 }
 
 
@@ -60,13 +66,14 @@ ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 class Scope:
     """All declared names with their kinds; complains about clashes and about unknown or misplaced names.
 
-    ``later`` holds the names of notation that is still to come, ``assumed`` undeclared names that were complained about
-    and are since taken for whatever their place allows.
+    ``later`` holds the names of notation (or abbreviations, as ``ordered`` says) that are still to come, ``assumed``
+    undeclared names that were complained about and are since taken for whatever their place allows.
     """
 
     complaints: Complaints
     kinds: dict[str, str] = field(default_factory=dict)
     later: set[str] = field(default_factory=set)
+    ordered: str = "notation is"
     assumed: set[str] = field(default_factory=set)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
@@ -96,8 +103,10 @@ class Scope:
             return "time"
         if name in self.kinds:
             return self.kinds[name]
-        base = name.removesuffix("_dot")
-        return "velocity" if base != name and self.kinds.get(base) == "coordinate" else None
+        for suffix, kind in (("_dot", "velocity"), ("_ddot", "acceleration")):
+            if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
+                return kind
+        return None
 
     def check(self, expression: Expression, allowed: Allowed) -> None:
         """Complain about every name in an expression that its place does not allow."""
@@ -109,6 +118,8 @@ class Scope:
         if name in self.assumed or name.removesuffix("_dot") in self.assumed:
             return True
         kind = self.kind_of(name)
+        if kind == "acceleration" and kind not in allowed.kinds:
+            kind = None
         if kind is None:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
@@ -122,12 +133,14 @@ class Scope:
 
     def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
         if name in self.later:
-            return "notation is read in order: move its definition up"
-        if name.endswith("_ddot"):
+            return f"{self.ordered} read in order: move its definition up"
+        if name.endswith("_ddot") and "acceleration" not in allowed.kinds:
             return "accelerations are what the equations are solved for; they stand in no description"
         known = [one for one in self.kinds if self.kinds[one] in allowed.kinds]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
+        if "acceleration" in allowed.kinds:
+            known += [acceleration_name(one) for one in self.of_kind("coordinate")]
         close = did_you_mean(name, known)
         if close is not None:
             return close

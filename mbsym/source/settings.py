@@ -63,27 +63,27 @@ def read_assumptions(node: Node | None, reading: Reading) -> tuple[Assumption, .
     for item in () if node is None else reading.items(node, "'assumptions'"):
         scalar = reading.scalar(item, "an assumption")
         if scalar is not None:
-            assumptions += _comparisons(scalar, reading)
+            assumptions += read_comparisons(scalar, reading, ASSUMPTION)
     return tuple(assumptions)
 
 
-def _comparisons(scalar: Scalar, reading: Reading) -> list[Assumption]:
+def read_comparisons(scalar: Scalar, reading: Reading, allowed: Allowed) -> list[Assumption]:
+    """The inequalities of a chain; none, with complaints, where it is none."""
     signs = list(_COMPARISON.finditer(scalar.text))
     if not signs:
         hint = "write for example alpha > -1"
-        reading.error("bad-assumption", "an assumption compares two expressions", scalar.span, hint)
+        reading.error("bad-assumption", f"{allowed.what} compares two expressions", scalar.span, hint)
         return []
     for sign in signs:
         if sign.group() in ("=", "=="):
             span = scalar.place(sign.start(), sign.end())
-            reading.error(
-                "bad-assumption", "an assumption is an inequality", span, "an equation belongs to 'relations'"
-            )
+            hint = "an equation belongs to 'relations'"
+            reading.error("bad-assumption", f"{allowed.what} is an inequality", span, hint)
             return []
     errors = reading.errors
     cuts = [0, *(edge for sign in signs for edge in sign.span()), len(scalar.text)]
     sides = [
-        reading.expression(scalar.part(begin, end), ASSUMPTION)
+        reading.expression(scalar.part(begin, end), allowed)
         for begin, end in zip(cuts[::2], cuts[1::2], strict=True)
     ]
     if reading.errors != errors:

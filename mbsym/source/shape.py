@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Union
 
 from mbsym.expressions.tree import ZERO, Expression, text
+from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.system import (
     Body,
     CoordinateDamper,
@@ -77,6 +78,8 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     if body.inertia is not None:
         shape["inertia about"] = body.inertia.about
         shape["inertia"] = inertia_shape(body.inertia)
+    if body.gyrostatic_moment is not None:
+        shape["gyrostatic moment"] = vector_shape(body.gyrostatic_moment)
     if body.coordinates != inferred:
         shape["coordinates"] = list(body.coordinates)
     return shape
@@ -165,6 +168,32 @@ def initial_shape(entry: InitialValue) -> Shape:
     for key, value in (("position", entry.position), ("velocity", entry.velocity)):
         if value is not None:
             shape[key] = text(value)
+    return shape
+
+
+def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
+    """One claim; rows and columns are named by their coordinates."""
+    kind = CLAIMS[claim.kind]
+    shape: dict[str, Shape] = {"claim": claim.kind}
+    if claim.of or claim.of_expression is not None:
+        shape["of"] = claim.of if claim.of_expression is None else text(claim.of_expression)
+    if claim.entry:
+        indices: list[Shape] = [str(k) if kind.axes else system.coordinates[k - 1] for k in claim.entry]
+        shape["component" if kind.entry == 1 else "entry"] = indices[0] if kind.entry == 1 else indices
+    if claim.at is not None:
+        shape["at"] = text(claim.at)
+    if claim.variable:
+        shape["variable"] = claim.variable
+    if claim.at_initial:
+        shape["state"] = INITIAL_STATE
+    elif claim.state:
+        shape["state"] = {name: text(value) for name, value in claim.state}
+    if claim.right is None:
+        shape["equals"] = claim.printed or text(claim.equals)
+    else:
+        shape["that"] = assumption_text(claim.equals, claim.relation, claim.right)
+    if claim.place:
+        shape["place"] = claim.place
     return shape
 
 

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
+from mbsym.model.claims import BODY as BODY_OF
+from mbsym.model.claims import CLAIMS
 from mbsym.source.keys import ALIASES, VERSION
 from mbsym.source.labels import (
     ASSUMPTIONS,
@@ -29,7 +31,7 @@ from mbsym.source.labels import (
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 
-_HEADING = re.compile(r"(body|load) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
+_HEADING = re.compile(r"(body|load|claim) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
 _OPENING = {"(": ")", "{": "}", "[": "]"}
 
 
@@ -120,12 +122,15 @@ class _TextReader:
         bodies = [block for block in blocks if self.kind(block) == "body"]
         loads = [block for block in blocks if self.kind(block) == "load"]
         self.check_numbers(bodies)
+        claims = [block for block in blocks if self.kind(block) == "claim"]
         self.check_numbers(loads)
+        self.check_numbers(claims)
         self.check_count(header, len(bodies))
         self.names = {str(number): _name_in(block) for number, block in enumerate(bodies, start=1)}
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
         entries += _list_entry("bodies", bodies, self.body)
         entries += _list_entry("loads", loads, self.load)
+        entries += _list_entry("claims", claims, self.claim)
         return Mapping(tuple(entries), start)
 
     def blocks(self, lines: list[Scalar]) -> tuple[list[Scalar], list[_Block]]:
@@ -304,6 +309,36 @@ class _TextReader:
         else:
             value = self.load_data(data, kinds[0].span)
         return Mapping((Entry(kinds[0], value),), block.heading.span)
+
+    def claim(self, block: _Block) -> Mapping:
+        """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
+        entries = []
+        lines = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
+        kinds = [_word(value.text) for label, value in lines if _word(label.text) == "claim"]
+        about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY_OF for kind in kinds)
+        for label, value in lines:
+            word = _word(label.text)
+            node: Node = value
+            if word == "of" and about_body:
+                node = self.body_reference(value)
+            elif word == "entry":
+                node = self.items(value)
+            elif word == "state":
+                node = self.numbers(value)
+            elif word == "place":
+                node = self.unquoted(value)
+            entries.append(Entry(_key(label, word), node))
+        return Mapping(tuple(entries), block.heading.span)
+
+    def numbers(self, value: Scalar) -> Node:
+        """``theta = 0.1; theta_dot = 2`` as a mapping; a single word stays what it is."""
+        parts = [_label_of(part) for part in _split(value, ";")]
+        if len(parts) == 1 and parts[0][0] is None:
+            return value
+        for label, rest in parts:
+            if label is None:
+                self.error("syntax", "here 'name = number' is wanted", rest.span)
+        return Mapping(tuple(Entry(label, rest) for label, rest in parts if label is not None), value.span)
 
     def load_line(self, line: Scalar) -> tuple[Scalar | None, Scalar]:
         label, value = _label_of(line)

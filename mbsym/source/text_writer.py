@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from mbsym.expressions.tree import ZERO, text
+from mbsym.model.claims import BODY, CLAIMS
 from mbsym.model.system import Body, System, Vector
 from mbsym.source.shape import (
     Shape,
     assumption_text,
+    claim_shape,
     initial_shape,
     load_shape,
     motion_shape,
@@ -42,6 +44,9 @@ def to_text(system: System) -> str:
         lines += ["", "Assumptions", *(f"  {one}" for one in written)]
     initial = {one.coordinate: _record(initial_shape(one), "position") for one in system.initial}
     lines += _section("Initial state", initial)
+    lines += _section("Abbreviations", {one.name: text(one.value) for one in system.abbreviations})
+    for number, claim in enumerate(system.claims, start=1):
+        lines += ["", f"Claim description ({number})", *_claim(claim_shape(claim, system), numbers)]
     return "\n".join(lines) + "\n"
 
 
@@ -91,6 +96,8 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
     rows = body.inertia.tensor if body.inertia is not None else ((ZERO,) * 3,) * 3
     lines.append("  Tensor of inertia:")
     lines += [f"    {text(rows[row][0])}, {text(rows[row][1])}, {text(rows[row][2])}" for row in _ROWS]
+    if body.gyrostatic_moment is not None:
+        lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
     lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
     return lines
 
@@ -116,6 +123,21 @@ def _load(kind: str, shape: Shape, numbers: dict[str, str]) -> list[str]:
             lines.append(f"  {key} = {value}")
         else:
             lines.append(f"  {key.capitalize()}: {_value(value)}")
+    return lines
+
+
+def _claim(shape: dict[str, Shape], numbers: dict[str, str]) -> list[str]:
+    """One label a line; a body is named by its number, a state is a record."""
+    lines = []
+    about_body = CLAIMS[str(shape["claim"])].of == BODY
+    for key, value in shape.items():
+        if isinstance(value, dict):
+            written = "; ".join(f"{name} = {number}" for name, number in value.items())
+        elif key == "of" and about_body:
+            written = numbers[str(value)]
+        else:
+            written = _free(str(value)) if key == "place" else _value(value)
+        lines.append(f"  {key.capitalize()}: {written}")
     return lines
 
 

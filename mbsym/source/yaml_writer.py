@@ -11,6 +11,7 @@ from mbsym.source.shape import (
     Shape,
     assumption_text,
     body_shape,
+    claim_shape,
     inferred_coordinates,
     initial_shape,
     load_shape,
@@ -40,6 +41,8 @@ def to_yaml(system: System) -> str:
     if system.time_scale is not None:
         lines += ["", f"dimensionless time: {_scalar(text(system.time_scale))}"]
     lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
+    lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
+    lines += _list("claims", [_flow(claim_shape(one, system)) for one in system.claims])
     return "\n".join(lines) + "\n"
 
 

@@ -9,13 +9,8 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from mbsym.algebra.program import Instruction, Node, Program
-from mbsym.mechanics.programs import Programs
-
-if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60
@@ -52,16 +47,6 @@ def listing(
 ) -> Listing:
     """Straight-line code for the outputs; ``names`` renames the inputs, locals avoid them and ``taken``."""
     return _Writer(program, list(outputs), names, dialect, {*taken, *names.values()}).listing()
-
-
-def programs_of(analysis: Analysis) -> tuple[Programs | None, str]:
-    """The equations as a program, or the reason why there is none."""
-    from mbsym.analysis import Unavailable
-
-    try:
-        return analysis.programs, ""
-    except Unavailable as missing:
-        return None, missing.failure.reason
 
 
 class _Writer:

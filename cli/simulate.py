@@ -1,0 +1,614 @@
+"""``mbsym simulate``: integrates the equations of motion and writes the trajectory as a table and as figures."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from math import ceil, pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from mbsym_cli.assignments import assignments, number
+from mbsym_cli.console import (
+    BAD_INPUT,
+    BROKEN_DOWN,
+    FAILED,
+    INTERRUPTED,
+    OK,
+    console,
+    counted,
+    read_description,
+)
+from mbsym_cli.files import write_whole
+from mbsym_cli.lacking import lacking
+
+if TYPE_CHECKING:
+    from mbsym.expressions.tree import Expression
+    from mbsym.model.system import System
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.invariants import Invariant
+    from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+    from mbsym.numerics.scenario import Scenario
+    from mbsym.numerics.simulate import Trajectory
+
+FORMATS = ("csv", "svg", "png")
+ARITHMETIC = ("float64", "float32", "extended")
+
+#: Unless asked for otherwise: the local error, and samples (more of them where the motion is fast).
+TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
+SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
+
+#: No arithmetic here is finer, and nothing coarser is a solution.
+FINEST, COARSEST = 1e-19, 0.1
+
+#: A run shorter than this many seconds is repeated more finely, to see how good it is.
+SOON_DONE = 2.0
+
+#: Below this much of its usual size a pivot of M costs digits worth a warning.
+NEARLY_SINGULAR = 1e-8
+
+
+@dataclass(frozen=True)
+class Request:
+    """What was asked for, numbers read."""
+
+    end: float
+    samples: int | None
+    every: float | None
+    method: str
+    tolerance: float | None
+    step: float | None
+    step_limit: int
+    arithmetic: str
+    formats: tuple[str, ...]
+    invariants: bool
+    estimate: bool | None
+    quiet: bool
+
+
+class Refused(Exception):
+    """What was asked for cannot be done; the message is for the user."""
+
+
+def _formats(context: click.Context, parameter: click.Parameter, value: str) -> tuple[str, ...]:
+    chosen = tuple(dict.fromkeys(part.strip() for part in value.split(",") if part.strip()))
+    if not chosen or set(chosen) - set(FORMATS):
+        raise click.BadParameter(f"choose from {', '.join(FORMATS)}, separated by commas")
+    return chosen
+
+
+@click.command("simulate")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--time", "-t", "end", required=True, metavar="T", help="Simulate from 0 to T (60, 2*pi, 1e3).")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--samples", type=int, metavar="N", help="Rows of the table.  [default: 2001, more for fast motion]")
+@click.option("--every", metavar="DT", help="A row every DT instead.")
+@click.option("--method", "-m", default="auto", show_default=True, help="auto, or see below.")
+@click.option("--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10]")
+@click.option("--step", metavar="H", help="Length of a step, for methods of fixed step.")
+@click.option("--arithmetic", type=click.Choice(ARITHMETIC), default="float64", show_default=True)
+@click.option("--step-limit", type=click.IntRange(1, 10**12), default=10_000_000, show_default=True)
+@click.option("--invariants", is_flag=True, help="Add the first integrals of problem 7 as columns.")
+@click.option(
+    "--estimate/--no-estimate",
+    default=None,
+    help="Repeat the run more finely to estimate its error.  [default: where that takes seconds]",
+)
+@click.option("--format", "-f", "formats", default="csv,svg,png", callback=_formats, show_default=True)
+@click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
+def command(
+    file: Path,
+    end: str,
+    settings: tuple[str, ...],
+    samples: int | None,
+    every: str | None,
+    method: str,
+    tolerance: str | None,
+    step: str | None,
+    arithmetic: str,
+    step_limit: int,
+    invariants: bool,
+    estimate: bool | None,
+    formats: tuple[str, ...],
+    out: Path | None,
+    quiet: bool,
+) -> None:
+    """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
+
+    Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
+    name meaning its initial position and NAME_dot its initial velocity.  Written are trajectory.csv (t, coordinates,
+    velocities, energy, relative drift), time histories, phase planes, drift, and simulation.json.
+
+    Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit), rk4 (explicit, fixed step),
+    radau, lsoda (stiff systems), and what else is installed.
+
+    A blow-up, a singular mass matrix or too many steps end a simulation early, and so does Ctrl-C: what was computed is
+    kept in files named ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or
+    wrong, 3 ended early, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym simulate systems/double-pendulum.yaml --time 60
+      mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
+      mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4 --format csv --out top
+    """
+    try:
+        sys.exit(
+            _command(
+                file,
+                out if out is not None else Path("reports") / file.stem,
+                settings,
+                {"--time": end, "--every": every, "--tolerance": tolerance, "--step": step},
+                Request(
+                    0.0, samples, None, method, None, None, step_limit, arithmetic, formats, invariants, estimate, quiet
+                ),
+            )
+        )
+    except KeyboardInterrupt:
+        print(f"{file}: interrupted before there was anything to keep", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+def _command(
+    file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], request: Request
+) -> int:
+    """Reads everything, complains about everything, then simulates."""
+    system = read_description(file)
+    if system is None:
+        return BAD_INPUT
+    request, overrides, complaints = _read(system, settings, texts, request)
+    if not complaints:
+        complaints = _contradictions(system, request, texts)
+    if complaints:
+        print("\n".join(complaints), file=sys.stderr)
+        print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+        return BAD_INPUT
+    try:
+        return _simulate(file, system, folder, overrides, request)
+    except Refused as reason:
+        print(f"{file}: {reason}", file=sys.stderr)
+        return BAD_INPUT
+    except OSError as error:
+        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+    except MemoryError:
+        print(f"{file}: out of memory; ask for fewer --samples", file=sys.stderr)
+    except KeyboardInterrupt:
+        raise
+    except Exception as error:
+        print(f"{file}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
+    return FAILED
+
+
+def _read(
+    system: System, settings: Sequence[str], texts: Mapping[str, str | None], request: Request
+) -> tuple[Request, dict[str, Expression], list[str]]:
+    """The assignments and the numbers of the options; every complaint at once."""
+    overrides, complaints = assignments(settings, system)
+    numbers: dict[str, float | None] = {}
+    for option, text in texts.items():
+        numbers[option] = None
+        if text is not None:
+            numbers[option], more = number(text, option)
+            complaints += more
+    request = replace(
+        request,
+        end=numbers["--time"] or 0.0,
+        every=numbers["--every"],
+        tolerance=numbers["--tolerance"],
+        step=numbers["--step"],
+    )
+    return request, overrides, complaints
+
+
+def _contradictions(system: System, request: Request, texts: Mapping[str, str | None]) -> list[str]:
+    """Options that exclude each other, or are out of bounds."""
+    from mbsym.report.trajectory_csv import most_rows
+
+    found = []
+    most = most_rows(system)
+    rows = request.samples
+    if request.every is not None:
+        rows = int(min(ceil(request.end / request.every), 10**18)) + 1
+        if request.samples is not None:
+            found.append("--samples and --every exclude each other")
+    if request.samples is not None and request.samples < 2:
+        found.append(f"--samples: {request.samples}: a trajectory has at least 2 samples, its start and its end")
+    if rows is not None and rows > most:
+        hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
+        found.append(
+            f"{'--every' if request.every is not None else '--samples'}: {rows} rows are too many\n  hint: {hint}"
+        )
+    if request.tolerance is not None and not FINEST <= request.tolerance <= COARSEST:
+        found.append(f"--tolerance: {texts['--tolerance']}: choose between {FINEST:g} and {COARSEST:g}")
+    if request.step is not None and request.step > request.end:
+        found.append(f"--step: {texts['--step']}: longer than the whole time")
+    if request.step is not None and request.tolerance is not None:
+        found.append("--step and --tolerance exclude each other\n  hint: a method takes one or the other")
+    return found
+
+
+def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, Expression], request: Request) -> int:
+    from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.methods.interface import Unusable
+    from mbsym.numerics.scenario import Incomplete, scenario
+
+    try:
+        numbers = scenario(system, overrides)
+    except Incomplete as error:
+        print(lacking(file, error.lack), file=sys.stderr)
+        return BAD_INPUT
+    try:
+        with _status(request.quiet, f"{file.name}: compiling"):
+            further = _integrals(system, request)
+            dynamics = Dynamics(numbers, further[1]) if further else Dynamics(numbers)
+            chosen = _chosen(dynamics, request)
+    except SingularPoint as error:
+        print(f"{file}: singular at these values: {error}; nothing was written.", file=sys.stderr)
+        return BROKEN_DOWN
+    except (NoClosedForm, NotRational) as error:
+        print(f"{file}: there is no program for these equations: {error}", file=sys.stderr)
+        return FAILED
+    except Unusable as error:
+        raise Refused(f"this method cannot be used here: {error}") from None
+    return _integrate(file, folder, dynamics, chosen, request, further[0] if further else ())
+
+
+# --- choosing ---
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Everything settled before the first step; ``frequency`` is the greatest at the initial state, in rad per time."""
+
+    method: Method
+    why: str
+    setting: Setting
+    times: Any
+    frequency: float
+
+
+def _chosen(dynamics: Dynamics, request: Request) -> Chosen:
+    from mbsym.numerics.choice import choose, rates
+    from mbsym.numerics.methods.interface import Setting
+    from mbsym.numerics.methods.table import METHODS
+
+    tolerance = request.tolerance or TOLERANCE[request.arithmetic]
+    name = request.method.lower()
+    if name == "auto":
+        if request.step is not None:
+            raise Refused("--step needs a method of fixed step, for example --method rk4")
+        choice = choose(dynamics, tolerance, request.end, request.arithmetic)
+        method, why, frequency = choice.method, choice.why, choice.frequency
+    elif name in METHODS:
+        method, why, frequency = METHODS[name], "as asked for", rates(dynamics)[1]
+    else:
+        raise Refused(_unknown_method(request.method, METHODS))
+    traits = method.traits
+    if request.arithmetic not in traits.scalars:
+        able = [key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars]
+        raise Refused(f"{name} does not compute in {request.arithmetic}; these do: {', '.join(able) or 'none'}")
+    if traits.fixed and request.step is None:
+        raise Refused(f"{name} takes steps of one length: give it, for example --step {request.end / 1e4:.2g}")
+    if traits.fixed and request.tolerance is not None:
+        raise Refused(f"{name} takes a --step, not a --tolerance")
+    if not traits.fixed and request.step is not None:
+        raise Refused(f"{name} chooses its steps by a --tolerance; --step is for methods of fixed step")
+    setting = Setting(None if traits.fixed else tolerance, request.step, request.step_limit)
+    return Chosen(method, why, setting, _times(request, frequency, dynamics.system), frequency)
+
+
+def _unknown_method(name: str, known: Mapping[str, Method]) -> str:
+    from mbsym.expressions.parser import ascii_safe
+    from mbsym.source.scope import did_you_mean
+
+    close = did_you_mean(name, known)
+    return f"unknown method {ascii_safe(name)}; " + (f"{close} (" if close else "(") + f"auto, {', '.join(known)})"
+
+
+def _times(request: Request, frequency: float, system: System) -> Any:
+    """Times from 0 to the end, the end included."""
+    import numpy as np
+
+    from mbsym.report.trajectory_csv import most_rows
+
+    if request.every is not None:
+        times = np.arange(ceil(request.end / request.every * (1 - 1e-12)) + 1) * request.every
+        times[-1] = request.end
+        return times
+    wanted = SAMPLES_A_PERIOD * frequency * request.end / (2 * pi)
+    fitting = min(max(SAMPLES, int(min(wanted, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
+    return np.linspace(0.0, request.end, request.samples or fitting)
+
+
+def _integrals(system: System, request: Request) -> tuple[tuple[Any, ...], Any] | None:
+    """The first integrals of problem 7 and the ring they are written in, if they were asked for."""
+    if not request.invariants:
+        return None
+    from mbsym.analysis import Analysis, Unavailable
+
+    analysis = Analysis(system, (7,))
+    try:
+        return analysis.integrals, analysis.ring
+    except Unavailable as reason:
+        print(f"no first integrals: {reason}", file=sys.stderr)
+        return None
+
+
+# --- running ---
+
+
+def _integrate(
+    file: Path, folder: Path, dynamics: Dynamics, chosen: Chosen, request: Request, integrals: Sequence[Any]
+) -> int:
+    from mbsym.numerics.invariants import CONSERVED, energy_status
+    from mbsym.numerics.methods.interface import Unusable
+    from mbsym.numerics.simulate import simulate
+
+    try:
+        with _progress(request.quiet, file.name, request.end) as watch:
+            found = simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
+    except Unusable as error:
+        raise Refused(f"this method cannot be used here: {error}") from None
+    status = energy_status(dynamics)
+    further, drifts = _further(dynamics, found, integrals)
+    estimated = None
+    if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
+        with _status(request.quiet, f"{file.name}: the same more finely, to see how good it is"):
+            estimated = _estimated(dynamics, found, chosen, request)
+    summary = {
+        "energy": {"conserved": status, "largest_relative_drift": _largest(found.drift)},
+        "invariants": drifts,
+        "estimated_error": estimated,
+    }
+    paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, status == CONSERVED)
+    if not request.quiet:
+        _print_summary(file, dynamics, found, chosen, request, summary, paths)
+    if found.breakdown is not None:
+        print(_broken(file, found.breakdown, found, paths), file=sys.stderr)
+        return BROKEN_DOWN
+    if found.interrupted or (estimated or {}).get("interrupted"):
+        kept = f"; kept up to t = {found.times[-1]:.9g} in {paths[0].parent}" if found.interrupted else ""
+        print(f"{file}: interrupted{kept}", file=sys.stderr)
+        return INTERRUPTED
+    return OK
+
+
+def _largest(values: Any) -> float:
+    return max((abs(float(x)) for x in values), default=0.0)
+
+
+def _further(
+    dynamics: Dynamics, found: Trajectory, integrals: Sequence[Any]
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """Columns of first integrals, and how far each one drifts; the energy is there already."""
+    from mbsym.numerics.invariants import invariants, values
+    from mbsym.report.trajectory_csv import columns
+
+    wanted = [item for item in integrals if item.kind != "energy"]
+    known: tuple[Invariant, ...] = invariants(dynamics, wanted, columns(dynamics.system)) if wanted else ()
+    if not known:
+        return {}, {}
+    table, drifts = {}, {}
+    for item, (column, size) in zip(known, values(known, found.times, found.states), strict=True):
+        table[item.column] = column
+        drifts[item.column] = {"name": item.name, "status": item.status, "drift": _largest(column - column[0]) / size}
+    return table, drifts
+
+
+def _estimated(dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: Request) -> dict[str, Any] | None:
+    """The difference from a run a hundred times finer (a quarter of the step), relative to each row's largest value."""
+    import numpy as np
+
+    from mbsym.numerics.methods.interface import Unusable
+    from mbsym.numerics.simulate import simulate
+
+    setting = chosen.setting
+    if setting.step is not None:
+        finer = replace(setting, step=setting.step / 4)
+    else:
+        finer = replace(setting, tolerance=max((setting.tolerance or 0.0) / 100, FINEST))
+    try:
+        better = simulate(dynamics, chosen.method, finer, chosen.times, request.arithmetic)
+    except Unusable:
+        return None
+    if not better.whole:
+        return {"interrupted": True} if better.interrupted else None
+    size = np.max(np.abs(better.states), axis=1)
+    size[size == 0] = 1.0
+    errors = np.max(np.abs(found.states - better.states) / size[:, None], axis=0)
+    against = f"tolerance {finer.tolerance:.0e}" if finer.step is None else f"step {finer.step:g}"
+    return {"final": float(errors[-1]), "largest": float(np.max(errors)), "against": against}
+
+
+# --- writing and telling ---
+
+
+def _write(
+    folder: Path,
+    scenario: Scenario,
+    found: Trajectory,
+    chosen: Chosen,
+    request: Request,
+    summary: Mapping[str, Any],
+    further: Mapping[str, Any],
+    conserved: bool,
+) -> list[Path]:
+    """The table first, the figures last; names tell whether the trajectory is whole."""
+    from mbsym.report.simulation_json import simulation_json
+    from mbsym.report.trajectory_csv import trajectory_csv
+
+    mark = "" if found.whole else "-partial"
+    written: list[Path] = []
+
+    def write(name: str, content: str | bytes) -> None:
+        path = folder / name
+        write_whole(path, content)
+        written.append(path)
+
+    if "csv" in request.formats:
+        write(f"trajectory{mark}.csv", trajectory_csv(found, further))
+    images: dict[str, bytes] = {}
+    kinds = [kind for kind in request.formats if kind != "csv"]
+    if kinds:
+        from mbsym.report.figures import figures
+
+        with _status(request.quiet, "drawing"):
+            images = figures(found, kinds, _note(found), conserved)
+    for name, content in images.items():
+        stem, _, kind = name.rpartition(".")
+        write(f"{stem}{mark}.{kind}", content)
+    listed = [path.name for path in written]
+    write(
+        "simulation.json",
+        simulation_json(found, scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed),
+    )
+    # Figures and tables of an earlier simulation would contradict simulation.json.
+    for path in sorted(folder.iterdir()):
+        if path not in written and _ours(path.name):
+            path.unlink(missing_ok=True)
+    return written
+
+
+def _ours(name: str) -> bool:
+    """Whether a file name is one that this command writes."""
+    import re
+
+    return (
+        re.fullmatch(r"(trajectory|(histories|phase-planes)(-\d+)?|drift)(-partial)?\.(csv|svg|png)", name) is not None
+    )
+
+
+def _note(found: Trajectory) -> str:
+    if found.breakdown is not None:
+        return f"ended early: {found.breakdown.kind} at t = {found.breakdown.time:.6g}"
+    return f"interrupted at t = {found.times[-1]:.6g}" if found.interrupted else ""
+
+
+def _broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path]) -> str:
+    """What happened, when, and in which state."""
+    from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK
+
+    names = [*found.system.coordinates, *found.system.velocities]
+    state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
+    hints = {
+        BLOW_UP: "the motion leaves every bound in finite time; is a sign of the forces right?",
+        SINGULAR: "start elsewhere, or choose other angles: these ones have no meaning there",
+        STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
+        STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
+    }
+    kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {paths[0].parent}"
+    return "\n".join(
+        [
+            f"{file}: error[{ended.kind.replace(' ', '-')}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
+            f"  state: {state}",
+            f"  hint: {hints.get(ended.kind, '')}",
+            f"{file}: {kept}",
+        ]
+    )
+
+
+def _print_summary(
+    file: Path,
+    dynamics: Dynamics,
+    found: Trajectory,
+    chosen: Chosen,
+    request: Request,
+    summary: Mapping[str, Any],
+    paths: Sequence[Path],
+) -> None:
+    from rich.text import Text
+
+    out = console()
+    out.print(Text.assemble((found.system.name, "bold"), (f"  {file}", "dim")))
+    for name, text in _lines(dynamics, found, chosen, request, summary):
+        style = "yellow" if name == "warning" else "bold cyan"
+        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
+    names = ", ".join(path.name for path in paths)
+    out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), f": {names}"))
+
+
+def _lines(
+    dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: Request, summary: Mapping[str, Any]
+) -> Iterator[tuple[str, str]]:
+    """(title, text) of the summary's lines."""
+    from mbsym.numerics.invariants import CHANGING
+    from mbsym.numerics.simulate import least_pivot
+
+    setting, work = found.setting, found.work
+    yield "method", f"{chosen.method.traits.title} ({chosen.why})"
+    how = f"step {setting.step:g}" if setting.step is not None else f"tolerance {setting.tolerance:g} per step"
+    yield "setting", f"{how}, {request.arithmetic}"
+    reached = "" if found.whole else f", reached {found.times[-1]:.9g}"
+    yield "time", f"0 to {request.end:g}, {len(chosen.times)} samples{reached}"
+    evaluations = counted(work.evaluations, "evaluation", "evaluations")
+    jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
+    rejected = f" ({work.rejected} rejected)" if work.rejected else ""
+    yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
+    energy = summary["energy"]
+    change = "change" if energy["conserved"] == CHANGING else "drift"
+    yield "energy", f"{energy['conserved']}; largest relative {change} {energy['largest_relative_drift']:.1e}"
+    for item in summary["invariants"].values():
+        yield "invariant", f"{item['name']} ({item['status']}): largest relative drift {item['drift']:.1e}"
+    estimated = summary["estimated_error"]
+    if estimated and "final" in estimated:
+        worst = f", {estimated['largest']:.1e} at worst" if estimated["largest"] > 2 * estimated["final"] else ""
+        yield "error", f"about {estimated['final']:.1e} at the end{worst} (relative, against {estimated['against']})"
+        if estimated["largest"] > 0.1:
+            yield (
+                "warning",
+                "the end depends on the last digits of everything: the motion is chaotic, or this is too coarse",
+            )
+    ratio, at = least_pivot(dynamics, found)
+    if found.breakdown is None and ratio < NEARLY_SINGULAR:
+        yield "warning", f"at t = {at:.6g} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})"
+    spacing = float(chosen.times[1] - chosen.times[0])
+    if chosen.frequency * spacing > pi / 2:
+        yield "warning", "fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples"
+
+
+@contextmanager
+def _status(quiet: bool, text: str) -> Iterator[None]:
+    """A spinner on standard error; nothing where that is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield
+        return
+    with console(stderr=True).status(text):
+        yield
+
+
+@contextmanager
+def _progress(quiet: bool, name: str, end: float) -> Iterator[Callable[[float], None]]:
+    """A bar over simulated time on standard error; nothing where that is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda t: None
+        return
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("t = {task.completed:.4g}"),
+        TimeRemainingColumn(),
+        console=console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task(name, total=end)
+        shown = 0.0
+
+        def watch(t: float) -> None:
+            nonlocal shown
+            now = time.monotonic()
+            if now - shown > 0.05:
+                shown = now
+                bar.update(task, completed=t)
+
+        yield watch

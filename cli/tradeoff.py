@@ -1,0 +1,265 @@
+"""``mbsym tradeoff``: measures what accuracy costs for one system on this machine."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mbsym_cli.assignments import assignments, number
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, console, counted, read_description
+from mbsym_cli.files import write_whole
+from mbsym_cli.lacking import lacking
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.fidelity import ModelError
+    from mbsym.numerics.methods.interface import Method
+    from mbsym.numerics.scenario import Scenario
+    from mbsym.numerics.tradeoff import Tradeoff
+
+FORMATS = ("csv", "svg", "png")
+
+#: Accuracy is asked for between these.
+FINEST, COARSEST = 1e-15, 0.1
+
+#: Times at which solutions are compared, the start included.
+SAMPLES = 9
+
+
+@dataclass(frozen=True)
+class Request:
+    """What was asked for, numbers read."""
+
+    end: float
+    target: float
+    budget: float
+    methods: tuple[str, ...]
+    fidelity: bool
+    every_row: bool
+    quiet: bool
+
+
+@click.command("tradeoff")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--time", "-t", "end", required=True, metavar="T", help="Simulate from 0 to T (60, 2*pi).")
+@click.option("--target", default="1e-9", show_default=True, metavar="X", help="The error that is good enough.")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--methods", "-m", default="all", show_default=True, help="Some of them, separated by commas.")
+@click.option("--budget", default="60", show_default=True, metavar="S", help="About so many seconds of measuring.")
+@click.option("--fidelity/--no-fidelity", default=True, show_default=True, help="Compare simpler models too.")
+@click.option("--all-rows", is_flag=True, help="Print every run, not only those on the front and near the target.")
+@click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--quiet", "-q", is_flag=True, help="Print only the recommendation.")
+def command(
+    file: Path,
+    end: str,
+    target: str,
+    settings: tuple[str, ...],
+    methods: str,
+    budget: str,
+    fidelity: bool,
+    all_rows: bool,
+    out: Path | None,
+    quiet: bool,
+) -> None:
+    """Measure what accuracy costs when FILE is simulated from 0 to T, on this machine.
+
+    Every method climbs a ladder of tolerances or steps, in every arithmetic it knows; its error is measured against a
+    reference solution of another method in 160 bits, whose own error is printed.  Simpler models (gravity of lower
+    order, linearised equations, coordinates that rest taken out) are compared with the most faithful one.
+
+    Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png.  Exit codes: 0 done, 1 files could not be
+    written, 2 something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
+
+    \b
+    Example:
+      mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
+    """
+    folder = out if out is not None else Path("reports") / file.stem
+    chosen = tuple(dict.fromkeys(part.strip().lower() for part in methods.split(",") if part.strip()))
+    texts = {"--time": end, "--target": target, "--budget": budget}
+    try:
+        sys.exit(_command(file, folder, settings, texts, Request(0, 0, 0, chosen, fidelity, all_rows, quiet)))
+    except KeyboardInterrupt:
+        print(f"{file}: interrupted", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+def _command(file: Path, folder: Path, settings: Sequence[str], texts: dict[str, str], request: Request) -> int:
+    """Reads everything, complains about everything, then measures."""
+    from mbsym.numerics.scenario import Incomplete, scenario
+
+    system = read_description(file)
+    if system is None:
+        return BAD_INPUT
+    overrides, complaints = assignments(settings, system)
+    numbers = {}
+    for option, text in texts.items():
+        numbers[option], more = number(text, option)
+        complaints += more
+    target = numbers["--target"]
+    if target is not None and not FINEST <= target <= COARSEST:
+        complaints.append(f"--target: {texts['--target']}: choose between {FINEST:g} and {COARSEST:g}")
+    chosen, unknown = _methods(request.methods)
+    complaints += unknown
+    if complaints:
+        print("\n".join(complaints), file=sys.stderr)
+        print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+        return BAD_INPUT
+    read = (numbers["--time"] or 0.0, target or 0.0, numbers["--budget"] or 0.0)
+    request = Request(*read, request.methods, request.fidelity, request.every_row, request.quiet)
+    try:
+        return _measure(file, folder, scenario(system, overrides), chosen, request)
+    except Incomplete as error:
+        print(lacking(file, error.lack), file=sys.stderr)
+        return BAD_INPUT
+    except OSError as error:
+        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+    return FAILED
+
+
+def _methods(names: Sequence[str]) -> tuple[list[Method], list[str]]:
+    """The methods by name, and a complaint for each that there is not."""
+    from mbsym.numerics.methods.table import METHODS
+
+    if names in ((), ("all",)):
+        return list(METHODS.values()), []
+    unknown = [name for name in names if name not in METHODS]
+    complaints = [f"--methods: there is no method {name}; there are {', '.join(METHODS)}" for name in unknown]
+    return [METHODS[name] for name in names if name in METHODS], complaints
+
+
+def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], request: Request) -> int:
+    import numpy as np
+
+    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.numerics import fidelity
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.methods.table import METHODS
+    from mbsym.numerics.reference import reference
+    from mbsym.numerics.tradeoff import tradeoff
+
+    times = np.linspace(0.0, request.end, SAMPLES)
+    with _status(request.quiet) as say:
+        try:
+            dynamics = Dynamics(found)
+            say(f"{file.name}: reference solution")
+            truth = reference(
+                dynamics,
+                times,
+                budget=max(30.0, request.budget),
+                watch=lambda t: say(f"{file.name}: reference solution, t = {t:.4g} of {request.end:g}"),
+            )
+            trade = tradeoff(dynamics, methods, truth, request.budget, lambda label: say(f"{file.name}: {label}"))
+            models: tuple[ModelError, ...] = ()
+            if request.fidelity:
+                models = fidelity.measured(found, METHODS["dop853"], times, lambda label: say(f"{file.name}: {label}"))
+        except Breakdown as error:
+            print(f"{file}: there is no reference solution up to t = {request.end:g}: {error}", file=sys.stderr)
+            return BROKEN_DOWN
+        except (NoClosedForm, SingularPoint) as error:
+            print(f"{file}: the equations have no program: {error}", file=sys.stderr)
+            return BROKEN_DOWN
+        say(f"{file.name}: drawing")
+        paths = _write(folder, found.system, trade, models, request)
+    _print(file, found.system, trade, models, request, paths)
+    return OK
+
+
+def _write(
+    folder: Path, system: System, trade: Tradeoff, models: tuple[ModelError, ...], request: Request
+) -> list[Path]:
+    from mbsym.report.tradeoff_figure import work_precision
+    from mbsym.report.tradeoff_table import fidelity_csv, tradeoff_csv
+
+    texts: dict[str, str | bytes] = {"tradeoff.csv": tradeoff_csv(trade)}
+    if models:
+        texts["fidelity.csv"] = fidelity_csv(models)
+    title = f"{system.name}, t = 0 to {request.end:g}"
+    texts |= work_precision(trade, request.target, title, models, ("svg", "png"))
+    for name, text in texts.items():
+        write_whole(folder / name, text)
+    return [folder / name for name in texts]
+
+
+def _print(
+    file: Path, system: System, trade: Tradeoff, models: tuple[ModelError, ...], request: Request, paths: list[Path]
+) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    from mbsym.numerics.tradeoff import advice
+    from mbsym.report.tradeoff_table import models_shown, shown
+
+    out = console()
+    if request.quiet:
+        print(advice(trade, request.target))
+        return
+    out.print(Text.assemble((system.name, "bold"), (f"  {file}, t = 0 to {request.end:g}", "dim")))
+    truth = trade.reference
+    out.print(
+        f"  reference: {truth.method}, estimated error {truth.error:.1e}, {truth.seconds:.1f} s; "
+        f"errors below {trade.smallest_judged:.0e} are not told apart"
+    )
+    rows = trade.rows if request.every_row else [row for row in trade.rows if row.front or _near(row, request.target)]
+    table = Table(box=None, padding=(0, 1), header_style="bold cyan")
+    for name, side in zip(
+        ("method", "setting", "error", "drift", "evaluations", "steps", "time", "front"),
+        ("left", "left", "right", "right", "right", "right", "right", "center"),
+        strict=True,
+    ):
+        table.add_column(name, justify=side, no_wrap=True)  # type: ignore[arg-type]
+    for line in shown(rows, trade.smallest_judged):
+        table.add_row(*line, style="" if line[-1] else "dim")
+    out.print(table)
+    for order in trade.orders:
+        if order.pairs > 1:
+            out.print(
+                f"  {order.method}, {order.scalar}: measured order {order.measured:.2f}, nominal {order.nominal} "
+                f"(from {order.pairs} halvings of the step)"
+            )
+    for name, reason in trade.unusable:
+        out.print(Text(f"  {name}: not used: {reason}", style="yellow"))
+    if models:
+        _print_models(models_shown(models))
+    out.print(Text(advice(trade, request.target), style="bold"))
+    out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), ": ", ", ".join(p.name for p in paths)))
+
+
+def _near(row: object, target: float) -> bool:
+    error = row.error  # type: ignore[attr-defined]
+    return bool(target / 10 < error < target * 10)
+
+
+def _print_models(lines: list[tuple[str, ...]]) -> None:
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 1), header_style="bold cyan")
+    for name, side in (
+        ("model", "left"),
+        ("what it neglects", "left"),
+        ("error", "right"),
+        ("operations", "right"),
+        ("time", "right"),
+    ):
+        table.add_column(name, justify=side)  # type: ignore[arg-type]
+    for line in lines:
+        table.add_row(*line)
+    console().print(table)
+
+
+@contextmanager
+def _status(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    with console(stderr=True).status("") as status:
+        yield lambda text: status.update(text)

@@ -1,0 +1,169 @@
+"""What the bodies need at q'' = 0, leaner than the general Newton-Euler recursion; any scalar.
+
+With  W = [alpha] + [omega][omega]  of each frame ([v] w = v x w), from the base outwards
+
+    a_k = C (a_j + W_j r + 2 omega_j x r' + r''),      a of the base = -g  for uniform gravity g
+    F_k = m a_k + W_k h,      N_k = h x a_k + J alpha + omega x (J omega + gyrostatic moment),
+
+where the components of omega x J omega are written in the products omega_i omega_j that W holds anyway.  A base
+accelerated by -g is exactly equivalent to weights m g at all mass centres: both give every body the force m a - m g.
+The loads other than uniform gravity are subtracted from F and N body by body; a frame that falls in a Newtonian field
+is accelerated by what is left of its acceleration and the gravity there (``mbsym.mechanics.falling``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.mechanics.articulation import Articulation, Frame, Matrix
+from mbsym.mechanics.falling import falling_scene, overrides
+from mbsym.mechanics.frames import axis_vector
+from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.model.system import NewtonianGravity, UniformGravity
+
+
+@dataclass(frozen=True, slots=True)
+class Coasting:
+    """Force and moment about its origin that each frame's own matter needs at q'' = 0 beyond what the loads supply.
+
+    ``generalized`` are the generalised forces Q that loads exert directly on coordinates.
+    """
+
+    forces: tuple[Vector, ...]
+    moments: tuple[Vector, ...]
+    generalized: Mapping[str, Scalar]
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    spin: Vector
+    angular: Vector
+    origin: Vector
+    whirl: Matrix
+    products: Matrix
+
+
+def coasting(system: Articulation) -> Coasting:
+    """The wrenches of inertia and loads at q'' = 0."""
+    algebra = system.algebra
+    zero = algebra.zero_vector
+    motions: list[_Motion] = []
+    base = _Motion(zero, zero, _gravity(system), (zero, zero, zero), (zero, zero, zero))
+    felt = {system.frame_of[name]: w for name, w in overrides(system.scene, base.origin).items()}
+    forces: list[Vector] = []
+    moments: list[Vector] = []
+    for number, frame in enumerate(system.frames):
+        motion = _moved(algebra, frame, motions[frame.parent] if frame.parent >= 0 else base)
+        if number in felt:
+            motion = replace(motion, origin=felt[number])
+        motions.append(motion)
+        force, moment = _needed(system, number, motion)
+        forces.append(force)
+        moments.append(moment)
+    for name, body in system.scene.motions.items():
+        if body.gyrostatic_moment is not None:
+            k = system.frame_of[name]
+            moments[k] = algebra.add(moments[k], algebra.cross(motions[k].spin, body.gyrostatic_moment))
+    generalized = dict.fromkeys(system.coordinates, algebra.zero)
+    falling = falling_scene(system.scene) if felt else system.scene
+    for load in system.scene.system.loads:
+        if isinstance(load, UniformGravity):
+            continue
+        seen_from = falling if isinstance(load, NewtonianGravity) else system.scene
+        action = KINDS[type(load)].action(load, seen_from)
+        for name, value in action.generalized.items():
+            generalized[name] = generalized[name] + value
+        for wrench in action.wrenches:
+            k = system.frame_of[wrench.body]
+            forces[k] = algebra.subtract(forces[k], wrench.force)
+            moments[k] = algebra.subtract(moments[k], wrench.moment)
+    return Coasting(tuple(forces), tuple(moments), generalized)
+
+
+def forcing(system: Articulation, needed: Coasting) -> tuple[Scalar, ...]:
+    """f of M q'' = f: the loads' part less the inertia's, carried from the tips to the base and projected."""
+    algebra = system.algebra
+    forces, moments = list(needed.forces), list(needed.moments)
+    totals = dict(needed.generalized)
+    for number in reversed(range(len(system.frames))):
+        frame = system.frames[number]
+        force, moment = forces[number], moments[number]
+        for name, slope in frame.angle_derivatives.items():
+            assert frame.turn is not None
+            totals[name] = totals[name] - algebra.times(moment[frame.turn.axis - 1], slope)
+        force, moment = frame.back(algebra, force), frame.back(algebra, moment)
+        for name, v in frame.offset_derivatives.items():
+            totals[name] = totals[name] - algebra.dot(force, v)
+        if frame.parent >= 0:
+            moment = algebra.add(moment, algebra.cross(frame.offset, force))
+            forces[frame.parent] = algebra.add(forces[frame.parent], force)
+            moments[frame.parent] = algebra.add(moments[frame.parent], moment)
+    return tuple(algebra.reduce(totals[name]) for name in system.coordinates)
+
+
+def _gravity(system: Articulation) -> Vector:
+    """The acceleration of a base that stands for all uniform gravity."""
+    algebra = system.algebra
+    base = algebra.zero_vector
+    for load in system.scene.system.loads:
+        if isinstance(load, UniformGravity):
+            base = algebra.subtract(base, system.scene.lower.vector(load.acceleration))
+    return base
+
+
+def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:
+    origin = algebra.add(parent.origin, algebra.apply(parent.whirl, frame.offset))
+    twice = algebra.scale(algebra.number(2), algebra.cross(parent.spin, frame.sliding))
+    origin = algebra.add(algebra.add(origin, twice), frame.jerking)
+    if frame.turn is None:
+        return _Motion(parent.spin, parent.angular, origin, parent.whirl, parent.products)
+    rate = axis_vector(algebra, frame.turn.axis, frame.turn.rate)
+    spin = frame.out(algebra, parent.spin)
+    angular = algebra.add(frame.out(algebra, parent.angular), algebra.cross(spin, rate))
+    angular = algebra.add(angular, axis_vector(algebra, frame.turn.axis, frame.turn.second_rate))
+    spin = algebra.add(spin, rate)
+    products = _products(algebra, spin)
+    return _Motion(spin, angular, frame.out(algebra, origin), _whirl(algebra, angular, products), products)
+
+
+def _products(algebra: Algebra, w: Vector) -> Matrix:
+    """omega omega^T."""
+    rows = [[algebra.zero] * 3 for _ in range(3)]
+    for i in range(3):
+        for j in range(i, 3):
+            rows[i][j] = rows[j][i] = algebra.reduce(algebra.times(w[i], w[j]))
+    return ((rows[0][0], rows[0][1], rows[0][2]), (rows[1][0], rows[1][1], rows[1][2]), (rows[2][0], rows[2][1], rows[2][2]))
+
+
+def _whirl(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:
+    """[alpha] + [omega][omega]."""
+    a, b, c = angular
+    return (
+        (-(p[1][1] + p[2][2]), p[0][1] - c, p[0][2] + b),
+        (p[0][1] + c, -(p[0][0] + p[2][2]), p[1][2] - a),
+        (p[0][2] - b, p[1][2] + a, -(p[0][0] + p[1][1])),
+    )
+
+
+def _needed(system: Articulation, number: int, motion: _Motion) -> tuple[Vector, Vector]:
+    """(F, N) of a frame's own matter."""
+    algebra = system.algebra
+    own = system.masses[number]
+    force = algebra.add(algebra.scale(own.mass, motion.origin), algebra.apply(motion.whirl, own.first_moment))
+    moment = algebra.cross(own.first_moment, motion.origin)
+    return force, algebra.add(moment, _rotational(algebra, own.tensor, motion))
+
+
+def _rotational(algebra: Algebra, tensor: Matrix, motion: _Motion) -> Vector:
+    """J alpha + omega x J omega; first component  J11 alpha1 + (J33 - J22) omega2 omega3
+    + J12 (alpha2 - omega1 omega3) + J13 (alpha3 + omega1 omega2) + J23 (omega2^2 - omega3^2),  others cyclically."""
+    p, w = motion.products, motion.whirl
+    found = []
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        weights = (tensor[i][i], tensor[k][k] - tensor[j][j], tensor[i][j], tensor[i][k], tensor[j][k])
+        factors = (motion.angular[i], p[j][k], -w[k][i], w[j][i], p[j][j] - p[k][k])
+        found.append(algebra.dot(weights, factors))
+    return (found[0], found[1], found[2])

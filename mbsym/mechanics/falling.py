@@ -1,0 +1,128 @@
+"""Frames that fall freely, or nearly so: a frame's acceleration and the gravity at its origin as one vector.
+
+A frame O1 whose motion is prescribed (an orbit) carries bodies in a Newtonian field.  Every mass m it carries feels the
+inertia force -m a_O1 and the leading term of gravity, m g with g = -nu/R^2 e; both are of the order m nu/R^2 and
+cancel on a circular orbit, while what remains, the tide, is smaller by (size of the bodies)/R.  Evaluated term by term
+in floating point the remainder keeps that many digits less: with 2 m of structure on an orbit of 7000 km six and a
+half are gone.  So the two are joined where they can be joined exactly,
+
+    w = a_O1 - g    (in the axes of O1, simplified in the ring, where sin^2 + cos^2 = 1),
+
+and take the place of the frame's acceleration; gravity keeps only what varies from mass to mass.  With numbers for the
+parameters w is a constant, computed exactly, and zero where nu = omega0^2 R^3.
+
+For the energy the same: with T_rel the kinetic energy of the motion relative to axes that move with O1 and do not turn,
+and S the first moment of the masses about O1,
+
+    T = T_rel + V_O1.S' + m V_O1^2/2,      V_O1.S' = d/dt(V_O1.S) - a_O1.S,
+
+so L = T_rel - w.S + U_rest up to a total derivative and a function of time alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from mbsym.algebra.base import Scalar, Vector
+from mbsym.expressions.tree import names
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.loads.orbit import outward
+from mbsym.mechanics.newton_euler import origin_acceleration
+from mbsym.mechanics.variables import expressions, ring_environment
+from mbsym.model.system import INERTIAL, NewtonianGravity, System, acceleration_name, velocity_name
+
+
+def falling_frames(system: System) -> dict[str, tuple[NewtonianGravity, ...]]:
+    """The frames O1 whose motion, and that of the centres, no coordinate changes, with the fields about them."""
+    found: dict[str, tuple[NewtonianGravity, ...]] = {}
+    for load in system.loads:
+        if isinstance(load, NewtonianGravity) and load.about != load.centre:
+            found[load.about] = (*found.get(load.about, ()), load)
+    return {
+        about: loads
+        for about, loads in found.items()
+        if about != INERTIAL
+        and not any(other in system.path(about)[:-1] for other in found)
+        and _prescribed(system, about)
+        and all(about not in system.path(load.centre) and _prescribed(system, load.centre) for load in loads)
+    }
+
+
+def _prescribed(system: System, frame: str) -> bool:
+    moving = {*system.coordinates, *system.velocities}
+    path = [system.body(name) for name in system.path(frame) if name != INERTIAL]
+    return not any(moving & names(x) for body in path for x in expressions((body.rotation, body.connection_point)))
+
+
+def felt_acceleration(scene: Scene, about: str, loads: tuple[NewtonianGravity, ...]) -> Vector:
+    """w = a_O1 - g of one falling frame, in its axes; uniform gravity is not counted."""
+    system, ring = scene.system, scene.ring
+    path = tuple(system.body(name) for name in system.path(about) if name != INERTIAL)
+    environment = ring_environment(system, ring)
+    for name in system.coordinates:
+        environment[velocity_name(name)] = environment[acceleration_name(name)] = ring.zero
+    carriers = {name for load in loads for name in system.path(load.centre) if name != INERTIAL}
+    others = tuple(body for body in system.bodies if body.name in carriers and body not in path)
+    small = Scene(replace(system, bodies=(*path, *others), loads=()), ring, environment, ring)
+    felt = origin_acceleration(small, about)
+    for load in loads:
+        p = outward(load, small)
+        distance = ring.square_root(ring.dot(p, p))
+        pull = ring.reduce(small.lower(load.constant) * ring.reciprocal(distance) ** 3)
+        felt = ring.add(felt, ring.scale(pull, p))
+    reduced = [ring.reduce(x) for x in felt]
+    return (scene.carry(reduced[0]), scene.carry(reduced[1]), scene.carry(reduced[2]))
+
+
+def felt_accelerations(scene: Scene) -> dict[str, Vector]:
+    """w of every falling frame."""
+    return {about: felt_acceleration(scene, about, loads) for about, loads in falling_frames(scene.system).items()}
+
+
+def falling_scene(scene: Scene) -> Scene:
+    """The same system seen from its falling frames: their origins are at rest and their weight is gone."""
+    frames = frozenset(falling_frames(scene.system))
+    return Scene(scene.system, scene.algebra, scene.environment, scene.ring, scene.frozen, falling=frames)
+
+
+def relative_lagrangian(scene: Scene) -> tuple[Scalar, Scalar]:
+    """(T_rel, U_rest - w.S): a Lagrangian of the same equations of motion, split into its two parts.
+
+    T_rel + U is T + U where nothing falls.
+    """
+    felt = felt_accelerations(scene)
+    if not felt:
+        return kinetic_energy(scene), force_function(scene)
+    relative, algebra = falling_scene(scene), scene.algebra
+    force = force_function(relative)
+    for about, w in felt.items():
+        force = force - _work(relative, about, w)
+    return kinetic_energy(relative), algebra.reduce(force)
+
+
+def _work(scene: Scene, about: str, w: Vector) -> Scalar:
+    """w.S = sum of m w.c over the bodies that a frame carries, c from its origin; w turns outwards with the bodies."""
+    algebra = scene.algebra
+    field: dict[str, Vector] = {about: w}
+    height: dict[str, Scalar] = {about: algebra.zero}
+    total = algebra.zero
+    for name, motion in scene.motions.items():
+        parent = motion.body.attached_to
+        if name != about:
+            if parent not in field:
+                continue
+            field[name] = scene.to_axes(field[parent], parent, name)
+            height[name] = algebra.reduce(height[parent] + algebra.dot(field[parent], motion.offset))
+        if not algebra.vanishes(motion.mass):
+            rise = height[name] + algebra.dot(field[name], motion.mass_centre)
+            total = total + algebra.times(motion.mass, rise)
+    return algebra.reduce(total)
+
+
+def overrides(scene: Scene, base: Vector) -> Mapping[str, Vector]:
+    """Accelerations of the origins of falling frames, less the gravity there; ``base`` is that of the inertial frame."""
+    felt = felt_accelerations(scene)
+    return {name: scene.algebra.add(w, scene.to_axes(base, INERTIAL, name)) for name, w in felt.items()}

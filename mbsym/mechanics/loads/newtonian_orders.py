@@ -1,0 +1,314 @@
+"""The Newtonian field of a centre beyond the second order: orders 3 and 4, and the exact distances.
+
+A body has the mass m, the mass centre at r = R e + c from the attracting centre (e the unit vector to the point O1 of
+expansion, c from O1) and the inertia Theta about its mass centre.
+
+* **exact**: the exact distance of every mass centre, with MacCullagh's formula for the extent of the body,
+
+      U = nu m/|r| + nu/(2 |r|^3) (tr Theta - 3 r.Theta r/|r|^2),
+
+  exact for point masses; third and higher central moments, which a description does not contain, are dropped.
+* **order N**: the Taylor polynomial of this in (size)/R, c and the extent of the bodies counted alike (so Theta counts
+  twice), up to the total degree N.  With x = e.c, y = c.c and the polynomials P_k(x, y) = |c|^k Legendre_k(x/|c|),
+
+      degree k of the first term  (-1)^k nu m P_k / R^(k+1)
+      degree 2 of the second      nu/(2 R^3) [ tr Theta - 3 e.Theta e ]
+      degree 3                    nu/(2 R^4) [ -3 x tr Theta + 15 x e.Theta e - 6 e.Theta c ]
+      degree 4                    nu/(2 R^5) [ (15 x^2 - 3 y)/2 tr Theta - (105 x^2 - 15 y)/2 e.Theta e
+                                               + 30 x e.Theta c - 3 c.Theta c ].
+
+The wrenches are stated independently, from the force and torque of the exact field,
+
+    F = -nu m r/|r|^3 - nu (3/2) [ tr Theta r + 2 Theta r ]/|r|^5 + nu (15/2) (r.Theta r) r/|r|^7,
+    L = 3 nu r x Theta r/|r|^5,
+
+expanded through |e + s c|^-n = sum (-1)^k s^k C_k with the Gegenbauer polynomials C_k of index n/2, s = 1/R.
+
+Sources: Kellogg, Foundations of Potential Theory, ch. V (Legendre's expansion, MacCullagh's formula); Abramowitz and
+Stegun 22.7.3 and 22.7.10 (the recurrences of the Gegenbauer and Legendre polynomials).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.mechanics.kinematics import BodyMotion, Scene
+from mbsym.mechanics.loads.interface import Action, Wrench
+from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radius_vectors, trace
+from mbsym.model.system import EXACT, NewtonianGravity
+
+
+def order_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
+    """U of the orders 3 and 4 and of the exact field, summed over the bodies."""
+    if load.order == EXACT:
+        return _exact_force_function(load, scene)
+    algebra, order = scene.algebra, int(load.order)
+    orbit = Orbit(load, scene)
+    by_degree = [algebra.zero] * (order + 1)
+    for motion, e, c in orbit.bodies():
+        x, y = algebra.dot(e, c), algebra.dot(c, c)
+        for degree, polynomial in enumerate(legendre(algebra, x, y, order)):
+            sign = algebra.number((-1) ** degree)
+            by_degree[degree] = by_degree[degree] + algebra.times(sign, algebra.times(motion.mass, polynomial))
+        for degree, value in _spread(scene, motion, e, c, x, y, order).items():
+            by_degree[degree] = by_degree[degree] + value
+    total, factor = algebra.zero, orbit.first
+    if orbit.falling:
+        by_degree[:2] = [algebra.zero, algebra.zero]
+    for value in by_degree:
+        total = total + algebra.times(factor, algebra.reduce(value))
+        factor = algebra.times(factor, orbit.inverse)
+    return algebra.reduce(total)
+
+
+def legendre(algebra: Algebra, x: Scalar, y: Scalar, order: int) -> list[Scalar]:
+    """P_0 to P_order, homogeneous: k P_k = (2k - 1) x P_(k-1) - (k - 1) y P_(k-2)."""
+    found = [algebra.one, x]
+    for k in range(2, order + 1):
+        ahead = algebra.times(algebra.number(Fraction(2 * k - 1, k)), algebra.times(x, found[-1]))
+        behind = algebra.times(algebra.number(Fraction(k - 1, k)), algebra.times(y, found[-2]))
+        found.append(algebra.reduce(ahead - behind))
+    return found
+
+
+def _spread(
+    scene: Scene, motion: BodyMotion, e: Vector, c: Vector, x: Scalar, y: Scalar, order: int
+) -> dict[int, Scalar]:
+    """MacCullagh's term by its degree, without nu/R^(degree + 1)."""
+    tensor = central_inertia(scene, motion)
+    if tensor is None:
+        return {}
+    algebra = scene.algebra
+    turned, t = algebra.apply(tensor, e), trace(tensor)
+    ee, ec = algebra.dot(e, turned), algebra.dot(c, turned)
+
+    def sum_of(*terms: tuple[Fraction | int, Scalar, Scalar]) -> Scalar:
+        total = algebra.zero
+        for number, first, second in terms:
+            total = total + algebra.times(algebra.number(number), algebra.times(first, second))
+        return algebra.reduce(total)
+
+    one, half = algebra.one, Fraction(1, 2)
+    found = {2: sum_of((half, t, one), (-3 * half, ee, one))}
+    if order >= 3:
+        found[3] = sum_of((-3 * half, x, t), (15 * half, x, ee), (-3, ec, one))
+    if order >= 4:
+        cc, xx = algebra.dot(c, algebra.apply(tensor, c)), algebra.times(x, x)
+        pair = sum_of((15 * half, xx, one), (-3 * half, y, one))
+        quartet = sum_of((105 * half, xx, one), (-15 * half, y, one))
+        found[4] = sum_of((half, pair, t), (-half, quartet, ee), (15, x, ec), (-3 * half, cc, one))
+    return found
+
+
+# --- wrenches ---
+
+
+def order_action(load: NewtonianGravity, scene: Scene) -> Action:
+    """Forces at the mass centres and torques, of the orders 3 and 4 and of the exact field.
+
+    Where O1 moves and the bodies stay, p = R e and c change oppositely.  In the exact field this changes nothing,
+    degree by degree: dU_k/dp = dU_(k+1)/dc.  So of the truncated field there is left on O1 the force of the next
+    degree, sum of dU_(N+1)/dc.
+    """
+    if load.order == EXACT:
+        return _exact_action(load, scene)
+    algebra, order = scene.algebra, int(load.order)
+    orbit = Orbit(load, scene)
+    factors = [orbit.first]  # nu/R, nu/R^2, ...
+    for _ in range(order + 1):
+        factors.append(algebra.times(factors[-1], orbit.inverse))
+    expansions = [(motion, _Expansion(scene, motion, e, c, order)) for motion, e, c in orbit.bodies()]
+    wrenches = []
+    for motion, expansion in expansions:
+        force, torque = algebra.zero_vector, algebra.zero_vector
+        for degree in range(1 if orbit.falling else 0, order):
+            force = algebra.add(force, algebra.scale(factors[degree + 1], expansion.force(degree)))
+        if expansion.tensor is not None:
+            for degree in range(2, order + 1):
+                torque = algebra.add(torque, algebra.scale(factors[degree], expansion.torque(degree)))
+        moment = algebra.add(algebra.cross(motion.mass_centre, force), torque)
+        wrenches.append(Wrench(motion.body.name, force, moment))
+
+    def on_the_expansion_point() -> Wrench:
+        left = algebra.zero_vector
+        for motion, expansion in expansions:
+            left = algebra.add(left, scene.to_axes(expansion.force(order), motion.body.name, load.about))
+        return Wrench(load.about, algebra.scale(factors[order + 1], left), algebra.zero_vector)
+
+    return completed(load, scene, wrenches, on_the_expansion_point)
+
+
+class _Expansion:
+    """Forces and torques on one body by their degree, without nu and powers of R."""
+
+    def __init__(self, scene: Scene, motion: BodyMotion, e: Vector, c: Vector, order: int) -> None:
+        algebra = self.algebra = scene.algebra
+        self.mass, self.e, self.c = motion.mass, e, c
+        x, y = algebra.dot(e, c), algebra.dot(c, c)
+        self.third = gegenbauer(algebra, x, y, 3, order)
+        self.tensor = central_inertia(scene, motion)
+        if self.tensor is not None:
+            self.fifth = gegenbauer(algebra, x, y, 5, order)
+            self.seventh = gegenbauer(algebra, x, y, 7, order)
+            self.turned = (algebra.apply(self.tensor, e), algebra.apply(self.tensor, c))
+            twice = algebra.times(algebra.number(2), algebra.dot(e, self.turned[1]))
+            self.quadratic = (algebra.dot(e, self.turned[0]), twice, algebra.dot(c, self.turned[1]))
+            self.trace = trace(self.tensor)
+
+    def _along(self, series: list[Scalar], k: int, pair: tuple[Vector, Vector]) -> Vector:
+        """The coefficient of s^k in series (first + s second)."""
+        algebra = self.algebra
+        found = algebra.scale(series[k], pair[0])
+        return algebra.add(found, algebra.scale(series[k - 1], pair[1])) if k else found
+
+    def force(self, degree: int) -> Vector:
+        """The coefficient of nu/R^(degree + 2) in the force."""
+        algebra = self.algebra
+        r = (self.e, self.c)
+        total = algebra.scale(-self.mass, self._along(self.third, degree, r))
+        if self.tensor is not None and degree >= 2:
+            k = degree - 2
+            spread = algebra.scale(self.trace, self._along(self.fifth, k, r))
+            spread = algebra.add(spread, algebra.scale(algebra.number(2), self._along(self.fifth, k, self.turned)))
+            total = algebra.subtract(total, algebra.scale(algebra.number(Fraction(3, 2)), spread))
+            central = [self._product(self.seventh, i) for i in range(k + 1)]
+            along = self._along(central, k, r)
+            total = algebra.add(total, algebra.scale(algebra.number(Fraction(15, 2)), along))
+        return (algebra.reduce(total[0]), algebra.reduce(total[1]), algebra.reduce(total[2]))
+
+    def _product(self, series: list[Scalar], k: int) -> Scalar:
+        """The coefficient of s^k in series (e + s c).Theta (e + s c)."""
+        total = self.algebra.zero
+        for i, value in enumerate(self.quadratic[: k + 1]):
+            total = total + self.algebra.times(series[k - i], value)
+        return self.algebra.reduce(total)
+
+    def torque(self, degree: int) -> Vector:
+        """The coefficient of nu/R^(degree + 1) in the torque."""
+        algebra, k = self.algebra, degree - 2
+        total = algebra.scale(self.fifth[k], algebra.cross(self.e, self.turned[0]))
+        if k >= 1:
+            mixed = algebra.add(algebra.cross(self.e, self.turned[1]), algebra.cross(self.c, self.turned[0]))
+            total = algebra.add(total, algebra.scale(self.fifth[k - 1], mixed))
+        if k >= 2:
+            total = algebra.add(total, algebra.scale(self.fifth[k - 2], algebra.cross(self.c, self.turned[1])))
+        return algebra.scale(algebra.number(3), total)
+
+
+def gegenbauer(algebra: Algebra, x: Scalar, y: Scalar, exponent: int, order: int) -> list[Scalar]:
+    """The coefficients q_0 to q_order of (1 + 2 s x + s^2 y)^(-exponent/2) = |e + s c|^-exponent in powers of s:
+
+    k q_k = -(2k + exponent - 2) x q_(k-1) - (k + exponent - 2) y q_(k-2).
+    """
+    found = [algebra.one, algebra.times(algebra.number(-exponent), x)]
+    for k in range(2, order + 1):
+        ahead = algebra.times(algebra.number(Fraction(2 * k + exponent - 2, k)), algebra.times(x, found[-1]))
+        behind = algebra.times(algebra.number(Fraction(k + exponent - 2, k)), algebra.times(y, found[-2]))
+        found.append(algebra.reduce(-ahead - behind))
+    return found
+
+
+# --- exact ---
+
+
+def _inverse_distance(algebra: Algebra, r: Vector) -> tuple[Scalar, Scalar]:
+    """1/|r| and 1/|r|^2."""
+    square = algebra.dot(r, r)
+    inverse = algebra.reciprocal(square)
+    return algebra.reduce(algebra.times(algebra.square_root(square), inverse)), inverse
+
+
+class _Falling:
+    """The exact monopole field of unit mass beyond its value at O1, without differences of nearly equal numbers.
+
+    With x = e.c, y = c.c, u = 2 x/R + y/R^2 and s = sqrt(1 + u) = |r|/R (Encke's method; Battin, An Introduction to the
+    Mathematics and Methods of Astrodynamics, 1987, section 9.4):
+
+        force   -nu/R^3 [ c + f (R e + c) ],        f = s^-3 - 1 = -u (1 + s + s^2)/(s^3 (1 + s))
+        U        nu/R [ 1/s - 1 + x/R ]  =  nu/(2 R) [ u^2 (s + 2)/(s (1 + s)^2) - y/R^2 ]
+    """
+
+    def __init__(self, orbit: Orbit, e: Vector, c: Vector) -> None:
+        algebra = self.algebra = orbit.scene.algebra
+        self.orbit, self.e, self.c = orbit, e, c
+        scaled = algebra.scale(orbit.inverse, c)
+        self.y = algebra.dot(scaled, scaled)
+        self.u = algebra.times(algebra.number(2), algebra.dot(e, scaled)) + self.y
+        self.s = algebra.square_root(algebra.reduce(algebra.one + self.u))
+
+    def force(self) -> Vector:
+        algebra, s = self.algebra, self.s
+        square = algebra.times(s, s)
+        top = algebra.times(self.u, algebra.one + s + square)
+        bottom = algebra.times(algebra.times(square, s), algebra.one + s)
+        f = -algebra.times(top, algebra.reciprocal(bottom))
+        along = algebra.scale(algebra.times(f, self.orbit.square), self.e)
+        across = algebra.scale(algebra.times(algebra.one + f, self.orbit.cube), self.c)
+        return algebra.scale(algebra.number(-1), algebra.add(along, across))
+
+    def potential(self) -> Scalar:
+        algebra, s = self.algebra, self.s
+        more = algebra.one + s
+        top = algebra.times(algebra.times(self.u, self.u), s + algebra.number(2))
+        quotient = algebra.times(top, algebra.reciprocal(algebra.times(s, algebra.times(more, more))))
+        half = algebra.times(algebra.number(Fraction(1, 2)), self.orbit.first)
+        return algebra.times(half, quotient - self.y)
+
+
+def _fallen(load: NewtonianGravity, scene: Scene) -> dict[str, _Falling]:
+    """The field of every body that a falling frame carries; nothing where the frame does not fall."""
+    if load.about not in scene.falling:
+        return {}
+    orbit = Orbit(load, scene)
+    return {motion.body.name: _Falling(orbit, e, c) for motion, e, c in orbit.bodies()}
+
+
+def _exact_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
+    """U = nu [ m/|r| + (tr Theta - 3 r.Theta r/|r|^2)/(2 |r|^3) ], summed over the bodies."""
+    algebra = scene.algebra
+    total = tides = algebra.zero
+    fallen = _fallen(load, scene)
+    for motion, r in radius_vectors(load, scene):
+        inverse, square = _inverse_distance(algebra, r)
+        value = algebra.zero if fallen else algebra.times(motion.mass, inverse)
+        if fallen:
+            tides = tides + algebra.times(motion.mass, fallen[motion.body.name].potential())
+        tensor = central_inertia(scene, motion)
+        if tensor is not None:
+            turned = algebra.dot(r, algebra.apply(tensor, r))
+            excess = trace(tensor) - algebra.times(algebra.number(3), algebra.reduce(algebra.times(square, turned)))
+            cube = algebra.reduce(algebra.times(inverse, square))
+            value = value + algebra.times(algebra.number(Fraction(1, 2)), algebra.times(cube, algebra.reduce(excess)))
+        total = total + value
+    return algebra.reduce(algebra.times(scene.lower(load.constant), algebra.reduce(total)) + tides)
+
+
+def _exact_action(load: NewtonianGravity, scene: Scene) -> Action:
+    """F and L of the exact field, on every body."""
+    algebra = scene.algebra
+    constant = scene.lower(load.constant)
+    fallen = _fallen(load, scene)
+    wrenches = []
+    for motion, r in radius_vectors(load, scene):
+        inverse, square = _inverse_distance(algebra, r)
+        cube = algebra.times(constant, algebra.reduce(algebra.times(inverse, square)))
+        force = algebra.scale(-algebra.times(motion.mass, cube), r)
+        if fallen:
+            force = algebra.scale(motion.mass, fallen[motion.body.name].force())
+        torque = algebra.zero_vector
+        tensor = central_inertia(scene, motion)
+        if tensor is not None:
+            fifth = algebra.reduce(algebra.times(cube, square))
+            turned = algebra.apply(tensor, r)
+            central = algebra.reduce(algebra.times(square, algebra.dot(r, turned)))
+            central = algebra.times(algebra.number(5), central) - trace(tensor)
+            spread = algebra.scale(central, r)
+            spread = algebra.subtract(spread, algebra.scale(algebra.number(2), turned))
+            three_halves = algebra.times(algebra.number(Fraction(3, 2)), fifth)
+            force = algebra.add(force, algebra.scale(three_halves, spread))
+            torque = algebra.scale(algebra.times(algebra.number(3), fifth), algebra.cross(r, turned))
+        force = (algebra.reduce(force[0]), algebra.reduce(force[1]), algebra.reduce(force[2]))
+        moment = algebra.add(algebra.cross(motion.mass_centre, force), torque)
+        wrenches.append(Wrench(motion.body.name, force, moment))
+    return completed(load, scene, wrenches)

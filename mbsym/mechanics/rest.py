@@ -1,0 +1,136 @@
+"""A system at numbers, and the equations of its steady motions.
+
+At a relative equilibrium every coordinate is constant, except those to which the description gives a rate, which turn
+steadily; the prescribed quantities go on running.  With M(q) q'' = f(q, q', t) it is a solution of f(q, rates, t) = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import (
+    ZERO,
+    Expression,
+    names,
+    number,
+    substitute,
+)
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.variables import expressions, ring_environment, ring_of
+from mbsym.model.substitution import put
+from mbsym.model.system import Load, PointForce, System, Torque, acceleration_name, rational, velocity_name
+
+
+def given_values(system: System, overrides: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The numbers of a description's parameters, replaced by ``overrides``; relations are not used here."""
+    given = {p.name: value for p in system.parameters if (value := rational(p.value)) is not None}
+    return given | dict(overrides)
+
+
+def missing_values(system: System, values: Mapping[str, Fraction]) -> tuple[str, ...]:
+    """The parameters whose numbers the steady motions need, but which have none; in the order of declaration."""
+    dependent = {item.name: item.value for item in system.relations}
+    rates = tuple(entry.rate for entry in system.motion)
+    pending = [name for x in expressions((system.bodies, system.loads, system.prescribed, rates)) for name in names(x)]
+    needed: set[str] = set()
+    while pending:
+        name = pending.pop()
+        if name not in needed:
+            needed.add(name)
+            pending += names(dependent[name]) if name in dependent else ()
+    return tuple(x for x in system.parameter_names if x in needed and x not in values and x not in dependent)
+
+
+def at_numbers(system: System, values: Mapping[str, Fraction]) -> System:
+    """The system with numbers in place of its parameters; a relation decides about its own left side.
+
+    Of the unperturbed motion only the rates stay.  Raises KeyError where a number is missing.
+    """
+    dependent = {item.name: item.value for item in system.relations}
+    numbers: dict[str, Expression] = {
+        name: number(values[name]) for name in system.parameter_names if name in values and name not in dependent
+    }
+    pending = dict(dependent)
+    while pending:
+        ready = [name for name, value in pending.items() if not names(value) & pending.keys()]
+        if not ready:
+            raise KeyError(", ".join(pending))
+        for name in ready:
+            numbers[name] = _folded(substitute(pending.pop(name), numbers))
+    turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
+    bare = replace(system, parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
+    found: System = put(replace(bare, time_scale=None), numbers)
+    return replace(found, loads=tuple(load for load in found.loads if not _is_nothing(load)))
+
+
+def _is_nothing(load: Load) -> bool:
+    """A force or torque that is zero: left in, it would only cast doubt on the energy integral."""
+    return isinstance(load, (PointForce, Torque)) and all(rational(x) == 0 for x in load.components)
+
+
+def _folded(expression: Expression) -> Expression:
+    """A rational number where the expression is one."""
+    value = rational(expression)
+    return expression if value is None else number(value)
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A system at numbers, in its ring: f(q, q', t) and M(q), and f on the steady motions.
+
+    ``turning`` are the coordinates that have a rate; ``rates`` the velocities of all.
+    """
+
+    system: System
+    ring: Ring
+    scene: Scene
+    forcing: tuple[Polynomial, ...]
+    at_rest: tuple[Polynomial, ...]
+    rates: Mapping[int, Polynomial]
+    turning: tuple[str, ...]
+
+    @property
+    def constant(self) -> tuple[str, ...]:
+        return tuple(name for name in self.system.coordinates if name not in self.turning)
+
+    def mass_matrix(self) -> list[list[Polynomial]]:
+        """M (n x n): Newton-Euler residuals at q' = 0 and unit accelerations, without loads."""
+        ring, system = self.ring, self.system
+        coordinates = system.coordinates
+        columns = []
+        for moving in coordinates:
+            environment = ring_environment(system, ring)
+            for name in coordinates:
+                environment[velocity_name(name)] = ring.zero
+                environment[acceleration_name(name)] = ring.one if name == moving else ring.zero
+            column = residuals(Scene(system, ring, environment, ring, frozen=True), loads=False)
+            columns.append([column[name] for name in coordinates])
+        n = range(len(coordinates))
+        return [[columns[j][i] for j in n] for i in n]
+
+
+def rest(system: System) -> Rest:
+    """The equations of the steady motions of a system without parameters (``at_numbers``).
+
+    Raises NoClosedForm or SingularPoint.
+    """
+    ring = ring_of(system)
+    environment = ring_environment(system, ring)
+    for name in system.coordinates:
+        environment[acceleration_name(name)] = ring.zero
+    scene = Scene(system, ring, environment, ring)
+    found = residuals(scene)
+    rates = {ring.index("velocity", name): ring.zero for name in system.coordinates}
+    turning = []
+    for entry in system.motion:
+        rate = scene.lower(entry.rate)
+        rates[ring.index("velocity", entry.coordinate)] = rate
+        if not rate.is_zero():
+            turning.append(entry.coordinate)
+    forcing = tuple(-found[name] for name in system.coordinates)
+    at_rest = tuple(ring.substitute(x, dict(rates)) for x in forcing)
+    return Rest(system, ring, scene, forcing, at_rest, rates, tuple(turning))

@@ -1,0 +1,64 @@
+"""Other rotation sequences of a spinning body, in which the same steady motion may have a steady first approximation.
+
+A body that turns steadily about one axis of its joint, its other angles being zero, stands the same way whatever the
+order of the turns.  The deviations do not: small angles that follow the spin turn with it, those that come before it
+stay behind, and with a body that is not symmetric the coefficients then vary with time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+from mbsym.expressions.tree import ZERO, names
+from mbsym.mechanics.motion import motion_values
+from mbsym.mechanics.symmetry import angle_name
+from mbsym.mechanics.variables import expressions
+from mbsym.model.system import Body, Rotation, System, velocity_name
+
+
+@dataclass(frozen=True)
+class Reordered:
+    """``system`` with the turns of one body in another order; ``axes`` and ``angles`` are the new sequence."""
+
+    system: System
+    body: str
+    axes: tuple[int, ...]
+    angles: tuple[str, ...]
+
+
+def rotation_orders(system: System) -> Iterator[Reordered]:
+    """The other sequences of every joint that spins about one axis, those first in which the spin comes first.
+
+    The joint's angles must be coordinates that occur nowhere else, at rest at zero but for the one that spins.
+    """
+    for body in system.bodies:
+        spin = _spin(system, body)
+        if spin is None:
+            continue
+        turns = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
+        orders = [order for order in permutations(turns) if order != turns]
+        for order in sorted(orders, key=lambda order: [angle_name(angle) for _, angle in order].index(spin)):
+            axes = tuple(axis for axis, _ in order)
+            turned = replace(body, rotation=Rotation(axes, tuple(angle for _, angle in order)))
+            bodies = tuple(turned if other is body else other for other in system.bodies)
+            angles = tuple(str(angle_name(angle)) for _, angle in order)
+            yield Reordered(replace(system, bodies=bodies), body.name, axes, angles)
+
+
+def _spin(system: System, body: Body) -> str | None:
+    """The only angle of a joint that turns steadily, the others being zero; None where it is not so."""
+    angles = [angle_name(angle) for angle in body.rotation.angles]
+    if len(angles) < 2 or not {*angles} <= {*body.coordinates} or len({*angles}) < len(angles):
+        return None
+    own = {name for name in angles if name is not None}
+    hidden = own | {velocity_name(name) for name in own}
+    elsewhere = [*(other for other in system.bodies if other is not body), *system.loads]
+    place = (body.connection_point, body.mass_centre, body.inertia)
+    if any(hidden & names(x) for part in (*elsewhere, *place) if part is not None for x in expressions(part)):
+        return None
+    motion = motion_values(system)
+    spinning = [name for name in own if motion[name][1] != ZERO]
+    at_zero = all(motion[name][0] == ZERO for name in own if name not in spinning)
+    return spinning[0] if len(spinning) == 1 and at_zero else None

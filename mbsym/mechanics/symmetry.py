@@ -1,0 +1,102 @@
+"""Is a system the same in every direction of space, and is its unperturbed motion a steady spin?
+
+If everything hangs on one body whose three angles alone say how the whole stands in space, and no load knows them, the
+equations of motion do not change when the whole is turned about the fixed point.  A steady spin at the rate omega about
+the first axis of that body, turned in space, is then a motion again; in angles that turn with the spin it moves with
+the frequency omega, so that lambda^2 + omega^2 divides the characteristic determinant of the first approximation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mbsym.expressions.tree import ZERO, Expression, Name, Negative, names
+from mbsym.mechanics.motion import motion_values
+from mbsym.mechanics.variables import expressions
+from mbsym.model.system import (
+    INERTIAL,
+    Body,
+    CoordinateDamper,
+    CoordinateSpring,
+    ForceFunction,
+    GeneralizedForce,
+    Load,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    Rayleigh,
+    System,
+    Torque,
+    velocity_name,
+)
+
+
+@dataclass(frozen=True)
+class Spin:
+    """The steady spin of the angle ``coordinate`` at ``rate``; ``tilts`` are the two angles that follow it."""
+
+    coordinate: str
+    tilts: tuple[str, str]
+    rate: Expression
+
+
+def free_spin(system: System) -> Spin | None:
+    """The spin of a system that is the same in every direction of space, or None where there is none."""
+    roots = [body for body in system.bodies if body.attached_to == INERTIAL]
+    angles = _attitude(roots[0]) if len(roots) == 1 else None
+    if angles is None or not _same_in_every_direction(system, roots[0], angles):
+        return None
+    motion = motion_values(system)
+    first, second, third = angles
+    if motion[first][1] == ZERO or any(motion[name][1] != ZERO for name in (second, third)):
+        return None
+    return Spin(first, (second, third), motion[first][1])
+
+
+def _attitude(body: Body) -> tuple[str, str, str] | None:
+    """The three coordinates that turn a body in space, if its joint is made of them."""
+    axes = body.rotation.axes
+    found = [angle_name(angle) for angle in body.rotation.angles]
+    turns_freely = len(axes) == 3 and axes[0] != axes[1] != axes[2]
+    if not turns_freely or None in found or len(set(found)) != 3 or not {*found} <= {*body.coordinates}:
+        return None
+    return (str(found[0]), str(found[1]), str(found[2]))
+
+
+def angle_name(angle: Expression) -> str | None:
+    """``theta`` for an angle ``theta`` or ``-theta``."""
+    match angle:
+        case Name(name) | Negative(Name(name)):
+            return name
+    return None
+
+
+def _same_in_every_direction(system: System, root: Body, angles: Sequence[str]) -> bool:
+    """Whether the attitude of the root occurs in its rotation alone and no load prefers a direction or a place."""
+    hidden = {*angles, *map(velocity_name, angles)}
+    moving = {*system.coordinates, *(item.name for item in system.prescribed), "t"}
+    place = [root.connection_point, root.relative_velocity]
+    others = [body for body in system.bodies if body is not root]
+    if any(moving & names(x) for x in expressions(tuple(x for x in place if x is not None))):
+        return False
+    if any(hidden & names(x) for part in (*others, *system.loads) for x in expressions(part)):
+        return False
+    return all(_is_internal(load, hidden) for load in system.loads)
+
+
+def _is_internal(load: Load, hidden: set[str]) -> bool:
+    match load:
+        case CoordinateSpring(coordinate) | CoordinateDamper(coordinate):
+            return coordinate not in hidden
+        case PointSpring(first, second) | PointDamper(first, second):
+            return INERTIAL not in (first.body, second.body)
+        case ForceFunction() | Rayleigh():
+            return True
+        case GeneralizedForce(components):
+            return not any(name in hidden for name, _ in components)
+        case PointForce(point, _, axes):
+            return INERTIAL not in (point.body, axes)
+        case Torque(body, _, axes):
+            return INERTIAL not in (body, axes)
+    return False

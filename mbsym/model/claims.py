@@ -1,0 +1,113 @@
+"""Claims: formulas and numbers that somebody printed, each with its place, to be compared with what is derived.
+
+A claim says that a quantity *equals* an expression, at every state or at one given state.  ``CLAIMS`` is the one table
+of the kinds of claim: what each is about, and which keys it takes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import Expression
+
+#: The state of a claim that is about the description's own initial state.
+INITIAL_STATE = "initial"
+
+#: Quantities whose single coefficients may be claimed.
+SUMS = ("kinetic energy", "force function", "potential energy", "lagrangian")
+
+#: What ``of`` names.
+COORDINATE, BODY, EXPRESSION, SUM = "coordinate", "body", "expression", "sum"
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimKind:
+    """``of`` says what the key of that name holds, ``entry`` how many indices are given, ``axes`` what they count.
+
+    ``homogeneous`` claims say that the quantity vanishes or is constant, so that a constant factor is immaterial.
+    """
+
+    meaning: str
+    of: str = ""
+    entry: int = 0
+    axes: bool = False
+    at: bool = False
+    variable: bool = False
+    accelerations: bool = False
+    state: bool = True
+    homogeneous: bool = False
+    inequality: bool = False
+
+
+CLAIMS: dict[str, ClaimKind] = {
+    "kinetic energy": ClaimKind("T"),
+    "force function": ClaimKind("U = -potential energy"),
+    "potential energy": ClaimKind("-U"),
+    "lagrangian": ClaimKind("L = T + U; one that differs by a total time derivative is recognised"),
+    "coefficient": ClaimKind("of one product of velocities in a quantity, or in a coordinate's equation", SUM, at=True),
+    "mass matrix": ClaimKind("an entry of M(q)", entry=2),
+    "equation of motion": ClaimKind(
+        "of a coordinate: an expression that vanishes", COORDINATE, accelerations=True, state=False, homogeneous=True
+    ),
+    **{
+        f"{which} matrix {name}": ClaimKind(f"an entry of {name} {where}", entry=2, state=False)
+        for which, where in (
+            ("linear", "in physical time and declared parameters"),
+            ("subsystem", "in dimensionless time and the description's notation"),
+        )
+        for name in "MDGKN"
+    },
+    "characteristic polynomial": ClaimKind(
+        "of the subsystem with a coordinate, or of the whole system", COORDINATE, variable=True, state=False,
+        homogeneous=True,
+    ),
+    "angular velocity": ClaimKind("of a body, a component in its own axes", BODY, 1, axes=True),
+    "relative angular velocity": ClaimKind("of a body, a component in its own axes", BODY, 1, axes=True),
+    "direction cosine": ClaimKind("an entry of R^jk of a body on the one it is attached to", BODY, 2, axes=True),
+    "position": ClaimKind("of the mass centre of a body, a component in inertial axes", BODY, 1, axes=True),
+    "velocity": ClaimKind("of the mass centre of a body, a component in inertial axes", BODY, 1, axes=True),
+    "first integral": ClaimKind("an expression that is constant on every motion", state=False, homogeneous=True),
+    "condition": ClaimKind("an inequality among the stability conditions", state=False, inequality=True),
+    "value": ClaimKind("of an expression at a state; it may hold accelerations", EXPRESSION, accelerations=True),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Abbreviation:
+    """A publication's own symbol, for use in claims: ``c1 = mA + mB``.  Later ones may use earlier ones."""
+
+    name: str
+    value: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """``kind`` is a key of ``CLAIMS``; ``equals`` what was printed (for a condition: ``equals relation right``).
+
+    ``of`` is the name of a coordinate, body or quantity, ``of_expression`` an expression instead; ``entry`` holds
+    indices counted from 1; ``at`` a product of velocities; ``variable`` the symbol of a characteristic polynomial.
+    ``state`` gives numbers for coordinates, velocities, parameters and t (or they are those of the initial state with
+    ``at_initial``), and then ``printed`` keeps a decimal number as it was printed, with its digits.
+    """
+
+    kind: str
+    equals: Expression
+    of: str = ""
+    of_expression: Expression | None = None
+    entry: tuple[int, ...] = ()
+    at: Expression | None = None
+    variable: str = ""
+    relation: str = ""
+    right: Expression | None = None
+    at_initial: bool = False
+    state: tuple[tuple[str, Expression], ...] = ()
+    printed: str = ""
+    place: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_numerical(self) -> bool:
+        """Whether it is about numbers at one state."""
+        return self.at_initial or bool(self.state)

@@ -1,0 +1,1 @@
+"""Numbers: compiled kernels, integration, and what accuracy costs; everything starts from straight-line programs."""

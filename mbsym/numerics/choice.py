@@ -1,0 +1,126 @@
+"""Which method to integrate with: ``choose`` looks at the system, and measures where that does not settle it.
+
+An explicit method must take steps shorter than about ``STABLE`` / |Re lambda| for every eigenvalue lambda of the
+Jacobian whose motion dies out (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2), however smooth the
+solution is.  Where that bound asks for few steps, the compiled explicit method of high order is taken without further
+ado; where it asks for many, a short stretch is integrated both ways and the quicker one is taken.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT64
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.table import METHODS
+
+#: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
+STABLE = 5.0
+
+#: So many steps of a compiled explicit method are soon done: no need to look for anything better.
+FEW_STEPS = 100_000
+
+#: Steps of the trial of the explicit method, and seconds of the trial of each implicit one.
+TRIAL_STEPS, TRIAL_SECONDS = 2_000, 0.3
+
+#: Preferred explicit methods, and implicit ones to try on stiff systems.
+EXPLICIT, IMPLICIT = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A method and why; ``decay`` is the fastest rate 1/s at which a motion dies out, ``frequency`` the greatest
+
+    angular frequency, both from the Jacobian at the initial state.
+    """
+
+    method: Method
+    why: str
+    decay: float
+    frequency: float
+
+
+def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float, float]:
+    """(max -Re lambda, max |Im lambda|) of the Jacobian's eigenvalues at a state, the initial one by default.
+
+    The Jacobian is formed by central differences, which is close enough here and needs no further code to be compiled.
+    Zeros where it is not finite.
+    """
+    x = np.array([float(x) for x in (dynamics.scenario.state if state is None else state)])
+    n = len(x)
+    step = 1e-6 * (1 + np.abs(x))
+    moved = np.hstack([np.diag(step), -np.diag(step)]) + x[:, None]
+    with np.errstate(all="ignore"):
+        slopes = compiled_kernel(dynamics, "right_hand_side")(np.vstack([np.full(2 * n, t), moved]))
+        matrix = (slopes[:, :n] - slopes[:, n:]) / (2 * step)
+    if not np.all(np.isfinite(matrix)):
+        return 0.0, 0.0
+    found = np.linalg.eigvals(matrix)
+    return max(0.0, float(np.max(-found.real))), float(np.max(np.abs(found.imag)))
+
+
+def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLOAT64) -> Choice:
+    """The method for ``time_`` units of time at a tolerance, by the fastest decay and, if need be, by trials."""
+    explicit = next(METHODS[name] for name in EXPLICIT if name in METHODS)
+    decay, frequency = rates(dynamics)
+    steps = decay * time_ / STABLE
+    if steps <= FEW_STEPS:
+        return Choice(explicit, "explicit, of high order: nothing stiff in the initial state", decay, frequency)
+    if scalar != FLOAT64:
+        return Choice(explicit, f"the implicit methods do not compute in {scalar}", decay, frequency)
+    setting = Setting(tolerance=tolerance)
+    best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
+    first = least
+    for name in IMPLICIT:
+        seconds = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
+        if seconds is not None and seconds < least:
+            best, least = METHODS[name], seconds
+    if best is explicit:
+        why = f"decay at up to {decay:.3g}/s is stiff, yet explicit steps are quicker here (about {first:.2g} s)"
+    else:
+        why = (
+            f"stiff: decay at up to {decay:.3g}/s would ask an explicit method for {steps:.2g} steps "
+            f"(about {first:.2g} s, against {least:.2g} s)"
+        )
+    return Choice(best, why, decay, frequency)
+
+
+def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: float, steps: float) -> float:
+    """Seconds of so many steps, judged by a trial of a few."""
+    started, run = 0.0, None
+    try:
+        run = method.start(dynamics, replace(setting, step_limit=TRIAL_STEPS))
+        started = time.perf_counter()
+        run.advance(time_)
+    except (Breakdown, Unusable):
+        pass
+    if run is None or not run.work.steps:
+        return float("inf")
+    spent = time.perf_counter() - started
+    return spent / run.work.steps * max(steps, run.work.steps)
+
+
+def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -> float | None:
+    """Seconds for the whole time, judged by as much as a short trial gets done; None where it fails."""
+    try:
+        run = method.start(dynamics, replace(setting, step_limit=50_000))
+        started = time.perf_counter()
+        reached = time_ / 4096
+        while time.perf_counter() - started < TRIAL_SECONDS:
+            run.advance(reached)
+            if reached >= time_:
+                break
+            reached = min(2 * reached, time_)
+    except Unusable:
+        return None
+    except Breakdown as found:
+        if found.kind != STEP_LIMIT or found.time <= 0:
+            return None
+        reached = found.time
+    return (time.perf_counter() - started) * time_ / reached

@@ -1,0 +1,254 @@
+"""How many digits a quantity keeps: compiled kernels against rigorous balls.
+
+The true value at an exact state comes from the same formulas over ``arb`` balls, with growing precision until the balls
+are tight.  Three numbers are told apart for an arithmetic with unit roundoff u:
+
+digits       -log10 of the relative error at the state that is meant, whose inputs had to be rounded first
+formula      the same at the rounded state itself: what the formula and its arithmetic cost
+condition    max_i sum_j |df_i/dx_j x_j| / max_i |f_i|, over the parameters, coordinates and velocities: an input known
+             to a relative error u gives a result known to condition * u, whatever the formula (Higham, section 1.6)
+
+so a loss of log10(condition) digits is in the question, and only what goes beyond it is in the formula.
+Errors are norm-wise, max |error_i| / max |f_i| (``digits``), and for the worst entry of its own (``worst``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite, log10
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.derivative import gradient, jacobian
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.algebra.stable import stabilised
+from mbsym.mechanics.falling import relative_lagrangian
+from mbsym.mechanics.forward_dynamics import forward_dynamics
+from mbsym.mechanics.programs import coasting_scene, programs
+from mbsym.mechanics.variables import program_environment
+from mbsym.model.system import System
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import bound, substituted
+
+#: Digits of a number in each arithmetic, -log10 of its unit roundoff.
+FULL = {FLOAT32: 7.22, FLOAT64: 15.95}
+
+#: A ball is tight at this relative radius; more bits than the last entry are never tried.
+TIGHT = 1e-30
+PRECISIONS = (256, 512, 1024, 2048)
+
+#: A loss beyond log10(condition) is laid to the formula if it exceeds so many digits.
+SLACK = 1.5
+
+#: Fewer digits than this are no result.
+FEW = 3.0
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity as one program over parameters, prescribed quantities, time and state; ``size`` entries."""
+
+    name: str
+    code: Code
+
+    @property
+    def size(self) -> int:
+        return len(self.code.outputs)
+
+
+@dataclass(frozen=True)
+class Digits:
+    """What was found for one quantity in one state.
+
+    ``digits`` and ``worst`` by the arithmetic's name; ``formula`` and ``condition`` as above, ``formula`` in float64.
+    ``bits`` is the precision at which the balls were tight, 0 if they never were: then nothing else is known.
+    ``norm`` is max |f_i|.
+    """
+
+    digits: Mapping[str, float]
+    worst: Mapping[str, float]
+    formula: float
+    condition: float
+    bits: int
+    norm: float
+
+    @property
+    def verdict(self) -> str:
+        """full, ill-conditioned, formula or undecided; see the module's head."""
+        if not self.bits:
+            return "undecided"
+        lost = FULL[FLOAT64] - self.formula
+        if lost > SLACK + max(0.0, log10(self.condition) if 0 < self.condition < inf else inf):
+            return "formula"
+        if FULL[FLOAT64] - self.digits[FLOAT64] > SLACK:
+            return "ill-conditioned"
+        return "full"
+
+
+def quantities(system: System, ring: Ring, with_jacobian: bool = True) -> tuple[Quantity, ...]:
+    """Mass matrix, forcing, accelerations, pivots, energy and the Jacobian of the accelerations, over all inputs."""
+    found = programs(system, ring)
+    names = input_names(system)
+    made = [("mass matrix", found.program, [x for row in found.mass_matrix for x in row])]
+    made.append(("forcing", found.program, list(found.forcing)))
+    solved = forward_dynamics(system, ring)
+    made.append(("accelerations", solved.program, list(solved.accelerations)))
+    made.append(("pivots", solved.program, list(solved.pivots)))
+    program = Program()
+    environment = program_environment(system, program)
+    kinetic, force = relative_lagrangian(coasting_scene(system, ring, program, environment))
+    total = -(kinetic + force)
+    velocities = [environment[name] for name in system.velocities]
+    for velocity, momentum in zip(velocities, gradient(program, kinetic + force, velocities), strict=True):
+        total = total + program.product(velocity, momentum)
+    made.append(("energy", program, [total]))
+    if with_jacobian:
+        states = [solved.environment[name] for name in (*system.coordinates, *system.velocities)]
+        rows = jacobian(solved.program, solved.accelerations, states)
+        made.append(("Jacobian", solved.program, [x for row in rows for x in row]))
+    return tuple(Quantity(name, Code(program, names, tuple(nodes))) for name, program, nodes in made)
+
+
+def input_names(system: System) -> tuple[str, ...]:
+    """The inputs of all quantities, in this order."""
+    driven = [item.name for item in system.prescribed]
+    return (*system.parameter_names, "pi", *driven, "t", *system.coordinates, *system.velocities)
+
+
+class Truth:
+    """Rigorous values of quantities, and their condition."""
+
+    def __init__(self, system: System, found: Sequence[Quantity]) -> None:
+        self.system = system
+        self.functions = {q.name: precise(q.code, PRECISIONS[-1]) for q in found}
+        self.varied = [
+            place
+            for place, name in enumerate(input_names(system))
+            if name in {*system.parameter_names, *system.coordinates, *system.velocities}
+        ]
+
+    def inputs(self, scenario: Scenario, time: Fraction, state: Sequence[Fraction]) -> list[arb]:
+        """Balls at the working precision."""
+        values = [_ball(scenario.parameters[name]) for name in self.system.parameter_names]
+        values.append(arb.pi())
+        values += [_ball(start + rate * time) for start, rate in (scenario.prescribed[p.name] for p in self._driven)]
+        return [*values, _ball(time), *(_ball(x) for x in state)]
+
+    @property
+    def _driven(self) -> tuple[Any, ...]:
+        return self.system.prescribed
+
+    def value(self, name: str, scenario: Scenario, time: Fraction, state: Sequence[Fraction]) -> tuple[list[arb], int]:
+        """(balls, bits); bits is 0 where they are not tight at the largest precision."""
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                balls = self.functions[name](self.inputs(scenario, time, state))
+                if _tight(balls):
+                    return balls, bits
+        return balls, 0
+
+    def condition(self, name: str, scenario: Scenario, time: Fraction, state: Sequence[Fraction]) -> float:
+        """By differences in 512 bits, which are derivatives for all that matters here."""
+        with ctx.workprec(512):
+            inputs = self.inputs(scenario, time, state)
+            base = self.functions[name](inputs)
+            sums = [arb(0)] * len(base)
+            tiny = arb(2) ** -200
+            for place in self.varied:
+                if not inputs[place].is_zero():
+                    moved = list(inputs)
+                    moved[place] = inputs[place] * (1 + tiny)
+                    values = self.functions[name](moved)
+                    sums = [s + abs(a - b) for s, a, b in zip(sums, values, base, strict=True)]
+            norm = max((abs(float(x.mid())) for x in base), default=0.0)
+            largest = max((float((s / tiny).mid()) for s in sums), default=0.0)
+        return largest / norm if norm and isfinite(largest) else (inf if largest else 1.0)
+
+
+def _ball(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _tight(balls: Sequence[arb]) -> bool:
+    if not all(x.is_finite() for x in balls):
+        return False
+    norm = max((abs(x.mid()) for x in balls), default=arb(0))
+    return all(x.is_exact() or x.rad() <= norm * TIGHT * (TIGHT if x.contains(0) else 1) for x in balls)
+
+
+class Arithmetic:
+    """Compiled kernels of all quantities for one scenario, in float32 and float64: what a simulation would use."""
+
+    def __init__(self, scenario: Scenario, found: Sequence[Quantity]) -> None:
+        fresh = bound(scenario)
+        names = ("t", *scenario.system.coordinates, *scenario.system.velocities)
+        codes: dict[str, Code] = {}
+        for q in found:
+            nodes: list[Node] = substituted(q.code.program, q.code.outputs, fresh)
+            codes[q.name.replace(" ", "_")] = Code(fresh, names, tuple(stabilised(fresh, nodes, q.name == "energy")))
+        self._kernels = {scalar: kernels(codes, scalar) for scalar in (FLOAT32, FLOAT64)}
+
+    def values(self, name: str, scalar: str, inputs: Any) -> Any:
+        """Results for one state (t, q, q'), as float64 numbers."""
+        with np.errstate(all="ignore"):
+            return np.asarray(self._kernels[scalar][name.replace(" ", "_")](inputs), dtype=float)
+
+
+def measured(
+    truth: Truth,
+    arithmetic: Arithmetic,
+    name: str,
+    scenario: Scenario,
+    state: Sequence[Fraction],
+    time: Fraction = Fraction(0),
+) -> Digits:
+    """The digits of one quantity in one state."""
+    exact, bits = truth.value(name, scenario, time, state)
+    if not bits:
+        nothing = dict.fromkeys(FULL, 0.0)
+        return Digits(nothing, nothing, 0.0, inf, 0, inf)
+    norm = max((abs(float(x.mid())) for x in exact), default=0.0)
+    inputs = np.array([float(x) for x in (time, *state)])
+    kept, worst = {}, {}
+    for scalar, full in FULL.items():
+        kept[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full)
+    rounded = [Fraction(x) for x in inputs]
+    there, tight = truth.value(name, scenario, rounded[0], rounded[1:])
+    formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64])[0] if tight else 0.0
+    return Digits(kept, worst, formula, truth.condition(name, scenario, time, state), bits, norm)
+
+
+def compared(values: Any, exact: Sequence[arb], full: float) -> tuple[float, float]:
+    """(norm-wise digits, digits of the worst entry), between 0 and ``full``."""
+    with ctx.workprec(512):
+        size = max((abs(x).upper() for x in exact), default=arb(0))
+        largest, worst = arb(0), full
+        for value, x in zip(values, exact, strict=True):
+            if not isfinite(value):
+                return 0.0, 0.0
+            error = abs(arb(float(value)) - x).upper()
+            largest = max(largest, error)
+            if not x.contains(0):
+                worst = min(worst, _digits(error / abs(x), full))
+            elif error > 0 and size.is_zero():
+                worst = 0.0
+        if size.is_zero():
+            return (full, worst) if largest.is_zero() else (0.0, worst)
+        return _digits(largest / size, full), worst
+
+
+def _digits(error: arb, full: float) -> float:
+    value = float(error.mid())
+    return full if value <= 0 else min(full, max(0.0, -log10(value)))
+
+
+#: Given as progress: what is being looked at.
+Watch = Callable[[str], None]

@@ -1,0 +1,129 @@
+"""One scenario as codes ready to compile: right-hand side, energy, Jacobian, momenta.
+
+    x = (q, q'),    x' = rhs(t, x) = (q', M^-1 f)
+    energy   h = q'.dL/dq' - L         conserved where L does not depend on t and all forces have a force function
+
+For a scleronomic system h = T - U.  All codes take (t, q, q') and come from one specialised program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+
+from mbsym.algebra.derivative import gradient, jacobian
+from mbsym.algebra.increment import Increment, Increments
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.algebra.stable import stabilised
+from mbsym.mechanics.falling import relative_lagrangian
+from mbsym.mechanics.forward_dynamics import forward_dynamics
+from mbsym.mechanics.programs import Programs, coasting_scene, programs
+from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.model.system import System
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import Specialised, bound, substituted
+
+
+class Dynamics:
+    """The codes of a scenario; each is made when it is first asked for."""
+
+    def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
+        self.scenario = scenario
+        self.system: System = scenario.system
+        self.ring = ring if ring is not None else ring_of(self.system)
+        self.inputs = ("t", *self.system.coordinates, *self.system.velocities)
+        self.size = len(self.system.coordinates)
+
+    @cached_property
+    def _programs(self) -> Programs:
+        return programs(self.system, self.ring)
+
+    @cached_property
+    def _specialised(self) -> Specialised:
+        return bound(self.scenario)
+
+    def _code(self, nodes: list[Node], thorough: bool = False) -> Code:
+        return Code(self._specialised, self.inputs, tuple(stabilised(self._specialised, nodes, thorough)))
+
+    @cached_property
+    def right_hand_side(self) -> Code:
+        """(t, q, q') -> (q', q''), 2n outputs."""
+        found = forward_dynamics(self.system, self.ring)
+        fresh = self._specialised
+        accelerations = substituted(found.program, found.accelerations, fresh)
+        return self._code([*(fresh.input(name) for name in self.system.velocities), *accelerations])
+
+    @cached_property
+    def pivots(self) -> Code:
+        """(t, q, q') -> the pivots of the factorised mass matrix; one that vanishes means a singular M."""
+        found = forward_dynamics(self.system, self.ring)
+        return self._code(substituted(found.program, found.pivots, self._specialised))
+
+    @cached_property
+    def mass_matrix(self) -> Code:
+        """(t, q, q') -> M row by row, n*n outputs."""
+        found = self._programs
+        nodes = [node for row in found.mass_matrix for node in row]
+        return self._code(substituted(found.program, nodes, self._specialised))
+
+    @cached_property
+    def forcing(self) -> Code:
+        """(t, q, q') -> f, n outputs."""
+        return self._code(substituted(self._programs.program, self._programs.forcing, self._specialised))
+
+    @cached_property
+    def jacobian(self) -> Code:
+        """(t, q, q') -> d rhs / d (q, q') row by row, 4 n*n outputs."""
+        rhs, fresh = self.right_hand_side, self._specialised
+        states = [fresh.input(name) for name in self.inputs[1:]]
+        rows = jacobian(fresh, rhs.outputs, states)
+        return self._code([node for row in rows for node in row])
+
+    @cached_property
+    def _lagrangian(self) -> tuple[Node, Node]:
+        """(T, U) in the specialised program; relative to the frames that fall, where there are any."""
+        program = Program()
+        scene = coasting_scene(self.system, self.ring, program, program_environment(self.system, program))
+        kinetic, force = substituted(program, relative_lagrangian(scene), self._specialised)
+        return kinetic, force
+
+    @cached_property
+    def momenta(self) -> Code:
+        """(t, q, q') -> p = dL/dq', n outputs."""
+        kinetic, force = self._lagrangian
+        velocities = [self._specialised.input(name) for name in self.system.velocities]
+        return self._code(list(gradient(self._specialised, kinetic + force, velocities)))
+
+    @cached_property
+    def momentum_rates(self) -> Code:
+        """(t, q, q') -> dL/dq, n outputs."""
+        kinetic, force = self._lagrangian
+        positions = [self._specialised.input(name) for name in self.system.coordinates]
+        return self._code(list(gradient(self._specialised, kinetic + force, positions)))
+
+    @cached_property
+    def energy(self) -> Code:
+        """(t, q, q') -> (h, T): h = q'.dL/dq' - L and the kinetic energy, against which its drift is measured."""
+        fresh = self._specialised
+        kinetic, force = self._lagrangian
+        total = -(kinetic + force)
+        for name, momentum in zip(self.system.velocities, self.momenta.outputs, strict=True):
+            total = total + fresh.product(fresh.input(name), momentum)
+        return self._code([total, kinetic], thorough=True)
+
+    def energy_change(self, reference: Sequence[Fraction]) -> Code:
+        """(t, q, q') -> h(t, q, q') - h(0, reference), where ``reference`` holds exact numbers (q, q').
+
+        No nearly equal values are subtracted (``mbsym.algebra.increment``): near an equilibrium it keeps its digits.
+        """
+        fresh = self._specialised
+        start = (Fraction(0), *reference)
+        pairs: dict[str, Increment] = {}
+        for name, value in zip(self.inputs, start, strict=True):
+            base = fresh.number(value)
+            pairs[name] = Increment(fresh, base, fresh.difference(fresh.input(name), base))
+        found = fresh.evaluate(self.energy.outputs[:1], pairs, Increments(fresh, pairs))
+        return self._code([found[0].change], thorough=True)

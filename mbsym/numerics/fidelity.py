@@ -1,0 +1,205 @@
+"""What a simpler model costs in accuracy: the same scenario with less of the mechanics in it.
+
+``variants`` lists the models that a description allows:
+
+* Newtonian gravity of order 2, 3, 4 and exact;
+* the equations linearised about the unperturbed motion,  x' = x0' + J(t, x0) (x - x0)  with J = d rhs/dx;
+* coordinates that rest taken out (a plane motion of a spatial system), which changes nothing but the cost.
+
+``measured`` integrates each one far more accurately than models differ, and compares it with the most faithful one.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.base import Lowering, NoClosedForm, SingularPoint
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.program import Node
+from mbsym.mechanics.motion import motion_values
+from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, velocity_name
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.reduction import Reduction, resting
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import Specialised, substituted
+
+#: Tolerance at which variants are integrated, and what differences below ``RESOLVED`` mean nothing.
+TIGHT, RESOLVED = 1e-13, 1e-11
+
+#: Runs timed for each variant.
+REPEATS = 5
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A model: ``rank`` orders models of one family by faithfulness (the largest is the most faithful).
+
+    ``free`` says where its states stand among those of the whole system (None: it has them all).
+    """
+
+    label: str
+    neglected: str
+    dynamics: Dynamics
+    rank: int
+    free: tuple[int, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """A variant with the error of its model against the most faithful one, and what it costs.
+
+    ``operations`` are those of one right-hand side; ``seconds`` the median for the same tolerance.
+    """
+
+    variant: Variant
+    error: float
+    operations: int
+    evaluations: int
+    seconds: float
+    trouble: str = ""
+
+
+class LinearisedDynamics(Dynamics):
+    """x' = x0' + J(t, x0(t)) (x - x0(t)) about the unperturbed motion x0 = (value + rate t, rate)."""
+
+    @cached_property
+    def right_hand_side(self) -> Code:
+        whole = Dynamics(self.scenario, self.ring)
+        plain, code = self._specialised, whole.right_hand_side
+        at_rest, rates = self._motion(plain)
+        rows = whole.jacobian
+        image = _Placed(plain, {**at_rest, **rates})
+        nodes = substituted(code.program, [*code.outputs, *rows.outputs], image)
+        size = 2 * self.size
+        images = [*at_rest.values(), *rates.values()]
+        deviation = [plain.input(name) - image for name, image in zip(self.inputs[1:], images, strict=True)]
+        outputs = []
+        for i in range(size):
+            total = nodes[i]
+            for j in range(size):
+                total = total + plain.product(nodes[size + i * size + j], deviation[j])
+            outputs.append(total)
+        return Code(plain, self.inputs, tuple(outputs))
+
+    def _motion(self, program: Specialised) -> tuple[dict[str, Node], dict[str, Node]]:
+        """The unperturbed positions and velocities as nodes in t."""
+        lower = Lowering(program, program.bound)
+        time_ = program.input("t")
+        at_rest, rates = {}, {}
+        for name, (value, rate) in motion_values(self.system).items():
+            slope = lower(rate)
+            at_rest[name] = lower(value) + program.product(slope, time_)
+            rates[velocity_name(name)] = slope
+        return at_rest, rates
+
+    @cached_property
+    def jacobian(self) -> Code:
+        code = self.right_hand_side
+        states = [code.program.input(name) for name in self.inputs[1:]]
+        rows = jacobian(code.program, code.outputs, states)
+        return Code(code.program, self.inputs, tuple(node for row in rows for node in row))
+
+
+class _Placed(Specialised):
+    """Writes into another program, with nodes of that program in place of some inputs."""
+
+    def __init__(self, target: Specialised, images: dict[str, Node]) -> None:
+        self.__dict__.update(target.__dict__)  # the same instructions and tables: nodes belong to the target
+        self.bound = {**target.bound, **images}
+
+    def __hash__(self) -> int:
+        return id(self)
+
+
+def variants(scenario: Scenario) -> Iterator[Variant]:
+    """Every model of the scenario, the given one first; those that cannot be derived are left out."""
+    system = scenario.system
+    yield Variant("as described", "nothing that the description has", Dynamics(scenario), 0)
+    fields = [load for load in system.loads if isinstance(load, NewtonianGravity)]
+    for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
+        if all(load.order == order for load in fields):
+            continue
+        loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in system.loads)
+        dropped = "nothing of the field" if order == EXACT else f"terms of the field above order {order} in size/R"
+        name = "exact gravity" if order == EXACT else f"gravity of order {order}"
+        yield Variant(name, dropped, Dynamics(replace(scenario, system=replace(system, loads=loads))), rank)
+    if system.motion:
+        label = "linearised"
+        yield Variant(label, "all that is not linear in the deviation", LinearisedDynamics(scenario), -1)
+    found = resting(scenario)
+    if found is not None:
+        yield _reduced(scenario, found)
+
+
+def _reduced(scenario: Scenario, found: Reduction) -> Variant:
+    names = ", ".join(found.values)
+    free, _ = found.expanded(scenario)
+    what = f"{names}, which rest ({found.how})"
+    return Variant(f"without {names}", what, Dynamics(found.scenario), 0, free)
+
+
+def measured(
+    scenario: Scenario,
+    method: Method,
+    times: Sequence[float],
+    watch: Callable[[str], None] = lambda label: None,
+) -> tuple[ModelError, ...]:
+    """The error of every variant at ``times`` against the most faithful one, and its cost at a tight tolerance.
+
+    The error is the largest difference over coordinates, velocities and times, each relative to its largest value.
+    """
+    runs = []
+    for variant in variants(scenario):
+        watch(variant.label)
+        try:
+            runs.append((variant, *_run(scenario, variant, method, times)))
+        except (NoClosedForm, SingularPoint) as reason:
+            runs.append((variant, None, 0, 0, 0.0, str(reason)))
+    solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
+    if not solved:
+        return ()
+    truth = max(solved, key=lambda item: item[0])[1]
+    size = np.max(np.abs(truth), axis=1)
+    scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
+    rows = []
+    for variant, states, operations, evaluations, seconds, trouble in runs:
+        error = inf if states is None else float(np.max(np.abs(states - truth) / scale))
+        rows.append(ModelError(variant, error if isfinite(error) else inf, operations, evaluations, seconds, trouble))
+    return tuple(rows)
+
+
+def _run(
+    scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]
+) -> tuple[Any, int, int, float, str]:
+    operations = variant.dynamics.right_hand_side.operations
+    seconds = []
+    evaluations = 0
+    states: Any = None
+    for _ in range(REPEATS):
+        run = method.start(variant.dynamics, Setting(tolerance=TIGHT))
+        found = [np.array(run.state, dtype=float)]
+        started = time.perf_counter()
+        try:
+            for t in times[1:]:
+                found.append(np.array(run.advance(float(t)), dtype=float))
+        except Breakdown as reason:
+            return None, operations, run.work.evaluations, time.perf_counter() - started, str(reason)
+        seconds.append(time.perf_counter() - started)
+        states, evaluations = np.array(found).T, run.work.evaluations
+        if sum(seconds) > 2.0:
+            break
+    if variant.free is not None:
+        whole = np.tile(np.array([float(x) for x in scenario.state])[:, np.newaxis], (1, len(times)))
+        whole[list(variant.free)] = states
+        states = whole
+    return states, operations, evaluations, statistics.median(seconds), ""

@@ -1,0 +1,1 @@
+"""Back ends: from a straight-line program to something that computes numbers."""

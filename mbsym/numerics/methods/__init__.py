@@ -1,0 +1,1 @@
+"""Integration methods: one file a family, one table of names."""

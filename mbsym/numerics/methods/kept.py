@@ -1,0 +1,34 @@
+"""What is compiled for a scenario is compiled once, and lives as long as the scenario's dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, TypeVar
+from weakref import WeakKeyDictionary
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
+from mbsym.numerics.kernels.llvm import kernel
+
+_KEPT: WeakKeyDictionary[Dynamics, dict[Hashable, Any]] = WeakKeyDictionary()
+
+Made = TypeVar("Made")
+
+
+def once(dynamics: Dynamics, key: Hashable, make: Callable[[], Made]) -> Made:
+    """``make()``, or what it made before for the same dynamics and key; it must not hold on to the dynamics."""
+    kept = _KEPT.setdefault(dynamics, {})
+    if key not in kept:
+        kept[key] = make()
+    found: Made = kept[key]
+    return found
+
+
+def compiled_kernel(dynamics: Dynamics, name: str, scalar: str = FLOAT64) -> Kernel:
+    """The kernel of one of the codes of a Dynamics (``right_hand_side``, ``jacobian``, ...)."""
+
+    def make() -> Kernel:
+        code: Code = getattr(dynamics, name)
+        return kernel(code, scalar)
+
+    return once(dynamics, ("kernel", name, scalar), make)

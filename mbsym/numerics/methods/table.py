@@ -1,0 +1,21 @@
+"""Every method by its name.
+
+compiled      rk4 (fixed step), rk45, dop853
+conservative  midpoint, midpoint4, midpoint6 (fixed step)
+SciPy         scipy-rk45, scipy-dop853; stiff: lsoda, radau, bdf
+heyoka        taylor
+"""
+
+from __future__ import annotations
+
+from mbsym.numerics.methods import library, runge_kutta, symplectic, taylor
+from mbsym.numerics.methods.interface import Method
+
+_FAMILIES: tuple[tuple[Method, ...], ...] = (
+    tuple(runge_kutta.METHODS),
+    tuple(symplectic.METHODS),
+    tuple(taylor.METHODS),
+    tuple(library.METHODS),
+)
+
+METHODS: dict[str, Method] = {method.traits.name: method for family in _FAMILIES for method in family}

@@ -1,0 +1,195 @@
+"""Taylor series of high order by heyoka (Biscani & Izzo, MNRAS 504 (2021) 2614): an extra, imported only on use.
+
+Every instruction of the straight-line program becomes one heyoka expression, shared like the instruction; heyoka derives
+the recurrences of the Taylor coefficients from them and compiles them.  The order follows from the tolerance (about
+-ln(tol)/2 + 1), the step from the decay of the coefficients; times between steps come from the series itself.
+
+heyoka's tolerance bounds the remainder of each step, relative to the largest component of the state if that exceeds 1.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
+from mbsym.numerics.kernels.llvm import SCALARS
+from mbsym.numerics.methods.interface import (
+    BLOW_UP,
+    LARGEST,
+    STEP_LIMIT,
+    STUCK,
+    Breakdown,
+    Setting,
+    Traits,
+    Unusable,
+    Work,
+)
+from mbsym.numerics.methods.kept import once
+from mbsym.numerics.methods.runge_kutta import exact_number, initial_state
+
+#: Beyond so many operations heyoka is told to compile loops instead of straight code, which is slower to run.
+STRAIGHT = 400
+
+#: heyoka's own loop is left after so many steps, so that Ctrl-C works.
+STEPS_AT_A_TIME = 2_000
+
+
+def _heyoka() -> Any:
+    try:
+        import heyoka
+    except ImportError:
+        raise Unusable("the Taylor method needs heyoka: pip install heyoka (or mbsym[taylor])") from None
+    return heyoka
+
+
+def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
+    """The outputs as heyoka expressions; the input ``t`` is heyoka's time."""
+    program, values = code.program, {}
+    for number in program.live(code.outputs):
+        instruction = program.instructions[number]
+        operands = [values[operand] for operand in instruction.operands]
+        match instruction.operation, operands:
+            case "constant", _:
+                assert isinstance(instruction.payload, Fraction)
+                found = heyoka.expression(exact_number(instruction.payload, dtype))
+            case "input", _:
+                name = str(instruction.payload)
+                found = heyoka.time if name == "t" else heyoka.expression(name)
+            case "negative", [a]:
+                found = -a
+            case "add", [a, b]:
+                found = a + b
+            case "subtract", [a, b]:
+                found = a - b
+            case "multiply", [a, b]:
+                found = a * b
+            case "divide", [a, b]:
+                found = a / b
+            case function, [a]:
+                known: Callable[[Any], Any] | None = getattr(heyoka, function, None)
+                if known is None:
+                    raise Unusable(f"heyoka has no function {function}")
+                found = known(a)
+        values[number] = found
+    return [values[node.number] for node in code.outputs]
+
+
+def _integrator(dynamics: Dynamics, tolerance: float, scalar: str) -> Any:
+    heyoka = _heyoka()
+    dtype = SCALARS[scalar].dtype
+    code = dynamics.right_hand_side
+
+    def make() -> Any:
+        right = expressions(code, heyoka, dtype)
+        equations = list(zip((heyoka.expression(name) for name in code.inputs[1:]), right, strict=True))
+        kind = float if scalar == FLOAT64 else dtype
+        try:
+            return heyoka.taylor_adaptive(
+                equations,
+                initial_state(dynamics, dtype),
+                time=kind(0),
+                tol=kind(tolerance),
+                compact_mode=code.operations > STRAIGHT,
+                high_accuracy=True,
+                fp_type=kind,
+            )
+        except TypeError as missing:
+            raise Unusable(f"this heyoka has no {scalar} arithmetic ({missing})") from None
+
+    return copy.deepcopy(once(dynamics, ("taylor", tolerance, scalar), make))
+
+
+class TaylorRun:
+    """Steps of a ``taylor_adaptive``."""
+
+    def __init__(self, dynamics: Dynamics, setting: Setting, scalar: str) -> None:
+        smallest = float(np.finfo(SCALARS[scalar].dtype).eps)
+        tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
+        self._heyoka = _heyoka()
+        self._taylor = _integrator(dynamics, min(max(tolerance, smallest), 1e-2), scalar)
+        outcomes = self._heyoka.taylor_outcome
+        self._success, self._paused = outcomes.success, outcomes.step_limit
+        self._least = smallest
+        self._dtype = SCALARS[scalar].dtype
+        self._limit = setting.step_limit
+        self.order: int = self._taylor.order
+        self.work = Work()
+        self.time = 0.0
+        self.state = np.array(self._taylor.state)
+
+    def advance(self, until: float) -> Any:
+        taylor = self._taylor
+        if taylor.time < until:
+            self._far(until)
+        while taylor.time < until:
+            self._one()
+        self.time = until
+        if taylor.time == until or not self.work.steps:
+            self.state = np.array(taylor.state)
+        else:
+            self.state = np.array(taylor.update_d_output(self._dtype(until)))
+        return self.state
+
+    def _far(self, until: float) -> None:
+        """Most of a long way in heyoka's own loop, which is quicker than ours but shortens its last step."""
+        taylor, work, last = self._taylor, self.work, float(self._taylor.last_h)
+        goal = until - 2 * last
+        while last > 0 and goal - taylor.time > 8 * last:
+            if work.steps >= self._limit:
+                raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
+            now, before = taylor.time, np.array(taylor.state)
+            at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
+            outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
+            work.steps += int(made)
+            work.evaluations += self.order * int(made)
+            self._judge(outcome not in (self._success, self._paused), shortest if made else last, now, before)
+
+    def _one(self) -> None:
+        """One step that keeps its series."""
+        taylor, work = self._taylor, self.work
+        if work.steps >= self._limit:
+            raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
+        now, before = taylor.time, np.array(taylor.state)
+        outcome, step = taylor.step(write_tc=True)
+        work.steps += 1
+        work.evaluations += self.order
+        self._judge(outcome != self._success, step, now, before)
+
+    def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
+        if failed:
+            raise self._fail(BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
+        if step > self._least * max(1.0, abs(now)):
+            return
+        if not np.all(np.abs(self._taylor.state) < LARGEST):
+            raise self._fail(BLOW_UP, "a coordinate or velocity has left every bound", now, before)
+        raise self._fail(STUCK, f"step {float(step):.2g}", now, before)
+
+    @staticmethod
+    def _fail(kind: str, message: str, time: Any, state: Any) -> Breakdown:
+        return Breakdown(kind, message, float(time), np.array(state, dtype=float))
+
+
+class Taylor:
+    """``taylor``: evaluations count the Taylor coefficients, each about as dear as one right-hand side or two."""
+
+    traits = Traits(
+        name="taylor",
+        title="Taylor series of high order (heyoka)",
+        order=None,
+        fixed=False,
+        scalars=(FLOAT64, FLOAT32, EXTENDED),
+        extra="heyoka",
+    )
+
+    def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> TaylorRun:
+        """A run.  Raises Unusable where heyoka is not installed or lacks the arithmetic or a function."""
+        return TaylorRun(dynamics, setting, scalar)
+
+
+METHODS = (Taylor(),)

@@ -1,0 +1,136 @@
+"""Reference solutions, against which errors are measured: extrapolation in arithmetic of any precision.
+
+Gragg's modified midpoint rule with n = 2, 4, 6, ... substeps, extrapolated to n -> infinity (Hairer, Norsett & Wanner,
+Solving Ordinary Differential Equations I, II.9), over ``arb`` numbers of ``bits`` bits.  It shares neither its formulas
+nor its arithmetic with the methods that are judged by it.  Its own error is estimated by a second solution of lower
+order with other steps, and is printed with every table.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
+
+#: Bits of the arithmetic, and how many columns the extrapolation has (order 2 * COLUMNS).
+BITS = 160
+COLUMNS = 12
+
+
+@dataclass(frozen=True)
+class Reference:
+    """``states`` at ``times``, shape (2n, m), rounded to float64; ``error`` is the estimated error of the solution,
+
+    the largest difference from a second solution, each component relative to its largest absolute value.
+    """
+
+    times: Any
+    states: Any
+    error: float
+    seconds: float
+    method: str
+
+
+class _Extrapolation:
+    def __init__(self, dynamics: Dynamics, tolerance: float, columns: int, deadline: float) -> None:
+        self.f = precise(dynamics.right_hand_side, BITS)
+        self.time = arb(0)
+        self.state = [arb(fmpq(x.numerator, x.denominator)) for x in dynamics.scenario.state]
+        self.tolerance = tolerance
+        self.columns = columns
+        self.deadline = deadline
+        self.step = 1e-3
+        self.scale = [max(abs(float(x)), 1e-3) for x in dynamics.scenario.state]
+
+    def advance(self, until: arb) -> None:
+        """Steps up to ``until``; the last one ends there exactly."""
+        while self.time < until:
+            left = float(until - self.time)
+            last = self.step >= left * (1 - 1e-9)
+            size = until - self.time if last else arb(self.step)
+            new, error = self._extrapolated(size)
+            growth = 0.9 * (self.tolerance / max(error, 1e-300)) ** (1 / (2 * self.columns - 1))
+            if error <= self.tolerance:
+                self.time = until if last else (self.time + size).mid()
+                self.state = new
+                self.scale = [max(s, abs(float(x))) for s, x in zip(self.scale, new, strict=True)]
+                if not last or growth < 1:
+                    self.step = float(size) * min(4.0, growth)
+            else:
+                self.step = float(size) * min(0.7, max(0.1, growth))
+            if not self.step > 1e-12 * max(1.0, float(self.time)):
+                raise Breakdown(BLOW_UP, "the reference solution cannot go on", float(self.time), self.floats())
+            if time.perf_counter() > self.deadline:
+                raise Breakdown(STEP_LIMIT, "out of time", float(self.time), self.floats())
+
+    def floats(self) -> Any:
+        return np.array([float(x) for x in self.state])
+
+    def _extrapolated(self, size: arb) -> tuple[list[arb], float]:
+        """Aitken-Neville: T_jk = T_j,k-1 + (T_j,k-1 - T_j-1,k-1) / ((n_j/n_j-k)^2 - 1); and the relative error."""
+        slope = self._slope(self.time, self.state)
+        rows: list[list[list[arb]]] = []
+        for j in range(self.columns):
+            n = 2 * (j + 1)
+            row = [self._midpoints(size, n, slope)]
+            for k in range(1, j + 1):
+                ratio = arb(fmpq(n * n, (2 * (j + 1 - k)) ** 2)) - 1
+                row.append([(a + (a - b) / ratio).mid() for a, b in zip(row[k - 1], rows[j - 1][k - 1], strict=True)])
+            rows.append(row)
+        best, second = rows[-1][-1], rows[-1][-2]
+        errors = [abs(float(a - b)) / s for a, b, s in zip(best, second, self.scale, strict=True)]
+        worst = max(errors) if all(np.isfinite(errors)) else float("inf")
+        return best, worst
+
+    def _slope(self, t: arb, x: Sequence[arb]) -> list[arb]:
+        return self.f([t, *x])
+
+    def _midpoints(self, size: arb, n: int, slope: Sequence[arb]) -> list[arb]:
+        """n substeps of the midpoint rule from an Euler start."""
+        h = size / n
+        before, now = self.state, [(x + h * s).mid() for x, s in zip(self.state, slope, strict=True)]
+        double = 2 * h
+        for i in range(1, n):
+            rate = self._slope(self.time + i * h, now)
+            before, now = now, [(x + double * s).mid() for x, s in zip(before, rate, strict=True)]
+        return now
+
+
+def reference(
+    dynamics: Dynamics,
+    times: Sequence[float],
+    tolerance: float = 1e-24,
+    budget: float = 120.0,
+    watch: Callable[[float], None] = lambda t: None,
+) -> Reference:
+    """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
+
+    Raises Breakdown where the solution does not exist up to the end, or after ``budget`` seconds.
+    """
+    started = time.perf_counter()
+    runs = []
+    with ctx.workprec(BITS):
+        for columns, local in ((COLUMNS, tolerance), (COLUMNS - 3, tolerance * 1e3)):
+            run = _Extrapolation(dynamics, local, columns, started + budget)
+            states = [list(run.state)]
+            for t in times[1:]:
+                run.advance(arb(float(t)))
+                states.append(list(run.state))
+                watch(float(t))
+            runs.append(states)
+        first, second = runs
+        error = 0.0
+        for i in range(len(first[0])):
+            size = max(abs(float(state[i])) for state in first) or 1.0
+            error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
+        states_ = np.array([[float(x) for x in state] for state in first]).T
+    seconds = time.perf_counter() - started
+    return Reference(np.asarray(times, dtype=float), states_, error, seconds, f"extrapolation, {BITS} bits")

@@ -1,0 +1,247 @@
+"""A number for everything that a simulation needs: parameters, initial positions and velocities.
+
+Numbers are exact fractions; what is irrational (pi/6, sqrt(2)) is rounded to ``PRECISION`` bits, far below any
+arithmetic that is used later.  Nothing is made up: what has no value is listed by name, all at once.  Only one thing
+may be left out: a coordinate whose initial position is given and whose velocity is not starts at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.base import Lowering, NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.expressions.tree import Expression, names
+from mbsym.model.system import InitialValue, System, velocity_name
+
+#: Irrational values are rounded to so many bits.
+PRECISION = 256
+
+#: Beyond 2**LARGEST_EXPONENT, and closer to zero than its reciprocal, double precision ends.
+LARGEST_EXPONENT = 1000
+
+#: Two numbers for one parameter contradict each other if they differ by more than this, relatively.
+AGREEMENT = Fraction(1, 10**12)
+
+
+@dataclass(frozen=True)
+class Lack:
+    """``names`` have no value; ``contradictions`` are sentences about values that cannot be."""
+
+    names: tuple[str, ...] = ()
+    contradictions: tuple[str, ...] = ()
+
+
+class Incomplete(Exception):
+    """Raised with everything that keeps a scenario from being complete; ``lack`` lists it."""
+
+    def __init__(self, lack: Lack) -> None:
+        parts = []
+        if lack.names:
+            parts.append("no value for " + ", ".join(lack.names))
+        super().__init__("; ".join([*parts, *lack.contradictions]))
+        self.lack = lack
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A system with numbers: ``positions`` and ``velocities`` in the order of ``system.coordinates`` at t = 0.
+
+    ``prescribed`` gives (initial, rate) of every prescribed quantity; ``typed`` keeps the initial positions as they
+    were written (pi/2 is exact there).
+    """
+
+    system: System
+    parameters: Mapping[str, Fraction]
+    positions: tuple[Fraction, ...]
+    velocities: tuple[Fraction, ...]
+    prescribed: Mapping[str, tuple[Fraction, Fraction]]
+    typed: Mapping[str, Expression] = field(default_factory=dict)
+
+    @property
+    def state(self) -> tuple[Fraction, ...]:
+        """(q, q') at t = 0."""
+        return (*self.positions, *self.velocities)
+
+
+def scenario(system: System, overrides: Mapping[str, Expression] | None = None, state: bool = True) -> Scenario:
+    """The numbers of a description, some of them replaced.
+
+    ``overrides`` maps names of parameters, coordinates (initial position) and ``<name>_dot`` (initial velocity) to
+    expressions without coordinates.  Parameters without a value take it from ``relations``.  With ``state`` false the
+    initial state may be missing (it is then zero).  Raises Incomplete, naming everything that is missing.
+    """
+    overrides = dict(overrides or {})
+    numbers = _Numbers()
+    _parameters(system, overrides, numbers)
+    parameters = numbers.known
+    missing = [name for name in system.parameter_names if name not in parameters and name not in numbers.refused]
+    given = _initial(system, overrides)
+    positions, velocities = [], []
+    for name in system.coordinates:
+        entry = given[name]
+        if entry.position is None and state:
+            missing.append(f"{name} (its initial position)")
+        positions.append(numbers.value(name, entry.position))
+        velocities.append(numbers.value(velocity_name(name), entry.velocity))
+    prescribed = {}
+    for item in system.prescribed:
+        initial = numbers.value(item.name, item.initial)
+        prescribed[item.name] = initial, numbers.value(f"the rate of {item.name}", item.rate)
+    if missing or numbers.contradictions:
+        raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
+    typed = {name: entry.position for name, entry in given.items() if entry.position is not None}
+    return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed)
+
+
+def changed(found: Scenario, **parameters: Fraction) -> Scenario:
+    """The scenario with other numbers for some parameters."""
+    return replace(found, parameters={**found.parameters, **parameters})
+
+
+class _Numbers:
+    """Values found so far; what has none because its expression makes no sense is ``refused``, with a sentence."""
+
+    def __init__(self) -> None:
+        self.known: dict[str, Fraction] = {}
+        self.refused: set[str] = set()
+        self.contradictions: list[str] = []
+
+    def ready(self, expression: Expression) -> bool:
+        return names(expression) <= self.known.keys() | {"pi"}
+
+    def value(self, name: str, expression: Expression | None) -> Fraction:
+        """Zero for what is left out, refused, or cannot be computed yet (then something else is missing)."""
+        if expression is None or not self.ready(expression):
+            return Fraction(0)
+        try:
+            return exact(expression, self.known)
+        except (NoClosedForm, SingularPoint) as reason:
+            self.contradictions.append(f"{name} has no value: {reason}")
+            self.refused.add(name)
+            return Fraction(0)
+
+    def define(self, name: str, expression: Expression) -> None:
+        found = self.value(name, expression)
+        if name not in self.refused:
+            self.known[name] = found
+
+    @property
+    def settled(self) -> set[str]:
+        return self.known.keys() | self.refused
+
+
+def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _Numbers) -> None:
+    """Values given, and those that follow from relations; contradictions between the two, and to declared signs."""
+    given = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
+    typed = {name for name, value in given.items() if value is not None}
+    # A relation overrules the number in the file where what it is made of was overridden; else they must agree.
+    changed_names = set(overrides)
+    stale: set[str] = set()
+    for _ in system.relations:
+        for relation in system.relations:
+            if relation.name not in overrides and names(relation.value) & changed_names:
+                stale.add(relation.name)
+                changed_names.add(relation.name)
+    for _ in range(len(given) + 1):
+        before = len(numbers.settled)
+        for name, value in given.items():
+            if value is not None and name not in numbers.settled and name not in stale and numbers.ready(value):
+                numbers.define(name, value)
+        for relation in system.relations:
+            wanted = relation.name not in typed or relation.name in stale
+            if wanted and relation.name not in numbers.settled and numbers.ready(relation.value):
+                numbers.define(relation.name, relation.value)
+        if len(numbers.settled) == before:
+            break
+    for relation in system.relations:
+        if relation.name in numbers.known and numbers.ready(relation.value):
+            follows = numbers.value(f"the relation of {relation.name}", relation.value)
+            own = numbers.known[relation.name]
+            if abs(follows - own) > AGREEMENT * max(abs(follows), abs(own)):
+                numbers.contradictions.append(
+                    f"{relation.name} = {float(own):.12g} contradicts its relation, which gives {float(follows):.12g}"
+                )
+    for parameter in system.parameters:
+        found = numbers.known.get(parameter.name)
+        if found is not None and not _SIGNS[parameter.sign](found):
+            numbers.contradictions.append(
+                f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
+            )
+
+
+_SIGNS: Mapping[str, Callable[[Fraction], bool]] = {
+    "real": lambda x: True,
+    "positive": lambda x: x > 0,
+    "nonnegative": lambda x: x >= 0,
+    "negative": lambda x: x < 0,
+    "nonpositive": lambda x: x <= 0,
+    "nonzero": lambda x: x != 0,
+}
+
+
+def _initial(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:
+    given = {entry.coordinate: entry for entry in system.initial}
+    for name in system.coordinates:
+        entry = given.get(name, InitialValue(name))
+        if name in overrides:
+            entry = replace(entry, position=overrides[name])
+        if velocity_name(name) in overrides:
+            entry = replace(entry, velocity=overrides[velocity_name(name)])
+        given[name] = entry
+    return given
+
+
+def exact(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
+    """The value of an expression in ``known`` numbers and pi: exact where rational, else rounded to PRECISION bits.
+
+    Raises SingularPoint where it divides by zero, is not real, or is beyond double precision; NoClosedForm for a power
+    that is neither whole nor half.
+    """
+    used = names(expression)
+    if "pi" not in used:
+        try:
+            values = {name: fmpq(known[name].numerator, known[name].denominator) for name in used}
+            found = Lowering(Rationals({}, {}), values)(expression)
+            return _within_range(Fraction(int(found.p), int(found.q)))
+        except (NotRational, KeyError):
+            pass
+    with ctx.workprec(PRECISION + 64):
+        balls = {name: arb(fmpq(known[name].numerator, known[name].denominator)) for name in used - {"pi"}}
+        value = Lowering(Balls(balls), {**balls, "pi": arb.pi()})(expression)
+        if not value.is_finite():
+            raise SingularPoint("it is infinite or not real")
+        if not value.rad() <= arb(2) ** -120 * max(abs(value.mid()), arb(1)):
+            raise SingularPoint("too many digits cancel")
+        return _within_range(rounded(value))
+
+
+def rounded(value: arb) -> Fraction:
+    """The midpoint of a ball, rounded to PRECISION bits.  Raises SingularPoint far beyond double precision."""
+    with ctx.workprec(PRECISION):
+        mantissa, exponent = (+value).mid().man_exp()
+    if abs(int(exponent)) > LARGEST_EXPONENT + 8 * PRECISION:
+        raise SingularPoint("it is beyond the range of double precision")
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _within_range(value: Fraction) -> Fraction:
+    """The value, if a double can hold it."""
+    size = abs(value.numerator.bit_length() - value.denominator.bit_length()) if value else 0
+    if size > LARGEST_EXPONENT:
+        raise SingularPoint("it is beyond the range of double precision")
+    return value
+
+
+def describe(scenario_: Scenario) -> Iterable[tuple[str, float]]:
+    """(name, value) of every number, for tables."""
+    yield from ((name, float(value)) for name, value in scenario_.parameters.items())
+    for names_, values in (
+        (scenario_.system.coordinates, scenario_.positions),
+        (scenario_.system.velocities, scenario_.velocities),
+    ):
+        yield from zip(names_, (float(value) for value in values), strict=True)

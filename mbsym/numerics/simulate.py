@@ -1,0 +1,184 @@
+"""Integration of one scenario: a trajectory at given times, with its energy and what went wrong.
+
+A run that breaks down, or is interrupted, keeps what it has: the trajectory ends there and says why.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsym.model.system import System
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.methods.interface import (
+    BLOW_UP,
+    LARGEST,
+    SINGULAR,
+    STUCK,
+    Breakdown,
+    Method,
+    Setting,
+    Work,
+)
+from mbsym.numerics.methods.kept import compiled_kernel
+
+#: A pivot of M that has become so much smaller than it was means that M is singular for practical purposes.
+SINGULAR_PIVOT = 1e-11
+
+#: The same for an initial state beside its neighbours: sin(x)**2 where x is zero but for rounding.
+SINGULAR_AT_ONCE = 1e-24
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States at ``times`` (m of them): ``states`` has shape (2n, m), rows in the order (q, q').
+
+    ``energy`` is h = q'.dL/dq' - L and ``kinetic`` the kinetic energy, each of shape (m,).  ``breakdown`` says why the
+    trajectory ends before the last time asked for; ``interrupted`` that the user stopped it.
+    """
+
+    system: System
+    method: str
+    setting: Setting
+    times: Any
+    states: Any
+    energy: Any
+    kinetic: Any
+    work: Work
+    seconds: float
+    breakdown: Breakdown | None = None
+    interrupted: bool = False
+
+    @property
+    def drift(self) -> Any:
+        """(h - h(0)) / scale, with the largest kinetic energy (or |h(0)|, if it is larger than 0) as the scale."""
+        scale = np.max(np.abs(self.kinetic), initial=0.0) or abs(self.energy[0]) or 1.0
+        return (self.energy - self.energy[0]) / scale
+
+    @property
+    def whole(self) -> bool:
+        """Whether it reaches the last time asked for."""
+        return self.breakdown is None and not self.interrupted
+
+
+def simulate(
+    dynamics: Dynamics,
+    method: Method,
+    setting: Setting,
+    times: Sequence[float],
+    scalar: str = "float64",
+    watch: Callable[[float], None] = lambda t: None,
+) -> Trajectory:
+    """x(t) for t in ``times`` (increasing, the first is 0) by a method; ``watch`` is told the time reached.
+
+    Never raises Breakdown or KeyboardInterrupt: both end the trajectory early.  Raises Unusable where the method does
+    not apply to the system.
+    """
+    work = Work()
+    initial = np.array([float(x) for x in dynamics.scenario.state])
+    breakdown, interrupted = _at_once(dynamics, initial), False
+    # Room for all states is taken at once, and only touched as they come.
+    states = np.empty((len(times), len(initial)), dtype=np.longdouble if scalar == EXTENDED else float)
+    states[0], reached = initial, 1
+    started = time.perf_counter()
+    try:
+        if breakdown is None:
+            run = method.start(dynamics, setting, scalar)
+            work = run.work
+            started = time.perf_counter()
+            states[0] = run.state
+            for t in times[1:]:
+                state = run.advance(float(t))
+                if not np.all(np.abs(state) < LARGEST):
+                    message = "a coordinate or velocity has left every bound"
+                    raise Breakdown(BLOW_UP, message, float(t), np.array(state, dtype=float))
+                states[reached] = state
+                reached += 1
+                watch(float(t))
+    except Breakdown as found:
+        past = np.vstack([np.asarray(times[:reached], dtype=float), states[:reached].T.astype(float)])
+        breakdown = diagnosed(dynamics, found, past)
+    except KeyboardInterrupt:
+        interrupted = True
+    seconds = time.perf_counter() - started
+    kept = np.array(times[:reached], dtype=float)
+    matrix = np.ascontiguousarray(states[:reached].T)
+    energy = compiled_kernel(dynamics, "energy", EXTENDED if scalar == EXTENDED else FLOAT64)(np.vstack([kept, matrix]))
+    return Trajectory(
+        system=dynamics.system,
+        method=method.traits.name,
+        setting=setting,
+        times=kept,
+        states=matrix,
+        energy=energy[0],
+        kinetic=energy[1],
+        work=replace(work),
+        seconds=seconds,
+        breakdown=breakdown,
+        interrupted=interrupted,
+    )
+
+
+def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:
+    """What is wrong with the initial state itself: there the right-hand side must exist."""
+    point = np.concatenate(([0.0], initial))
+    with np.errstate(all="ignore"):
+        rates = compiled_kernel(dynamics, "right_hand_side")(point)
+    singular = _vanishing(dynamics, 0.0, initial, _neighbours(initial), SINGULAR_AT_ONCE)
+    if singular:
+        return Breakdown(SINGULAR, singular, 0.0, initial)
+    if np.all(np.isfinite(rates)):
+        return None
+    return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", 0.0, initial)
+
+
+def _neighbours(state: Any) -> Any:
+    """(t, q, q') in columns: some states not far from a state, the same ones every time."""
+    n = len(state)
+    moved = np.sin(np.outer(np.arange(1, n + 1), np.arange(1, 5)))  # any numbers between -1 and 1
+    return np.vstack([np.zeros(4), state[:, None] + 0.1 * moved * (1 + np.abs(state[:, None]))])
+
+
+def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
+    """A blow-up or a vanishing step where the mass matrix is singular is called what it is.
+
+    ``past`` holds earlier (t, q, q') in columns: a pivot is small compared with what it was, whatever its units.
+    """
+    if found.kind not in (BLOW_UP, STUCK):
+        return found
+    message = _vanishing(dynamics, found.time, np.asarray(found.state, dtype=float), past, SINGULAR_PIVOT)
+    return Breakdown(SINGULAR, message, found.time, found.state) if message else found
+
+
+def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: float) -> str:
+    """Which pivot of M vanishes at a state, beside its values at other states, as a sentence; empty where none does."""
+    if not np.all(np.isfinite(state)):
+        return ""
+    with np.errstate(all="ignore"):
+        pivots = np.abs(compiled_kernel(dynamics, "pivots")(np.concatenate(([t], state))))
+        if not np.all(np.isfinite(pivots)):
+            return "M cannot be factorised"
+        elsewhere = np.abs(compiled_kernel(dynamics, "pivots")(others))
+        usual = np.median(np.where(np.isfinite(elsewhere), elsewhere, 0.0), axis=1)
+        ratios = np.where(usual > 0, pivots / usual, np.where(pivots > 0, np.inf, 0.0))
+    ratio = float(np.min(ratios))
+    return f"a pivot of M is {ratio:.1e} of its usual size" if ratio < least else ""
+
+
+def least_pivot(dynamics: Dynamics, found: Trajectory) -> tuple[float, float]:
+    """(ratio, t): how far a pivot of M fell below what it was at the start, and when.
+
+    M loses about -log10(ratio) digits there; 1e-8 and less means that the motion passes by a singularity of the chosen
+    coordinates (or of the model).
+    """
+    with np.errstate(all="ignore"):
+        pivots = np.abs(compiled_kernel(dynamics, "pivots")(np.vstack([found.times, found.states.astype(float)])))
+        ratios = pivots / pivots[:, :1]
+    lowest = np.min(np.where(np.isfinite(ratios), ratios, 0.0), axis=0)
+    place = int(np.argmin(lowest))
+    return float(lowest[place]), float(found.times[place])

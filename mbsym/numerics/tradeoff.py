@@ -1,0 +1,274 @@
+"""What accuracy costs: ladders over method, tolerance or step, and arithmetic, measured on one system on this machine.
+
+error    largest |x_i(t) - reference_i(t)| / max |reference_i| over all coordinates, velocities and sampled times
+drift    largest change of the energy h, relative to the largest kinetic energy
+seconds  median of the integration itself; compiling is not counted (it happens once)
+
+An error is measured against a reference solution of a different method and arithmetic, never against a tolerance; what
+is smaller than a hundred times the reference's own error is not called an error at all.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, isfinite, log2, log10
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.numerics.kernels.llvm import available, kernels
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable
+from mbsym.numerics.reference import Reference
+
+#: A reference must be so much better than what it judges.
+MARGIN = 100.0
+
+#: Runs shorter than this are repeated, and the median taken.
+SHORT = 0.25
+REPEATS = 5
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One way to integrate: a method in an arithmetic with a tolerance or a step."""
+
+    method: Method
+    scalar: str
+    setting: Setting
+
+    @property
+    def label(self) -> str:
+        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
+        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
+        return f"{self.method.traits.name} {self.shown}{arithmetic}"
+
+    @property
+    def shown(self) -> str:
+        """The tolerance or the step."""
+        if self.setting.step is not None:
+            return f"h={self.setting.step:.3g}"
+        return f"{self.setting.tolerance:.0e}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What one candidate cost and how wrong it was; ``trouble`` says why there is no error."""
+
+    candidate: Candidate
+    error: float
+    drift: float
+    evaluations: int
+    steps: int
+    seconds: float
+    trouble: str = ""
+    front: bool = False
+
+
+@dataclass(frozen=True)
+class Order:
+    """The measured order of a fixed-step method beside its nominal one; ``pairs`` of steps it was fitted to."""
+
+    method: str
+    scalar: str
+    nominal: int
+    measured: float
+    pairs: int
+
+
+@dataclass(frozen=True)
+class Tradeoff:
+    """All rows, in the order measured; ``unusable`` methods with the reason."""
+
+    rows: tuple[Measured, ...]
+    reference: Reference
+    orders: tuple[Order, ...]
+    unusable: tuple[tuple[str, str], ...]
+
+    def cheapest(self, target: float) -> Measured | None:
+        """The least expensive row whose error is at most ``target``."""
+        good = [row for row in self.rows if row.error <= target]
+        return min(good, key=lambda row: row.seconds, default=None)
+
+    @property
+    def smallest_judged(self) -> float:
+        """Errors below this cannot be told from the reference's own."""
+        return MARGIN * self.reference.error
+
+
+def tradeoff(
+    dynamics: Dynamics,
+    methods: Sequence[Method],
+    reference: Reference,
+    budget: float = 60.0,
+    watch: Callable[[str], None] = lambda label: None,
+) -> Tradeoff:
+    """Measures every method's ladder against ``reference`` (whose times are the sampled ones), in ``budget`` seconds.
+
+    The budget is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or where
+    a finer setting no longer gives a smaller error.
+    """
+    judge = _Judge(dynamics, reference)
+    rows: list[Measured] = []
+    unusable = []
+    pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
+    ends = time.perf_counter() + budget
+    for place, (method, scalar) in enumerate(pairs):
+        share = (ends - time.perf_counter()) / (len(pairs) - place)
+        try:
+            for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
+                rows.append(row)
+        except Unusable as reason:
+            unusable.append((method.traits.name, str(reason)))
+    return Tradeoff(_with_front(rows), reference, tuple(_orders(rows)), tuple(dict.fromkeys(unusable)))
+
+
+class _Judge:
+    """Runs candidates and compares them with the reference."""
+
+    def __init__(self, dynamics: Dynamics, reference: Reference) -> None:
+        self.dynamics = dynamics
+        self.reference = reference
+        size = np.max(np.abs(reference.states), axis=1)
+        self.scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
+        self.energy = kernels({"energy": dynamics.energy})["energy"]
+        self.floor = max(reference.error, float(np.finfo(float).eps))
+
+    def measure(self, candidate: Candidate) -> Measured:
+        """Error, drift and median seconds of a candidate; a breakdown is a result too."""
+        times = self.reference.times
+        seconds: list[float] = []
+        while not seconds or (sum(seconds) < SHORT and len(seconds) < REPEATS):
+            run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
+            states = [np.array(run.state, dtype=float)]
+            started = time.perf_counter()
+            try:
+                for t in times[1:]:
+                    states.append(np.array(run.advance(float(t)), dtype=float))
+            except Breakdown as found:
+                spent = time.perf_counter() - started
+                return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, spent, str(found))
+            seconds.append(time.perf_counter() - started)
+        matrix = np.array(states).T
+        error, drift = self._error(matrix), self._drift(times, matrix)
+        work, typical = run.work, statistics.median(seconds)
+        return Measured(candidate, error, drift, work.evaluations, work.steps, typical)
+
+    def _error(self, states: Any) -> float:
+        with np.errstate(all="ignore"):
+            worst = float(np.max(np.abs(states - self.reference.states) / self.scale))
+        return worst if isfinite(worst) else inf
+
+    def _drift(self, times: Any, states: Any) -> float:
+        with np.errstate(all="ignore"):
+            h, kinetic = self.energy(np.vstack([times, states]))
+            scale = np.max(np.abs(kinetic)) or abs(h[0]) or 1.0
+            worst = float(np.max(np.abs(h - h[0])) / scale)
+        return worst if isfinite(worst) else inf
+
+
+def _ladder(
+    judge: _Judge, method: Method, scalar: str, share: float, watch: Callable[[str], None]
+) -> Iterator[Measured]:
+    """From coarse to fine, until the next rung costs too much or brings nothing."""
+    started = time.perf_counter()
+    idle, best = 0, inf
+    last: Measured | None = None
+    for setting in _settings(method, scalar, float(judge.reference.times[-1])):
+        candidate = Candidate(method, scalar, setting)
+        watch(candidate.label)
+        row = judge.measure(candidate)
+        yield row
+        idle = 0 if row.error < 0.5 * best else idle + (best < inf)
+        best = min(best, row.error)
+        growth = max(1.3, row.seconds / last.seconds) if last is not None and last.seconds > 0 else 2.0
+        last = row
+        spent = time.perf_counter() - started
+        if idle >= 3 or spent + min(growth, 4.0) * row.seconds > share:
+            return
+
+
+def _settings(method: Method, scalar: str, duration: float) -> Iterator[Setting]:
+    """Tolerances decade by decade down to the arithmetic's own, or steps halved again and again."""
+    if method.traits.fixed:
+        count = 16
+        while count <= 2**26:
+            yield Setting(step=duration / count)
+            count *= 2
+    else:
+        finest = {FLOAT32: -6, FLOAT64: -14}.get(scalar, -18)
+        for power in range(-3, finest - 1, -1):
+            yield Setting(tolerance=10.0**power)
+
+
+def _with_front(rows: Sequence[Measured]) -> tuple[Measured, ...]:
+    """A row is on the Pareto front if no other is both cheaper and more accurate."""
+    best = inf
+    front = set()
+    for place in sorted(range(len(rows)), key=lambda k: (rows[k].seconds, rows[k].error)):
+        if rows[place].error < best:
+            best = rows[place].error
+            front.add(place)
+    return tuple(replace(row, front=place in front) for place, row in enumerate(rows))
+
+
+def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
+    """log2 of the ratio of errors when the step is halved, in the range where neither roundoff nor coarseness rules."""
+    ladders: dict[tuple[str, str], list[Measured]] = {}
+    for row in rows:
+        traits = row.candidate.method.traits
+        if traits.fixed and traits.order is not None and isfinite(row.error):
+            ladders.setdefault((traits.name, row.candidate.scalar), []).append(row)
+    for (name, scalar), ladder in ladders.items():
+        floor = min(row.error for row in ladder)
+        slopes = []
+        for coarse, fine in pairwise(ladder):
+            if coarse.error < 0.05 and fine.error > 30 * floor:
+                slopes.append(log2(coarse.error / fine.error))
+        if slopes:
+            nominal = ladder[0].candidate.method.traits.order
+            assert nominal is not None
+            yield Order(name, scalar, nominal, statistics.median(slopes[-3:]), len(slopes))
+
+
+def advice(found: Tradeoff, target: float) -> str:
+    """One sentence: which setting reaches the target at the least cost, and what a digit more or less would cost."""
+    if target < found.smallest_judged:
+        return (
+            f"The reference itself is known to {found.reference.error:.1e} only: an error of {target:.0e} cannot be "
+            f"judged here; choose a target of at least {found.smallest_judged:.0e}."
+        )
+    best = found.cheapest(target)
+    if best is None:
+        nearest = min(found.rows, key=lambda row: row.error)
+        return (
+            f"Nothing tried reaches {target:.0e}; the most accurate is {nearest.candidate.label} with an error of "
+            f"{nearest.error:.1e} in {duration(nearest.seconds)}."
+        )
+    return (
+        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {best.error:.1e} in "
+        f"{duration(best.seconds)}; one digit more costs {_neighbour(found, best, target / 10)}, one digit less "
+        f"{_neighbour(found, best, target * 10)}."
+    )
+
+
+def _neighbour(found: Tradeoff, best: Measured, target: float) -> str:
+    other = found.cheapest(target)
+    if other is None or target < found.smallest_judged:
+        return "more than anything tried here can give"
+    if other is best:
+        return f"nothing extra (it already has {-log10(max(best.error, 1e-300)):.1f} digits)"
+    return f"{duration(other.seconds)}, {other.seconds / best.seconds:.2g} times as much ({other.candidate.label})"
+
+
+def duration(seconds: float) -> str:
+    """``3.2 ms``."""
+    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
+        if seconds < limit:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"

@@ -1,0 +1,854 @@
+"""Claims: is what somebody printed right?
+
+A claim says "quantity = formula".  The quantity is derived, the formula is read as it was printed, and
+
+    difference = claimed - derived
+
+is decided in the exact ring: the claim holds exactly (the difference is zero), on the relations between parameters,
+up to a factor, with the same equations of motion (Lagrangians that differ by dF(q, t)/dt, the kernel of the
+Euler-Lagrange operator), or it differs by exactly this.  A difference is split into products of velocities, and where
+a publication's abbreviations were declared, those that explain a part are named: a part that *is* an abbreviation, or
+an abbreviation that would be right with something added.
+
+A first integral I is decided by dI/dt = 0 on the equations of motion, a stability condition by looking for it among the
+conditions of problem 6, a number at a state by rigorous balls against the digits that were printed: 1.234 means
+1.234 +- 0.0005.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from typing import Any, Protocol
+
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.base import Lowering, NoClosedForm, NotRational
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Balls
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import (
+    ZERO,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    add,
+    differentiate,
+    multiply,
+    names,
+    text,
+    walk,
+)
+from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
+from mbsym.mechanics.oracle import State
+from mbsym.mechanics.programs import Programs, accelerated
+from mbsym.model.claims import CLAIMS, SUMS, Claim
+from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import is_conserved, is_proved, remainder, residual, total_rate
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.knowledge import definition_in_parameters
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
+
+EXACT = "holds exactly"
+RELATIONS = "holds on the relations between the parameters"
+FACTOR = "holds up to a factor"
+EQUIVALENT = "holds up to a total time derivative"
+DIGITS = "holds to the digits printed"
+NUMERICAL = "verified numerically"
+UNDECIDED = "undecided"
+DIFFERS = "differs"
+
+#: Working precision of balls, in bits.
+PRECISION = 256
+#: Differences of more products of velocities than this are not taken apart.
+MOST_PARTS = 60
+#: Digits of a derived number that are shown.
+DIGITS_SHOWN = 12
+_MOTION = ("velocity", "acceleration")
+
+
+class Derived(Protocol):
+    """What a claim may be compared with; each is derived when it is asked for."""
+
+    @property
+    def system(self) -> System: ...
+    @property
+    def ring(self) -> Ring: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def parameters_scene(self) -> Scene: ...
+    @property
+    def signs(self) -> Signs: ...
+    @property
+    def programs(self) -> Programs: ...
+    @property
+    def kinematics(self) -> Kinematics: ...
+    @property
+    def energy(self) -> Energy: ...
+    @property
+    def equations(self) -> Equations: ...
+    @property
+    def equilibrium(self) -> Equilibrium: ...
+    @property
+    def linearisation(self) -> Linearisation: ...
+    @property
+    def stability(self) -> Stability: ...
+
+
+@dataclass(frozen=True)
+class Part:
+    """``factor`` (a combination of products of velocities; 1 without them) times ``difference``.
+
+    For a characteristic polynomial the factor is its variable to the power ``power``.  ``same_as`` is the abbreviation
+    that the difference is (with its number: ``-2*c18``); ``repairs`` are abbreviations with which the claim would be
+    right if the formula were added to them.
+    """
+
+    factor: Formula
+    difference: Formula
+    power: int | None = None
+    same_as: str = ""
+    repairs: tuple[tuple[str, Formula], ...] = ()
+
+
+@dataclass(frozen=True)
+class ClaimResult:
+    """``outcome`` is one of the words above; ``difference`` is claimed - derived, ``parts`` the same taken apart.
+
+    For a first integral I the difference is det(M) dI/dt instead.  ``factor`` is claimed / derived.  For numbers at a
+    state ``value`` is the derived one, ``digits`` how many of the ``printed_digits`` hold.  ``remark`` says what else
+    there is to say.
+    """
+
+    claim: Claim
+    title: str
+    outcome: str
+    derived: Formula | None = None
+    difference: Formula | None = None
+    parts: tuple[Part, ...] = ()
+    factor: Formula | None = None
+    value: str = ""
+    digits: int | None = None
+    printed_digits: int | None = None
+    remark: str = ""
+
+    @property
+    def holds(self) -> bool:
+        """A factor is immaterial only where the quantity vanishes, or is constant, on every motion."""
+        if self.outcome == FACTOR:
+            return CLAIMS[self.claim.kind].homogeneous
+        return self.outcome in (EXACT, RELATIONS, EQUIVALENT, DIGITS, NUMERICAL)
+
+    @property
+    def refuted(self) -> bool:
+        return self.outcome == DIFFERS or (self.outcome == FACTOR and not self.holds)
+
+
+def title(claim: Claim, system: System) -> str:
+    """What a claim is about: ``mass matrix [theta, delta]``."""
+    kind = CLAIMS[claim.kind]
+    words = claim.kind
+    if claim.kind == "coefficient":
+        of = claim.of if claim.of in SUMS else f"the equation of {claim.of}"
+        words = f"coefficient of {text(claim.at or ZERO)} in {of}"
+    elif claim.of_expression is not None:
+        words = f"value of {text(claim.of_expression)}"
+    elif claim.of:
+        words += f" of {claim.of}"
+    if claim.entry:
+        words += " [" + ", ".join(str(k) if kind.axes else system.coordinates[k - 1] for k in claim.entry) + "]"
+    if claim.right is not None:
+        words += f" {text(claim.equals)} {claim.relation} {text(claim.right)}"
+    if claim.at_initial:
+        words += " at the initial state"
+    elif claim.state:
+        words += " at " + ", ".join(f"{name} = {text(value)}" for name, value in claim.state)
+    return words
+
+
+def examine(derived: Derived, claim: Claim) -> ClaimResult:
+    """One claim against what is derived.
+
+    Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
+    """
+    about = title(claim, derived.system)
+    if claim.is_numerical:
+        return _at_state(derived, claim, about)
+    if claim.right is not None:
+        return _condition(derived, claim, about)
+    symbols = Symbols(derived.system)
+    claimed = symbols.polynomial(derived.parameters_scene, claim)
+    if claim.kind == "first integral":
+        return _first_integral(derived, claim, about, _in_parameters(derived, claimed))
+    return _compared(derived, claim, about, symbols, claimed, _quantity(derived, claim))
+
+
+def undecided(system: System, claim: Claim, reason: str) -> ClaimResult:
+    """A claim about something that could not be derived."""
+    return ClaimResult(claim, title(claim, system), UNDECIDED, remark=reason)
+
+
+# --- symbols ---
+
+
+class Symbols:
+    """The abbreviations of a description, as they stand in claims.
+
+    One that is a linear form in angles (``beta = theta + alpha``) may stand under sin and cos; the others are values.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.values = {item.name: item.value for item in system.abbreviations}
+        self.forms: dict[str, LinearForm] = {}
+        for name, value in self.values.items():
+            form = linear_form(value)
+            opened = None if form is None else self._opened_form(form)
+            if opened is not None:
+                self.forms[name] = opened
+
+    def _opened_form(self, form: LinearForm) -> LinearForm | None:
+        """A linear form with abbreviations replaced; None where one of them is no linear form."""
+        total = LinearForm((), form.turns, form.constant)
+        for name, coefficient in form.coefficients:
+            if name in self.values and name not in self.forms:
+                return None
+            total = total + self.forms.get(name, LinearForm(((name, Fraction(1)),))).scaled(coefficient)
+        return total
+
+    def opened(self, expression: Expression) -> Expression:
+        """The expression with abbreviations under sin, cos and tan replaced by the angles that they are."""
+        match expression:
+            case Call("sin" | "cos" | "tan" as function, argument):
+                form = linear_form(argument)
+                opened = None if form is None else self._opened_form(form)
+                return Call(function, self.opened(argument) if opened is None else _written(opened))
+            case Call(function, argument):
+                return Call(function, self.opened(argument))
+            case Negative(operand):
+                return Negative(self.opened(operand))
+            case Operation(operator, left, right):
+                return Operation(operator, self.opened(left), self.opened(right))
+        return expression
+
+    def arguments(self) -> Iterator[Expression]:
+        """Every angle under sin, cos and tan in the claims and abbreviations."""
+        for expression in self._all():
+            for node in walk(self.opened(expression)):
+                if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
+                    yield node.argument
+
+    def _all(self) -> Iterator[Expression]:
+        yield from self.values.values()
+        for claim in self.system.claims:
+            parts = (claim.equals, claim.right, claim.of_expression, claim.at)
+            yield from (part for part in parts if part is not None)
+
+    def occurring(self, expressions: Iterable[Expression]) -> set[str]:
+        """The names that occur, those in abbreviations included."""
+        found: set[str] = set()
+        pending = [name for expression in expressions for name in names(expression)]
+        while pending:
+            name = pending.pop()
+            if name not in found:
+                found.add(name)
+                pending += names(self.values[name]) if name in self.values else ()
+        return found
+
+    def lowering(self, algebra: Any, environment: Mapping[str, Any], wanted: set[str]) -> Lowering:
+        """Values for expressions, in an algebra, with those of the wanted abbreviations."""
+        known = dict(environment)
+        for name, value in self.values.items():
+            if name in wanted:
+                known[name] = Lowering(algebra, known)(self.opened(value))
+        return Lowering(algebra, known)
+
+    def polynomial(self, scene: Scene, claim: Claim) -> Polynomial:
+        """What was claimed, in the ring; a characteristic polynomial's variable is the generator of the time."""
+        wanted = self.occurring([claim.equals])
+        environment = dict(scene.environment)
+        if claim.variable:
+            if "t" in wanted:
+                raise NoClosedForm("a characteristic polynomial does not hold the time")
+            environment[claim.variable] = scene.ring.generator("time", "t")
+        return self.lowering(scene.ring, environment, wanted)(self.opened(claim.equals))
+
+
+def _written(form: LinearForm) -> Expression:
+    total: Expression = ZERO
+    for name, coefficient in form.coefficients:
+        total = add(total, multiply(Number(coefficient), Name(name)))
+    if form.turns:
+        total = add(total, multiply(Number(form.turns), Name("pi")))
+    return add(total, Number(form.constant)) if form.constant else total
+
+
+# --- quantities ---
+
+
+def _quantity(derived: Derived, claim: Claim) -> Polynomial:
+    """What is claimed, derived; over the ring."""
+    ring, kind = derived.ring, claim.kind
+    rows = [k - 1 for k in claim.entry]
+    if kind in SUMS:
+        return _sum(derived, kind)
+    if kind == "coefficient":
+        whole = _sum(derived, claim.of) if claim.of in SUMS else _equation(derived, claim.of)
+        return _coefficient(ring, whole, derived.parameters_scene.lower(claim.at or ZERO))
+    if kind == "mass matrix":
+        return derived.energy.A2[rows[0], rows[1]].polynomial
+    if kind == "equation of motion":
+        return _equation(derived, claim.of)
+    if kind.startswith("linear matrix"):
+        return getattr(derived.linearisation, kind[-1])[rows[0], rows[1]].polynomial
+    if kind.startswith("subsystem matrix"):
+        wanted = [derived.system.coordinates[k] for k in rows]
+        for part in derived.linearisation.subsystems:
+            if set(wanted) <= set(part.coordinates):
+                place = [part.coordinates.index(name) for name in wanted]
+                return getattr(part, kind[-1])[place[0], place[1]].polynomial
+        return ring.zero
+    if kind == "characteristic polynomial":
+        return _characteristic(derived, claim.of)
+    if kind in ("position", "velocity"):
+        return _in_inertial_axes(derived.scene, kind, claim.of)[rows[0]]
+    body = derived.kinematics.body(claim.of)
+    if kind == "direction cosine":
+        return body.rotation[rows[0], rows[1]].polynomial
+    spin = body.angular_velocity if kind == "angular velocity" else body.relative_angular_velocity
+    return spin[rows[0]].polynomial
+
+
+def _sum(derived: Derived, kind: str) -> Polynomial:
+    kinetic, force = derived.energy.kinetic_energy.polynomial, derived.energy.force_function.polynomial
+    return {
+        "kinetic energy": kinetic,
+        "force function": force,
+        "potential energy": -force,
+        "lagrangian": derived.ring.reduce(kinetic + force),
+    }[kind]
+
+
+def _equation(derived: Derived, coordinate: str) -> Polynomial:
+    """E_i = (M q'' - f)_i."""
+    return residual(derived.scene, derived.equations, derived.system.coordinates.index(coordinate))
+
+
+def _characteristic(derived: Derived, coordinate: str) -> Polynomial:
+    """Lambda of one subsystem, or of all of them multiplied; the time stands for lambda."""
+    ring = derived.ring
+    total = ring.one
+    for part in derived.stability.subsystems:
+        if not coordinate or coordinate in part.coordinates:
+            powers = enumerate(part.characteristic)
+            sum_ = ring.zero
+            for power, coefficient in powers:
+                sum_ = sum_ + coefficient.polynomial * ring.generator("time", "t") ** power
+            total = ring.times(total, sum_)
+    return ring.reduce(total)
+
+
+def _in_inertial_axes(scene: Scene, kind: str, body: str) -> tuple[Polynomial, Polynomial, Polynomial]:
+    """Radius vector or velocity of the mass centre."""
+    motion = scene.motions[body]
+    if kind == "position":
+        found = scene.position(body, motion.mass_centre, INERTIAL)
+    else:
+        found = scene.to_axes(motion.velocity_mass_centre, body, INERTIAL)
+    return (scene.ring.reduce(found[0]), scene.ring.reduce(found[1]), scene.ring.reduce(found[2]))
+
+
+def _coefficient(ring: Ring, x: Polynomial, product: Polynomial) -> Polynomial:
+    """What stands before exactly this product of velocities and accelerations."""
+    wanted = tuple(int(e) for e in product.monomial(0))
+    for exponents, coefficient in _by_motion(ring, x):
+        if exponents == wanted:
+            return coefficient
+    return ring.zero
+
+
+def _by_motion(ring: Ring, x: Polynomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """Exponents of velocities and accelerations (those of all others are zero), and what stands before them."""
+    yield from _split(ring, x, {k for k, g in enumerate(ring.generators) if g.kind not in _MOTION})
+
+
+def _split(ring: Ring, x: Polynomial, constant: set[int]) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """x as a polynomial in the other generators: their exponents, and the coefficients in the constant ones."""
+    found: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in x.terms():
+        exponents = [int(e) for e in monomial]
+        key = tuple(0 if k in constant else e for k, e in enumerate(exponents))
+        rest = tuple(e if k in constant else 0 for k, e in enumerate(exponents))
+        found.setdefault(key, {})[rest] = coefficient
+    for key, terms in found.items():
+        yield key, ring.context.from_dict(terms)
+
+
+# --- comparison ---
+
+
+def _in_parameters(derived: Derived, x: Polynomial) -> Polynomial:
+    """The description's own symbols replaced by what they stand for."""
+    ring, scene = derived.ring, derived.parameters_scene
+    degrees = x.degrees()
+    images = {}
+    for item in derived.system.notation:
+        index = ring.index("parameter", item.name)
+        if degrees[index] > 0:
+            images[index] = definition_in_parameters(scene, item.name)
+    return ring.substitute(x, images) if images else ring.reduce(x)
+
+
+def _on_relations(derived: Derived, claim: Claim, x: Polynomial) -> Polynomial:
+    """Relations between parameters used; for the linear problem also the conditions under which the motion exists."""
+    ring = derived.ring
+    images = relations(derived.parameters_scene)
+    if claim.kind.startswith(("linear", "subsystem", "characteristic", "condition")):
+        images |= {ring.index("parameter", name): value.polynomial for name, value in derived.equilibrium.solved}
+    return ring.substitute(x, images) if images else x
+
+
+def _compared(
+    derived: Derived, claim: Claim, about: str, symbols: Symbols, claimed: Polynomial, truth: Polynomial
+) -> ClaimResult:
+    ring = derived.ring
+    result = ClaimResult(claim, about, EXACT, Formula(ring, truth))
+    homogeneous = CLAIMS[claim.kind].homogeneous
+    if ring.is_zero(claimed - truth):  # in the description's own symbols, if both are written in them
+        return result
+    factor = _factor(derived, claimed, truth, homogeneous)
+    if factor is not None:
+        return replace(result, outcome=FACTOR, factor=factor)
+    claimed, truth = _in_parameters(derived, claimed), _in_parameters(derived, truth)
+    difference = ring.reduce(claimed - truth)
+    zero = ring.is_zero(difference)
+    if zero:
+        return result
+    related = _on_relations(derived, claim, difference)
+    if related != difference:
+        claimed, truth = _on_relations(derived, claim, claimed), _on_relations(derived, claim, truth)
+        difference, zero = related, ring.is_zero(related)
+        if zero:
+            return replace(result, outcome=RELATIONS)
+    if zero is None:
+        same = _vanishes_in_balls(ring, difference)
+        return replace(result, outcome=NUMERICAL if same else UNDECIDED, difference=Formula(ring, difference))
+    factor = _factor(derived, claimed, truth, homogeneous)
+    if factor is not None:
+        return replace(result, outcome=FACTOR, factor=factor)
+    if claim.kind in SUMS and _same_equations(derived, difference):
+        remark = "the equations of motion are the same" if _moving(derived, difference) else "it differs by a constant"
+        return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
+    parts = _parts(derived, claim, symbols, difference)
+    if claim.variable:  # the generator of the time stands for the variable: only the parts can be shown
+        return replace(result, derived=None, outcome=DIFFERS, parts=parts)
+    return replace(result, outcome=DIFFERS, difference=Formula(ring, difference), parts=parts)
+
+
+def _vanishes_in_balls(ring: Ring, x: Polynomial) -> bool:
+    """Narrow balls around zero at random points, where the ring cannot decide."""
+    source = random.Random(1788)
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        for _ in range(4):
+            value = ring.evaluate(x, {name: fmpq(source.randint(1, 99), 64) for name in ring.names()})
+            if not value.is_finite() or not value.contains(0) or value.rad() > arb(2) ** -60:
+                return False
+    finally:
+        ctx.prec = keep
+    return True
+
+
+def _moving(derived: Derived, x: Polynomial) -> bool:
+    """Whether x depends on the state or the time."""
+    ring = derived.ring
+    degrees = x.degrees()
+    if any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind in _MOTION):
+        return True
+    varying = [*derived.system.coordinates, *(item.name for item in derived.system.prescribed), "t"]
+    return bool(ring.dependencies(x, varying))
+
+
+def _factor(derived: Derived, claimed: Polynomial, truth: Polynomial, any_factor: bool) -> Formula | None:
+    """claimed / derived, if that holds parameters only and (where a factor matters) is a product of powers.
+
+    Both are split into what varies with the state and what stands before it; then one of these quotients is the factor.
+    """
+    ring = derived.ring
+    if claimed.is_zero() or truth.is_zero():
+        return None
+    above, denominators = ring.fraction(claimed)
+    below, others = ring.fraction(truth)
+    for factor, exponent in others:
+        above = ring.times(above, ring.power(factor, exponent))
+    for factor, exponent in denominators:
+        below = ring.times(below, ring.power(factor, exponent))
+    constant = {k for k in range(len(ring.generators)) if not _moving(derived, ring.context.gen(k))}
+    first, second = dict(_split(ring, above, constant)), dict(_split(ring, below, constant))
+    if first.keys() != second.keys():
+        return None
+    key = min(second, key=lambda one: len(first[one]) + len(second[one]))
+    common = ring.common_factor(first[key], second[key])
+    top, bottom = ring.quotient(first[key], common), ring.quotient(second[key], common)
+    if top is None or bottom is None:
+        return None
+    if not any_factor and (len(top) > 1 or len(bottom) > 1):
+        return None
+    if not ring.is_zero(ring.times(claimed, bottom) - ring.times(truth, top)):
+        return None
+    return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+
+
+def _same_equations(derived: Derived, difference: Polynomial) -> bool:
+    """Whether d/dt dD/dq'_i - dD/dq_i vanishes identically for every coordinate: D = dF(q, t)/dt."""
+    ring, scene = derived.ring, derived.parameters_scene
+    for name in derived.system.coordinates:
+        momentum = ring.velocity_derivative(difference, name)
+        if ring.is_zero(total_rate(scene, momentum) - ring.derivative(difference, name)) is not True:
+            return False
+    return True
+
+
+# --- what differs ---
+
+
+def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynomial) -> tuple[Part, ...]:
+    """The difference by products of velocities (a characteristic polynomial by powers), equal ones together."""
+    ring = derived.ring
+    if claim.variable:
+        return tuple(_by_power(ring, difference))
+    split = list(_by_motion(ring, difference))
+    if len(split) > MOST_PARTS:
+        return ()
+    values = _values(derived, symbols, [claim.equals])
+    groups: list[tuple[Polynomial, Polynomial]] = []  # (combination of products, difference)
+    for exponents, coefficient in split:
+        product = ring.context.from_dict({exponents: fmpq(1)})
+        for place, (combined, known) in enumerate(groups):
+            ratio = _ratio(coefficient, known)
+            if ratio is not None:
+                groups[place] = (combined + product * ratio, known)
+                break
+        else:
+            groups.append((product, coefficient))
+    slopes = _slopes(derived, claim, symbols)
+    found = []
+    for combined, coefficient in groups:
+        same = _same_as(coefficient, values)
+        repairs = () if same else _repairs(ring, combined, coefficient, slopes, values)
+        found.append(Part(Formula(ring, combined), Formula(ring, coefficient), None, same, repairs))
+    return tuple(found)
+
+
+def _by_power(ring: Ring, x: Polynomial) -> Iterator[Part]:
+    """Powers of the variable of a characteristic polynomial, which the generator of the time stands for."""
+    index = ring.index("time", "t")
+    found: dict[int, dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in x.terms():
+        exponents = [int(e) for e in monomial]
+        power, exponents[index] = exponents[index], 0
+        found.setdefault(power, {})[tuple(exponents)] = coefficient
+    for power in sorted(found, reverse=True):
+        yield Part(Formula(ring, ring.one), Formula(ring, ring.context.from_dict(found[power])), power)
+
+
+def _values(derived: Derived, symbols: Symbols, expressions: list[Expression]) -> dict[str, Polynomial]:
+    """The abbreviations that occur, as polynomials in declared parameters."""
+    scene = derived.parameters_scene
+    wanted = symbols.occurring(expressions)
+    lower = symbols.lowering(scene.ring, scene.environment, wanted)
+    return {name: _in_parameters(derived, lower(Name(name))) for name in symbols.values if name in wanted}
+
+
+def _same_as(coefficient: Polynomial, values: Mapping[str, Polynomial]) -> str:
+    """``c18`` or ``-2*c18``, if the coefficient is a rational multiple of an abbreviation."""
+    for name, value in values.items():
+        ratio = None if value.is_constant() else _ratio(coefficient, value)
+        if ratio is not None:
+            sign = "-" if ratio < 0 else ""
+            return sign + (name if abs(ratio) == 1 else f"{abs(ratio)}*{name}")
+    return ""
+
+
+def _ratio(x: Polynomial, y: Polynomial) -> Any:
+    """x / y where that is a rational number, else None."""
+    if len(x) != len(y) or x.is_zero() or x.monomial(0) != y.monomial(0):
+        return None
+    ratio = x.coefficient(0) / y.coefficient(0)
+    return ratio if x == y * ratio else None
+
+
+def _slopes(derived: Derived, claim: Claim, symbols: Symbols) -> dict[str, Polynomial]:
+    """What stands before each abbreviation in the claim, for those that enter it linearly."""
+    scene = derived.parameters_scene
+    found = {}
+    for name in symbols.values:
+        if name not in names(claim.equals):
+            continue
+        slope = differentiate(claim.equals, name)
+        if name in names(slope):
+            continue
+        wanted = symbols.occurring([slope])
+        lower = symbols.lowering(scene.ring, scene.environment, wanted)
+        found[name] = _in_parameters(derived, lower(symbols.opened(slope)))
+    return found
+
+
+def _repairs(
+    ring: Ring,
+    combined: Polynomial,
+    coefficient: Polynomial,
+    slopes: Mapping[str, Polynomial],
+    values: Mapping[str, Polynomial],
+) -> tuple[tuple[str, Formula], ...]:
+    """Abbreviations that stand before just this combination: with -difference added the claim would be right.
+
+    Where some of them are made of the parameters of the difference, the others are not named.
+    """
+    found, likely = [], []
+    needed = _parameters(ring, coefficient)
+    for name, slope in slopes.items():
+        ratio = _ratio(combined, slope)
+        if ratio is not None:
+            found.append((name, Formula(ring, ring.reduce(-coefficient * ratio))))
+            if needed <= _parameters(ring, values[name]):
+                likely.append(found[-1])
+    return tuple(likely or found)
+
+
+def _parameters(ring: Ring, x: Polynomial) -> set[int]:
+    degrees = x.degrees()
+    return {k for k, g in enumerate(ring.generators) if g.kind == "parameter" and degrees[k] > 0}
+
+
+# --- first integrals ---
+
+
+def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
+    """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
+    scene, ring, equations = derived.scene, derived.ring, derived.equations
+    shown = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    if not any(claimed.degrees()[ring.index("velocity", name)] > 0 for name in derived.system.coordinates):
+        return replace(shown, outcome=DIFFERS, remark="it does not hold any velocity")
+    outcome = EXACT
+    for outcome in (EXACT, RELATIONS):
+        if outcome == RELATIONS:
+            images = relations(derived.parameters_scene)
+            if not images:
+                break
+            claimed = ring.substitute(claimed, images)
+            equations = _substituted(ring, equations, images)
+        if is_conserved(scene, equations, claimed):
+            proved = is_proved(scene, equations, claimed)
+            return replace(shown, outcome=outcome if proved else NUMERICAL)
+    left = remainder(scene, equations, claimed)
+    if left is None:
+        return replace(shown, outcome=DIFFERS, remark="dI/dt does not vanish on the equations of motion")
+    return replace(shown, outcome=DIFFERS, difference=Formula(ring, left))
+
+
+def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
+    def moved(x: Formula) -> Polynomial:
+        return ring.substitute(x.polynomial, images)
+
+    return replace(
+        equations,
+        mass_matrix=Matrix.of(ring, [[moved(x) for x in row] for row in equations.mass_matrix]),
+        forcing=column(ring, [moved(x) for x in equations.forcing]),
+    )
+
+
+# --- conditions ---
+
+
+def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """Looks for the inequality among the conditions of problem 6, factors of known sign apart."""
+    ring, scene = derived.ring, derived.parameters_scene
+    symbols = Symbols(derived.system)
+    assert claim.right is not None
+    sides = [claim.equals, claim.right]
+    lower = symbols.lowering(ring, scene.environment, symbols.occurring(sides))
+    left, right = (lower(symbols.opened(side)) for side in sides)
+    strict = claim.relation in ("<", ">", "!=")
+    if claim.relation in ("<", "<="):
+        left, right = right, left
+    result = ClaimResult(claim, about, EXACT)
+    for own in (True, False):  # in the description's own symbols, then in declared parameters
+        wanted = _essential(derived, claim, left - right, own)
+        known = list(_conditions(derived, claim, own))
+        for same in (_proportional, partial(_same_condition, derived.signs)):
+            for what, found, relation in known:
+                if same(wanted, found, relation == "!="):
+                    equal = strict == (relation in ("<", ">", "!="))
+                    return replace(result, remark=what + ("" if equal else ", but for the case of equality"))
+        kind = "" if claim.relation == "!=" else derived.signs.condition(wanted).kind
+        if kind == "always":
+            return replace(result, remark="it follows from the declared signs and assumptions")
+        if kind == "never":
+            return replace(result, outcome=DIFFERS, remark="with the declared signs and assumptions it never holds")
+    return replace(result, outcome=UNDECIDED, remark="it is not one of the conditions of problem 6 as they stand there")
+
+
+def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str, Polynomial, str]]:
+    """What a condition of problem 6 is called, the polynomial that has to be positive (or not zero), the relation."""
+    for part in derived.stability.subsystems:
+        whose = ", ".join(part.coordinates)
+        for found, note in (
+            ((*part.conditions, *part.sufficient), ""),
+            (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
+        ):
+            for label, formula, relation in found:
+                sign = -1 if relation in ("<", "<=") else 1
+                polynomial = _essential(derived, claim, formula.polynomial * sign, own)
+                yield f"it is the condition {label} of {whose}{note}", polynomial, relation
+
+
+def _essential(derived: Derived, claim: Claim, x: Polynomial, own: bool) -> Polynomial:
+    """x in its ``own`` symbols, or in declared parameters with relations used; denominators cleared by their signs."""
+    ring = derived.ring
+    whole = x if own else _on_relations(derived, claim, _in_parameters(derived, x))
+    numerator, denominators = ring.fraction(whole)
+    for factor, exponent in denominators:
+        if exponent % 2 and derived.signs.sign(factor) != "positive":
+            numerator = ring.times(numerator, factor)
+    return numerator
+
+
+def _proportional(first: Polynomial, second: Polynomial, unequal: bool) -> bool:
+    ratio = _ratio(first, second)
+    return ratio is not None and (unequal or ratio > 0)
+
+
+def _same_condition(signs: Signs, first: Polynomial, second: Polynomial, unequal: bool) -> bool:
+    """Whether two polynomials are positive together (nonzero together) for all parameters."""
+    decide = signs.nonzero_condition if unequal else signs.condition
+    one, other = decide(first), decide(second)
+    if one.kind != other.kind or one.kind not in ("inequality", "nonzero"):
+        return False
+    return one.polynomial == other.polynomial and sorted(map(str, one.nonzero)) == sorted(map(str, other.nonzero))
+
+
+# --- numbers at a state ---
+
+
+def _at_state(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """The derived value as a ball against the number that was printed, to its digits."""
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        state = _state(derived.system, claim)
+        symbols = Symbols(derived.system)
+        try:
+            printed = _number(symbols, state, claim.equals)
+            if claim.of_expression is not None:
+                value = _value(derived, symbols, state, claim.of_expression)
+            else:
+                value = Carrier(derived.ring, state.numbers, state.values)(_quantity(derived, claim))
+        except KeyError as missing:
+            raise NotRational(f"no number is given for {missing.args[0]}") from None
+        result = ClaimResult(claim, about, DIGITS, value=_shown(value))
+        if not value.is_finite():
+            return replace(result, outcome=UNDECIDED, remark="the value is not finite")
+        error = abs(printed - value)
+        if not claim.printed:
+            holds = error.contains(0) and error.rad() < (1 + abs(value)) * arb(2) ** -60
+            return replace(result, outcome=NUMERICAL if holds else DIFFERS)
+        digits, unit = _printed(claim.printed)
+        tolerance = arb(unit) / 2
+        result = replace(result, printed_digits=digits, digits=digits)
+        if error < tolerance or (error - tolerance).contains(0):
+            return result
+        return replace(result, outcome=DIFFERS, digits=_agreeing(error, value, digits))
+    finally:
+        ctx.prec = keep
+
+
+def _state(system: System, claim: Claim) -> State:
+    """Numbers for parameters ('values', relations), and the initial state or the claim's own numbers, else zero."""
+    values: dict[str, Any] = {"pi": arb.pi(), "t": arb(0)}
+    for name in system.coordinates:
+        values |= {name: arb(0), velocity_name(name): arb(0)}
+    numbers = Balls(values)
+    given = dict(claim.state)
+
+    def lower(expression: Expression) -> Any:
+        return Lowering(numbers, values)(expression)
+
+    for parameter in system.parameters:
+        chosen = given.get(parameter.name, parameter.value)
+        if chosen is not None:
+            values[parameter.name] = lower(chosen)
+    pending = [item for item in system.relations if item.name not in values]
+    while ready := [item for item in pending if names(item.value) <= values.keys()]:
+        for item in ready:
+            values[item.name] = lower(item.value)
+        pending = [item for item in pending if item.name not in values]
+    for moved in system.prescribed:
+        if moved.initial is None or names(moved.initial) <= values.keys():
+            start = arb(0) if moved.initial is None else lower(moved.initial)
+            values[moved.name] = start
+    for state in system.initial if claim.at_initial else ():
+        for name, chosen in ((state.coordinate, state.position), (velocity_name(state.coordinate), state.velocity)):
+            if chosen is not None and names(chosen) <= values.keys():
+                values[name] = lower(chosen)
+    for symbol in system.notation:
+        if names(symbol.value) <= values.keys():
+            values[symbol.name] = lower(symbol.value)
+    for name, chosen in given.items():
+        values[name] = lower(chosen)
+    return State(numbers, values)
+
+
+def _number(symbols: Symbols, state: State, expression: Expression) -> Any:
+    wanted = symbols.occurring([expression])
+    return symbols.lowering(state.numbers, state.values, wanted)(symbols.opened(expression))
+
+
+def _value(derived: Derived, symbols: Symbols, state: State, expression: Expression) -> Any:
+    """An expression at the state, its accelerations from the equations of motion."""
+    wanted = symbols.occurring([expression])
+    if any(acceleration_name(name) in wanted for name in derived.system.coordinates):
+        state = accelerated(derived.system, state, derived.programs)
+    return _number(symbols, state, expression)
+
+
+def _printed(number: str) -> tuple[int, fmpq]:
+    """Significant digits of a decimal number, and one unit of its last place."""
+    mantissa, _, exponent = number.lower().lstrip("+-").partition("e")
+    whole, _, decimals = mantissa.partition(".")
+    digits = len((whole + decimals).lstrip("0")) or 1
+    return digits, fmpq(10) ** (int(exponent or 0) - len(decimals))
+
+
+def _agreeing(error: Any, value: Any, digits: int) -> int:
+    """How many leading digits of the printed number are right, rounding allowed for."""
+    if value.contains(0):
+        return 0
+    ratio = 2 * error / abs(value)  # d digits hold: error <= 10^(1 - d) |value| / 2
+    right = 0
+    while right < digits and ratio < arb(10) ** (-right):
+        right += 1
+    return right
+
+
+def _shown(value: Any) -> str:
+    """A dozen digits, zero where nothing but rounding is left."""
+    if value.is_finite() and abs(value) < arb(2) ** -120:
+        return "0"
+    written = str(value.mid().str(DIGITS_SHOWN, radius=False))
+    mantissa, mark, exponent = written.partition("e")
+    return (mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa) + mark + exponent

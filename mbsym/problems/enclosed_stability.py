@@ -1,0 +1,125 @@
+"""Verdicts of problem 6 at a point that is known by enclosures: algebraic numbers, or boxes with a certified root.
+
+The theorems are those of ``stability_theory``; what is strict (a sign, a half-plane) is read off balls, and nothing is
+claimed that a ball leaves open.  Two facts make purely imaginary roots provable.  Without dissipation and circulation
+the spectrum of  M x'' + G x' + K x = 0  is symmetric about both axes: an isolated simple root whose ball meets the
+imaginary axis has its mirror image -conj(lambda) in the same ball, so it lies on the axis.  And with G = 0 the roots
+lambda^2 are real, so the signs of K's leading minors decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+from flint import acb_mat, arb, arb_mat, ctx
+
+from mbsym.problems.stability_theory import (
+    ASYMPTOTIC,
+    CRITICAL,
+    GYROSCOPIC,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LYAPUNOV,
+    ROUTH,
+    STABLE,
+    UNDECIDED,
+    UNSTABLE,
+    Verdict,
+)
+
+Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
+
+MASS_SINGULAR = "The mass matrix is singular: the coordinates are singular there."
+
+
+def enclosed_verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, bits: int = 200) -> Verdict:
+    """The verdict for M x'' + (D + G) x' + (K + N) x = 0 with entries in balls.  Never wrong; ``undecided`` if open."""
+    keep, ctx.prec = ctx.prec, bits
+    try:
+        return _verdict(m, d, g, k, n, conservative)
+    finally:
+        ctx.prec = keep
+
+
+def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) -> Verdict:
+    if not _positive(m):
+        return Verdict(UNDECIDED, "", MASS_SINGULAR)
+    undamped, potential, free_of_gyroscopic = _no(d), _no(n), _no(g)
+    if undamped and potential and _positive(k):
+        if not conservative:
+            return Verdict(CRITICAL, "", "K > 0, but no energy integral of the nonlinear system is known.")
+        why = "K > 0: the (changed) potential energy has a strict minimum."
+        return Verdict(STABLE, LAGRANGE if free_of_gyroscopic else ROUTH, why)
+    if potential and _positive(d) and _positive(k):
+        return Verdict(ASYMPTOTIC, KELVIN_CHETAEV, "K > 0 and complete dissipation.")
+    roots, simple = _eigenvalues(m, _sum(d, g), _sum(k, n))
+    if roots is None:
+        return Verdict(UNDECIDED, "", "The roots could not be enclosed.")
+    right = sum(bool(root.real > 0) for root in roots)
+    if right:
+        return Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part.")
+    if all(root.real < 0 for root in roots):
+        return Verdict(ASYMPTOTIC, LYAPUNOV, "All roots have negative real parts.")
+    if undamped and potential and simple and not any(root.contains(0) for root in roots) and _mirrored(roots):
+        why = "The first approximation is stable by gyroscopic forces alone; the nonlinear system is open."
+        return Verdict(GYROSCOPIC, "", why)
+    return Verdict(UNDECIDED, "", "On a border, or too close to one: no theorem of the first approximation decides.")
+
+
+def _eigenvalues(m: Rows, c: Rows, k: Rows) -> tuple[list[Any] | None, bool]:
+    """(balls around all roots, whether they are isolated from each other)."""
+    size = len(m)
+    mass = arb_mat(size, size, [x for row in m for x in row])
+    position = mass.solve(arb_mat(size, size, [x for row in k for x in row]))
+    velocity = mass.solve(arb_mat(size, size, [x for row in c for x in row]))
+    first = acb_mat(2 * size, 2 * size)
+    for i in range(size):
+        first[i, size + i] = 1
+        for j in range(size):
+            first[size + i, j] = -position[i, j]
+            first[size + i, size + j] = -velocity[i, j]
+    try:
+        return list(first.eig()), True
+    except ValueError:
+        pass
+    try:
+        return list(first.eig(multiple=True)), False
+    except ValueError:
+        return None, False
+
+
+def _mirrored(roots: Sequence[Any]) -> bool:
+    """Whether every root lies on the imaginary axis, for a spectrum that is symmetric about it."""
+    for root in roots:
+        image = -root.conjugate()
+        if not root.overlaps(image) or any(image.overlaps(other) for other in roots if other is not root):
+            return False
+    return True
+
+
+def _positive(rows: Rows) -> bool:
+    size = len(rows)
+    return all(
+        arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1)
+    )
+
+
+def _no(rows: Rows) -> bool:
+    return all(x == 0 for row in rows for x in row)
+
+
+def _sum(a: Rows, b: Rows) -> list[list[Any]]:
+    return [[arb(x) + arb(y) for x, y in zip(*rows, strict=True)] for rows in zip(a, b, strict=True)]
+
+
+def blocks(*matrices: Rows) -> list[list[int]]:
+    """Sets of indices between which every matrix has exact zeros only."""
+    size = len(matrices[0])
+    label = list(range(size))
+    for i, j in combinations(range(size), 2):
+        if not all(bool(rows[i][j] == 0) and bool(rows[j][i] == 0) for rows in matrices):
+            old, new = max(label[i], label[j]), min(label[i], label[j])
+            label = [new if x == old else x for x in label]
+    return [[i for i in range(size) if label[i] == first] for first in sorted(set(label))]

@@ -1,0 +1,82 @@
+"""What became of the claims, in words and by what they differ: for the terminal, results.json and the appendix."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from mbsym.expressions.tree import text
+from mbsym.formulas.formula import Formula
+from mbsym.problems.claims import UNDECIDED, ClaimResult, Part
+
+#: Differences longer than this are counted, not printed.
+LONGEST_DIFFERENCE = 400
+
+HELD, REFUTED, OPEN = "held", "refuted", "undecided"
+
+
+@dataclass(frozen=True)
+class ClaimLine:
+    """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs."""
+
+    place: str
+    title: str
+    outcome: str
+    word: str
+    lines: tuple[str, ...] = ()
+
+
+def claim_line(result: ClaimResult) -> ClaimLine:
+    """The outcome in words; ``word`` is held, refuted or undecided."""
+    word = HELD if result.holds else REFUTED if result.refuted else OPEN
+    outcome = result.outcome
+    if result.factor is not None:
+        outcome += f": claimed = {_long(result.factor)} times derived"
+    if result.value:
+        claimed = result.claim.printed or text(result.claim.equals)
+        outcome += f" ({result.value})" if result.holds else f": claimed {claimed}, derived {result.value}"
+    if result.digits is not None and result.digits != result.printed_digits:
+        outcome += f", {result.digits} of {result.printed_digits} digits right"
+    if result.outcome == UNDECIDED or (result.remark and not result.parts):
+        outcome += f": {result.remark}" if result.remark else ""
+    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)))
+
+
+def _differences(result: ClaimResult) -> Iterator[str]:
+    for part in result.parts:
+        yield f"{part_name(result, part)}claimed - derived = {_difference(part)}"
+        for name, change in part.repairs:
+            words, formula = repair(part, change)
+            yield f"  right with {'this' if formula is None else _long(formula)} {words} {name}"
+    if not result.parts and result.difference is not None:
+        yield f"{left_side(result)} = {_long(result.difference)}"
+
+
+def left_side(result: ClaimResult) -> str:
+    """What ``difference`` is."""
+    return "det(M) dI/dt" if result.claim.kind == "first integral" else "claimed - derived"
+
+
+def repair(part: Part, change: Formula) -> tuple[str, Formula | None]:
+    """``added to`` or ``taken from`` an abbreviation, and what; None where it is the difference of the part itself."""
+    if change == part.difference:
+        return "added to", None
+    if (change.polynomial + part.difference.polynomial).is_zero():
+        return "taken from", None
+    return "added to", change
+
+
+def part_name(result: ClaimResult, part: Part) -> str:
+    """Which products of velocities, or which power, a part of a difference belongs to."""
+    if part.power is not None:
+        return f"at {result.claim.variable}**{part.power}: " if part.power else "without the variable: "
+    return "" if part.factor == 1 else f"at {part.factor}: "
+
+
+def _difference(part: Part) -> str:
+    return _long(part.difference) + (f" = {part.same_as}" if part.same_as else "")
+
+
+def _long(value: Formula) -> str:
+    written = str(value)
+    return written if len(written) <= LONGEST_DIFFERENCE else f"({value.terms} terms; see the reports)"

@@ -1,0 +1,239 @@
+"""Figures of a trajectory: time histories, phase planes, drift of the energy, as SVG or PNG.
+
+Drawn without a display and without global state; equal trajectories give equal bytes (with one version of matplotlib).
+Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from io import BytesIO
+from itertools import pairwise
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+from mbsym.formulas.latex import LatexNames
+from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.system import System
+from mbsym.numerics.simulate import Trajectory
+
+FORMATS = ("svg", "png")
+
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "mathtext.fontset": "dejavusans",
+    "axes.titlesize": 11,
+    "axes.labelsize": 11,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.useoffset": False,
+    "lines.linewidth": 1.2,
+    "lines.solid_joinstyle": "round",
+    "agg.path.chunksize": 20_000,
+    "svg.hashsalt": "mbsym",
+    "svg.fonttype": "path",
+    "savefig.dpi": 150,
+}
+
+BLUE, RED, GREY = "#1f5fa8", "#b3372f", "#888888"
+
+#: Rows of time histories, and rows and columns of phase planes, on one page.
+HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
+
+#: Curves over time are thinned to their extremes in so many intervals; planes with more points become pixels.
+INTERVALS, MOST_POINTS = 2_000, 20_000
+
+#: Rounding of one double, and where the drift's axis ends: what is exactly zero is drawn there.
+ROUNDING, FLOOR = 2.0**-53, 1e-18
+
+
+def figures(found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True) -> dict[str, bytes]:
+    """Every figure in every format, by file name.
+
+    ``note`` is written under each title (a trajectory that is not whole must say so); ``conserved`` says whether the
+    energy ought to be constant.
+    """
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        pages = [*_histories(found, note), *_planes(found, note), ("drift", _drift(found, note, conserved))]
+        return {f"{name}.{kind}": _saved(figure, kind) for name, figure in pages for kind in formats}
+
+
+def _saved(figure: Figure, kind: str) -> bytes:
+    stream = BytesIO()
+    metadata = {"Date": None, "Creator": "mbsym"} if kind == "svg" else {"Software": "mbsym"}
+    figure.savefig(stream, format=kind, metadata=metadata)
+    return stream.getvalue()
+
+
+def _page(width: float, height: float, title: str, note: str) -> Figure:
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
+    return figure
+
+
+def _pages(stem: str, items: Sequence[str], size: int) -> Iterator[tuple[str, list[str], str]]:
+    """(file name, items, what to add to the title) of each page; pages are filled evenly."""
+    count = -(-len(items) // size)
+    for page in range(count):
+        part = list(items[page * len(items) // count : (page + 1) * len(items) // count])
+        yield stem + (f"-{page + 1}" if page else ""), part, f", page {page + 1} of {count}" if count > 1 else ""
+
+
+def _title(system: System) -> str:
+    return system.name if len(system.name) <= 70 else system.name[:67] + "..."
+
+
+def _labels(system: System) -> tuple[dict[str, str], dict[str, str]]:
+    """Coordinates and velocities as mathematical text in the user's names."""
+    names = LatexNames(["t", *system.coordinates])
+    # matplotlib knows no \mathtt{a\_b}; plain letters are as clear.
+    plain = {name: "$\\mathrm{" + name.replace("_", r"\_") + "}$" for name in system.coordinates}
+    positions, velocities = {}, {}
+    for name in system.coordinates:
+        symbol = names[name]
+        odd = "mathtt" in symbol.stem
+        positions[name] = plain[name] if odd else f"${symbol}$"
+        velocities[name] = f"d{plain[name]}/d$t$" if odd else f"${symbol.accented('dot')}$"
+    return positions, velocities
+
+
+def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+    """q(t) on the left, q'(t) on the right, a row a coordinate."""
+    system = found.system
+    positions, velocities = _labels(system)
+    place = {name: i for i, name in enumerate(system.coordinates)}
+    for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
+        figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
+        axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
+        for row, name in zip(axes, names, strict=True):
+            for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
+                axis.plot(*_thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
+                _label(axis, label)
+        for axis in axes[-1]:
+            axis.set_xlabel("$t$")
+            _span(axis, found.times)
+        figure.align_ylabels(axes)
+        yield file, figure
+
+
+def _label(axis: Any, label: str) -> None:
+    axis.set_ylabel(label, rotation=0, ha="right", va="center", labelpad=8, fontsize=13)
+    axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    low, high = axis.get_ylim()
+    size = max(abs(low), abs(high))
+    # A constant is drawn as one, not as its rounding.
+    if high - low < 1e-9 * size:
+        axis.set_ylim(low - 0.05 * size, high + 0.05 * size)
+
+
+def _span(axis: Any, times: Any) -> None:
+    if times[-1] > 0:
+        axis.set_xlim(0, times[-1])
+
+
+def _thinned(times: Any, values: Any) -> tuple[Any, Any]:
+    """The least and the greatest value of each interval, in their order: no oscillation is hidden, none is invented."""
+    values = np.asarray(values, dtype=float)
+    if len(times) <= 2 * INTERVALS:
+        return times, values
+    edges = np.linspace(0, len(times), INTERVALS + 1).astype(int)
+    kept = {0, len(times) - 1}
+    for start, end in pairwise(edges):
+        kept |= {start + int(np.argmin(values[start:end])), start + int(np.argmax(values[start:end]))}
+    places = np.array(sorted(kept))
+    return times[places], values[places]
+
+
+def _planes(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+    """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
+    system = found.system
+    positions, velocities = _labels(system)
+    place = {name: i for i, name in enumerate(system.coordinates)}
+    turning = angle_denominators(system)
+    for file, names, page in _pages("phase-planes", system.coordinates, PLANE_ROWS * PLANE_COLUMNS):
+        columns = min(PLANE_COLUMNS, len(names))
+        rows = -(-len(names) // columns)
+        size = 4.6 if columns == 1 else 3.6
+        figure = _page(
+            max(5.4, size * columns), 0.7 + 0.85 * size * rows + (0.3 if note else 0), _title(system) + page, note
+        )
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis in axes[len(names) :]:
+            axis.set_visible(False)
+        for axis, name in zip(axes, names, strict=False):
+            q = np.asarray(found.states[place[name]], dtype=float)
+            v = np.asarray(found.states[place[name] + len(place)], dtype=float)
+            label = positions[name]
+            if turning.get(name) == 1 and np.ptp(q) > 3 * np.pi:
+                q, v = _wrapped(q, v)
+                label += r"  modulo $2\pi$"
+                axis.set_xlim(-np.pi, np.pi)
+                axis.set_xticks(
+                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi, [r"$-\pi$", r"$-\pi/2$", "0", r"$\pi/2$", r"$\pi$"]
+                )
+            axis.plot(q, v, color=BLUE, linewidth=0.9, rasterized=len(q) > MOST_POINTS)
+            axis.plot(q[:1], v[:1], "o", color=RED, markersize=4)
+            axis.set_xlabel(label, fontsize=12)
+            _label(axis, velocities[name])
+            if "modulo" not in label:
+                axis.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        yield file, figure
+
+
+def _wrapped(q: Any, v: Any) -> tuple[Any, Any]:
+    """The angle in [-pi, pi), with a gap where it jumps; the first point stays the first."""
+    turns = np.floor((q + np.pi) / (2 * np.pi))
+    breaks = np.flatnonzero(np.diff(turns)) + 1
+    return np.insert(q - 2 * np.pi * turns, breaks, np.nan), np.insert(v, breaks, np.nan)
+
+
+def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
+    """|h - h(0)| over the largest kinetic energy, on a logarithmic scale; h itself too where it ought to change."""
+    drift = np.abs(np.asarray(found.drift, dtype=float))
+    figure = _page(10, (3.4 if conserved else 5.6) + (0.3 if note else 0), _title(found.system), note)
+    axes = figure.subplots(1 if conserved else 2, 1, squeeze=False, sharex=True)[:, 0]
+    if not conserved:
+        axes[0].plot(*_thinned(found.times, found.energy), color=BLUE)
+        _label(axes[0], "$h$")
+    axis = axes[-1]
+    shown = np.maximum(drift, FLOOR)
+    axis.set_yscale("log")
+    # At the start it is zero by definition.
+    axis.plot(*_thinned(found.times[1:], shown[1:]), color=BLUE, linewidth=0.9)
+    top = max(float(np.max(shown, initial=0.0)), ROUNDING) * 5
+    axis.set_ylim(FLOOR, top)
+    axis.axhline(ROUNDING, color=GREY, linewidth=0.8, linestyle="--")
+    axis.annotate(
+        "rounding of one double",
+        (1, ROUNDING),
+        xycoords=("axes fraction", "data"),
+        xytext=(-4, -3),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        color="#555555",
+        fontsize=9,
+    )
+    axis.yaxis.set_major_locator(LogLocator(numticks=8))
+    axis.yaxis.set_minor_locator(NullLocator())
+    axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(found.kinetic) else "$|h-h_0|$")
+    axis.set_xlabel("$t$")
+    _span(axis, found.times)
+    axis.set_title(
+        "relative drift of the energy" if conserved else "relative change of the energy, which is not conserved"
+    )
+    return figure

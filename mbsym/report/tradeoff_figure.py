@@ -1,0 +1,108 @@
+"""The work-precision figure: seconds against error, a curve for each method and arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from mbsym.numerics.fidelity import RESOLVED, ModelError
+from mbsym.numerics.tradeoff import Measured, Tradeoff
+from mbsym.report.drawing import GREY, RED, pictures
+
+_COLOURS = (
+    "#1f5fa8",
+    "#d9822b",
+    "#2e8b57",
+    "#8e5ea2",
+    "#17a2b8",
+    "#8c564b",
+    "#c2478f",
+    "#6b6b00",
+    "#444444",
+    "#00897b",
+)
+_DASHES = {"float64": "-", "float32": ":", "extended": "--"}
+_MARKS = {"float64": "o", "float32": "s", "extended": "^"}
+
+#: Errors beyond this are no solutions and are not drawn.
+WORST = 10.0
+
+OLIVE = "#777700"
+
+
+def work_precision(
+    found: Tradeoff, target: float, title: str, models: Sequence[ModelError], formats: Sequence[str]
+) -> dict[str, bytes]:
+    """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines."""
+    return pictures({"work-precision": lambda: _drawn(found, target, title, models)}, formats)
+
+
+def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelError]) -> Figure:
+    figure = Figure(figsize=(9.6, 6.0), layout="constrained")
+    axes = figure.subplots()
+    ladders: dict[tuple[str, str], list[Measured]] = {}
+    for row in found.rows:
+        if isfinite(row.error) and row.error < WORST:
+            ladders.setdefault((row.candidate.method.traits.name, row.candidate.scalar), []).append(row)
+    methods = list(dict.fromkeys(name for name, _ in ladders))
+    for (name, scalar), rows in ladders.items():
+        label = name if scalar == "float64" else f"{name}, {scalar}"
+        axes.plot(
+            [max(row.error, 1e-17) for row in rows],
+            [row.seconds for row in rows],
+            _DASHES[scalar],
+            marker=_MARKS[scalar],
+            markersize=3.5,
+            color=_COLOURS[methods.index(name) % len(_COLOURS)],
+            label=label,
+        )
+    front = sorted((row for row in found.rows if row.front and row.error < WORST), key=lambda row: row.error)
+    axes.plot(
+        [max(row.error, 1e-17) for row in front],
+        [row.seconds for row in front],
+        color="#000000",
+        linewidth=5,
+        alpha=0.12,
+        solid_capstyle="round",
+        label="front",
+        zorder=1,
+    )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.invert_xaxis()
+    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("error against the reference (smaller to the right)")
+    axes.set_ylabel("seconds of integration")
+    axes.set_title(title, loc="left")
+    _line(axes, target, RED, f"target {target:.0e}")
+    finest = min((row.error for row in found.rows), default=1.0)
+    if found.smallest_judged > finest / 100:
+        _line(axes, found.smallest_judged, GREY, "limit of the reference")
+    for row in _drawable(models):
+        _line(axes, row.error, OLIVE, f"model {row.variant.label}")
+    figure.legend(loc="outside right upper", frameon=False, fontsize=9)
+    return figure
+
+
+def _drawable(models: Sequence[ModelError]) -> Iterable[ModelError]:
+    return (row for row in models if RESOLVED < row.error < WORST)
+
+
+def _line(axes: object, error: float, colour: str, text: str) -> None:
+    axes.axvline(error, color=colour, linewidth=1, linestyle="-.", zorder=0)  # type: ignore[attr-defined]
+    axes.text(  # type: ignore[attr-defined]
+        error,
+        0.99,
+        text,
+        rotation=90,
+        color=colour,
+        fontsize=8,
+        va="top",
+        ha="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+        transform=axes.get_xaxis_transform(),  # type: ignore[attr-defined]
+    )

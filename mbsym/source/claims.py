@@ -1,0 +1,267 @@
+"""Claims and the abbreviations that they are written in."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.tree import ZERO, Expression, Name, Number, Operation
+from mbsym.model.claims import (
+    BODY,
+    CLAIMS,
+    COORDINATE,
+    EXPRESSION,
+    INITIAL_STATE,
+    SUM,
+    SUMS,
+    Abbreviation,
+    Claim,
+    ClaimKind,
+)
+from mbsym.model.system import INERTIAL
+from mbsym.source.bodies import read_body_name
+from mbsym.source.keys import CLAIM
+from mbsym.source.placed import Node, Scalar
+from mbsym.source.reading import Fields, Reading
+from mbsym.source.scope import NUMBER, Allowed, did_you_mean
+from mbsym.source.settings import read_comparisons
+
+_CONSTANTS = ("parameter", "notation", "abbreviation")
+_PLACES = ("coordinate", "velocity", "prescribed", "time", *_CONSTANTS)
+_STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time"))
+_DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
+#: Kinds that are about constants alone.
+_CONSTANT_KINDS = ("linear matrix", "subsystem matrix", "characteristic polynomial", "condition")
+_KINDS = {kind.lower(): kind for kind in CLAIMS}
+
+
+def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
+    """Symbols in order: each may use every name of the system and the symbols above it."""
+    found = []
+    allowed = Allowed("an abbreviation", (*_PLACES, "acceleration"))
+    entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
+    reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
+    for entry in entries:
+        errors = reading.errors
+        value = reading.expression(entry.value, allowed)
+        if reading.scope.declare(entry.key.text, "abbreviation", entry.key.span) and reading.errors == errors:
+            found.append(Abbreviation(entry.key.text, value, entry.key.span))
+        reading.scope.later.discard(entry.key.text)
+    return tuple(found)
+
+
+def read_claims(
+    node: Node | None, bodies: list[str], coordinates: tuple[str, ...], reading: Reading
+) -> tuple[Claim, ...]:
+    """A list of claims; a condition that is a chain of inequalities is several."""
+    found: list[Claim] = []
+    for item in () if node is None else reading.items(node, "'claims'"):
+        errors = reading.errors
+        claims = _claims(item, bodies, coordinates, reading)
+        found += claims if reading.errors == errors else []
+    return tuple(found)
+
+
+def _claims(item: Node, bodies: list[str], coordinates: tuple[str, ...], reading: Reading) -> list[Claim]:
+    hint = "write for example {claim: kinetic energy, equals: m*x_dot**2/2, place: eq. (1)}"
+    fields = reading.fields(item, "a claim", CLAIM, hint)
+    node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
+    word = None if node is None else reading.word(node, "a claim", _KINDS)
+    if word is None:
+        return []
+    kind = _KINDS[word]
+    one = _Reader(kind, CLAIMS[kind], fields, bodies, coordinates, reading)
+    return one.conditions() if one.kind.inequality else [one.single()]
+
+
+@dataclass(slots=True)
+class _Reader:
+    """One claim being read: its kind and keys, and what they may name."""
+
+    word: str
+    kind: ClaimKind
+    fields: Fields
+    bodies: list[str]
+    coordinates: tuple[str, ...]
+    reading: Reading
+
+    def single(self) -> Claim:
+        kind, fields = self.kind, self.fields
+        self.refuse_keys()
+        variable = self.variable()
+        equals, printed = self.equals(variable)
+        claim = Claim(
+            kind=self.word,
+            equals=equals,
+            entry=self.entry() if kind.entry else (),
+            at=self.product() if kind.at else None,
+            variable=variable,
+            at_initial=self.at_initial,
+            state=self.state(),
+            printed=printed,
+            place=fields.text("place"),
+            span=fields.key_span("claim"),
+        )
+        if kind.of == EXPRESSION:
+            allowed = Allowed("the value of an expression", (*_PLACES, "acceleration"))
+            claim = replace(claim, of_expression=fields.required_expression("of", allowed))
+            fields.require("state", "write state: initial, or state: {coordinate: number}")
+        elif kind.of:
+            claim = replace(claim, of=self.of())
+        return claim
+
+    def conditions(self) -> list[Claim]:
+        """``that: alpha > -1``; a chain is several conditions."""
+        self.refuse_keys()
+        node = self.fields.require("that", "write for example that: b > a")
+        scalar = None if node is None else self.reading.scalar(node, "a condition")
+        place, span = self.fields.text("place"), self.fields.key_span("claim")
+        found = [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
+        return [
+            Claim(self.word, one.left, relation=one.relation, right=one.right, place=place, span=span) for one in found
+        ]
+
+    def refuse_keys(self) -> None:
+        """Keys that mean nothing for this kind of claim."""
+        kind = self.kind
+        wanted = {
+            "equals": not kind.inequality,
+            "that": kind.inequality,
+            "of": bool(kind.of),
+            "entry": kind.entry == 2,
+            "component": kind.entry == 1,
+            "at": kind.at,
+            "variable": kind.variable,
+            "state": kind.state,
+        }
+        self.fields.exclude(f"claim: {self.word}", [key for key, needed in wanted.items() if not needed])
+
+    # --- what is claimed ---
+
+    def allowed(self, variable: str) -> Allowed:
+        what = f"a claim about the {self.word}"
+        if self.word.startswith(_CONSTANT_KINDS):
+            return Allowed(what, (*_CONSTANTS, *(["variable"] if variable else [])))
+        accelerations = ("acceleration",) if self.kind.accelerations else ()
+        return Allowed(what, (*_PLACES, *accelerations))
+
+    def equals(self, variable: str) -> tuple[Expression, str]:
+        """The expression; and its text, where it is a decimal number about one state, digits included."""
+        node = self.fields.require("equals")
+        if node is None:
+            return ZERO, ""
+        scope = self.reading.scope
+        if variable:
+            scope.kinds[variable] = "variable"
+        value = self.reading.expression(node, self.allowed(variable))
+        if variable:
+            del scope.kinds[variable]
+        text = node.text.strip() if isinstance(node, Scalar) else ""
+        numerical = self.kind.state and "state" in self.fields.found
+        return value, text if numerical and _DECIMAL.match(text) else ""
+
+    def variable(self) -> str:
+        """The symbol of the characteristic polynomial, a name that is not yet taken."""
+        node = self.fields.require("variable", "write for example variable: p") if self.kind.variable else None
+        scalar = None if node is None else self.reading.scalar(node, "'variable'")
+        scope = self.reading.scope
+        if scalar is None or not scope.declare(scalar.text, "variable", scalar.span):
+            return ""
+        del scope.kinds[scalar.text]
+        return scalar.text
+
+    # --- of what ---
+
+    def of(self) -> str:
+        node = self.fields.get("of") if self.kind.variable else self.fields.require("of")
+        if node is None:
+            return ""
+        if self.kind.of == BODY:
+            name = read_body_name(node, "'of'", self.bodies, self.reading)
+            if name == INERTIAL:
+                self.reading.error("unknown-body", "the inertial frame 0 does not move", node.span)
+            return name or ""
+        scalar = self.reading.scalar(node, "'of'")
+        if scalar is None:
+            return ""
+        words = " ".join(scalar.text.split())
+        known = [*self.coordinates, *(SUMS if self.kind.of == SUM else ())]
+        if words not in known:
+            hint = did_you_mean(words, known) or f"one of: {', '.join(known[:12])}"
+            wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
+            self.reading.error("unknown-name", f"{ascii_safe(words)} is not {wanted}", scalar.span, hint)
+        return words
+
+    def entry(self) -> tuple[int, ...]:
+        """Indices from 1: numbers, or names of coordinates; axes are numbered 1 to 3."""
+        key = "component" if self.kind.entry == 1 else "entry"
+        node = self.fields.require(key)
+        if node is None:
+            return ()
+        if self.kind.entry == 1:
+            return (self.index(node, key),)
+        items = self.reading.items(node, f"'{key}'")
+        if len(items) != 2:
+            if items:
+                self.reading.error("wrong-shape", "an entry is a row and a column", node.span, "write [1, 2]")
+            return ()
+        return (self.index(items[0], key), self.index(items[1], key))
+
+    def index(self, node: Node, key: str) -> int:
+        scalar = self.reading.scalar(node, f"'{key}'")
+        if scalar is None:
+            return 1
+        text = scalar.text.strip()
+        names = () if self.kind.axes else self.coordinates
+        if text in names:
+            return names.index(text) + 1
+        size = 3 if self.kind.axes else len(names)
+        if text.isascii() and text.isdigit() and len(text) < 4 and 1 <= int(text) <= size:
+            return int(text)
+        hint = did_you_mean(text, names) or ("a coordinate, or " if names else "") + f"a number from 1 to {size}"
+        message = f"{ascii_safe(text)} is no {'axis' if self.kind.axes else 'row or column'}"
+        self.reading.error("bad-entry", message, scalar.span, hint)
+        return 1
+
+    def product(self) -> Expression:
+        """A product of powers of velocities (in an equation of motion: of accelerations, too)."""
+        value = self.fields.required_expression("at", Allowed("a product of velocities", ("velocity", "acceleration")))
+        node = self.fields.get("at")
+        if node is not None and value != ZERO and not _is_product(value):
+            hint = "write for example x_dot*phi_dot or phi_dot**2"
+            self.reading.error("bad-entry", "a coefficient belongs to a product of velocities", node.span, hint)
+        return value
+
+    # --- where ---
+
+    @property
+    def at_initial(self) -> bool:
+        node = self.fields.get("state") if self.kind.state else None
+        return isinstance(node, Scalar) and node.text.strip().lower() == INITIAL_STATE
+
+    def state(self) -> tuple[tuple[str, Expression], ...]:
+        """Numbers for some names; parameters that are left out have their 'values', the others are zero."""
+        node = self.fields.get("state") if self.kind.state else None
+        if node is None or self.at_initial:
+            return ()
+        found = []
+        if isinstance(node, Scalar):
+            self.reading.shape_error(node, "'state'", "'initial' or a mapping", "write state: {theta: pi/6}")
+            return ()
+        for entry in self.reading.entries(node, "'state'"):
+            value = self.reading.expression(entry.value, NUMBER)
+            if self.reading.scope.check_name(entry.key.text, entry.key.span, _STATE):
+                found.append((entry.key.text, value))
+        return tuple(found)
+
+
+def _is_product(value: Expression) -> bool:
+    match value:
+        case Name():
+            return True
+        case Operation("*", left, right):
+            return _is_product(left) and _is_product(right)
+        case Operation("**", Name(), Number(exponent)):
+            return exponent.denominator == 1 and 0 < exponent < 10
+    return False
