@@ -26,7 +26,8 @@ def console(stderr: bool = False) -> Console:
     """rich's console; plain text where the output is no terminal."""
     from rich.console import Console
 
-    return Console(stderr=stderr, highlight=False, soft_wrap=not (sys.stderr if stderr else sys.stdout).isatty())
+    terminal = (sys.stderr if stderr else sys.stdout).isatty()
+    return Console(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
 
 
 def read_description(path: Path) -> System | None:

@@ -17,6 +17,8 @@ COMMANDS = {
     "run": "mbsym_cli.run",
     "simulate": "mbsym_cli.simulate",
     "tradeoff": "mbsym_cli.tradeoff",
+    "extremes": "mbsym_cli.extremes",
+    "equilibria": "mbsym_cli.equilibria",
     "check": "mbsym_cli.check",
     "convert": "mbsym_cli.convert",
     "schema": "mbsym_cli.schema",

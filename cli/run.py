@@ -18,6 +18,7 @@ from mbsym_cli.files import write_whole
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
+    from mbsym.numerics.ledger.entry import Ledger
 
 #: What a folder is searched for.
 SUFFIXES = (".yaml", ".yml", ".txt")
@@ -32,6 +33,7 @@ class Options:
     terms: int
     quiet: bool
     strict_claims: bool = False
+    ledger: bool = False
 
 
 def _problems(context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, ...]:
@@ -60,6 +62,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default=60_000, show_default=True, help="Budget of terms for one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
+@click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
@@ -68,6 +71,7 @@ def command(
     out: Path | None,
     terms: int,
     strict_claims: bool,
+    ledger: bool,
     quiet: bool,
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
@@ -78,12 +82,16 @@ def command(
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
     unless --strict-claims is given.
 
+    With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
+    saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
+
     \b
     Examples:
       mbsym run systems/satellite.yaml
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
+      mbsym run systems/satellite.yaml --ledger
     """
-    options = Options(problems, formats, terms, quiet, strict_claims)
+    options = Options(problems, formats, terms, quiet, strict_claims, ledger)
     paths = list(_descriptions(files))
     if not paths:
         raise click.UsageError(f"no descriptions ({', '.join(SUFFIXES)}) in {', '.join(map(str, files))}")
@@ -153,18 +161,23 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
         say(f"{path.name}: self-check")
         failed = [check for check in analysis.checks if check.failed]
         texts, missing = {}, []
-        for name in options.formats:
-            say(f"{path.name}: writing {TARGETS[name].filename}")
+        for target in (part for name in options.formats for part in (TARGETS[name], *TARGETS[name].companions)):
+            say(f"{path.name}: writing {target.filename}")
             try:
-                texts[folder / TARGETS[name].filename] = TARGETS[name].render(analysis, analysis.problems)
+                texts[folder / target.filename] = target.render(analysis, analysis.problems)
             except (NoClosedForm, SingularPoint, Unavailable, ValueError) as reason:  # numbers of thousands of digits
-                missing.append(f"{path}: {TARGETS[name].filename} cannot be written: {reason}")
-    for target, text in texts.items():
-        write_whole(target, text)
+                missing.append(f"{path}: {target.filename} cannot be written: {reason}")
+        if options.ledger:
+            say(f"{path.name}: ledger")
+            found = _ledger(analysis, folder, texts)
+    for file, text in texts.items():
+        write_whole(file, text)
     for line in missing:
         print(line, file=sys.stderr)
     if not options.quiet:
         _print_summary(analysis, path, list(texts), time.perf_counter() - started)
+        if options.ledger:
+            _print_ledger(found)
     open_claims = [result for result in analysis.claims if not result.holds] if options.strict_claims else []
     for result in open_claims:
         place = f"{result.claim.place}: " if result.claim.place else ""
@@ -172,6 +185,20 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
     for check in failed:
         print(f"{path}: SELF-CHECK FAILED: {check.name}: {check.detail}", file=sys.stderr)
     return FAILED if failed or missing or open_claims else OK
+
+
+def _ledger(analysis: Analysis, folder: Path, texts: dict[Path, str]) -> Ledger:
+    """The ledger of a finished run, put into its files."""
+    from mbsym.numerics.ledger.table import ledger
+    from mbsym.report.ledger import ledger_csv, with_ledger
+    from mbsym.report.targets import TARGETS
+
+    found = ledger(analysis)
+    results = folder / TARGETS["json"].filename
+    if results in texts:
+        texts[results] = with_ledger(texts[results], found)
+    texts[folder / "ledger.csv"] = ledger_csv(found)
+    return found
 
 
 @contextmanager
@@ -189,3 +216,10 @@ def _print_summary(analysis: Analysis, path: Path, files: list[Path], seconds: f
     from mbsym_cli.show import show
 
     show(summary(analysis, analysis.problems, files), path, seconds)
+
+
+def _print_ledger(found: Ledger) -> None:
+    from mbsym.report.ledger import ledger_lines
+    from mbsym_cli.ledger import show_ledger
+
+    show_ledger(ledger_lines(found), found.unmeasured)

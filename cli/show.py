@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,29 +50,21 @@ def _claims(claims: tuple[ClaimLine, ...]) -> None:
     """How many hold; then each with its place, and by what it differs."""
     if not claims:
         return
+    from mbsym.report.claims import together
+
     words = [claim.word for claim in claims]
     counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]
     console().print(Text(f"  claims: {', '.join(counts)}", style="bold cyan"))
     width = min(28, max(len(claim.place) for claim in claims))
-    for together in _alike(claims):
-        claim = together[0]
+    for group in together(claims):
+        claim = group[0]
         place = f"{claim.place:<{width}}  " if width else ""
         told = (f"{claim.title}: ", claim.outcome)
-        if len(together) > 1:
-            told = (f"{len(together)} claims ", claim.outcome.replace("holds", "hold", 1))
+        if len(group) > 1:
+            told = (f"{len(group)} claims ", claim.outcome.replace("holds", "hold", 1))
         _indented(Text.assemble(place + told[0], (told[1], _CLAIM_COLOURS[claim.word])), 4)
         for text in claim.lines:
             _indented(Text(text.strip()), 6 + len(text) - len(text.lstrip()))
-
-
-def _alike(claims: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
-    """Claims from one place that hold in the same way are told in one line."""
-    for _, group in groupby(claims, lambda claim: (claim.word == "held" and claim.place, claim.outcome, claim.lines)):
-        found = list(group)
-        if found[0].word == "held" and found[0].place:
-            yield found
-        else:
-            yield from ([claim] for claim in found)
 
 
 def _checks(checks: tuple[Check, ...]) -> None:

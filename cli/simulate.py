@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -26,13 +28,15 @@ from mbsym_cli.console import (
 )
 from mbsym_cli.files import write_whole
 from mbsym_cli.lacking import lacking
+from mbsym_cli.simulation_summary import broken, note, print_summary
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.invariants import Invariant
-    from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+    from mbsym.numerics.methods.interface import Method, Setting
+    from mbsym.numerics.reduced import Reduced
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.simulate import Trajectory
 
@@ -48,9 +52,6 @@ FINEST, COARSEST = 1e-19, 0.1
 
 #: A run shorter than this many seconds is repeated more finely, to see how good it is.
 SOON_DONE = 2.0
-
-#: Below this much of its usual size a pivot of M costs digits worth a warning.
-NEARLY_SINGULAR = 1e-8
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ class Request:
     invariants: bool
     estimate: bool | None
     quiet: bool
+    whole: bool = False
 
 
 class Refused(Exception):
@@ -88,8 +90,8 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--samples", type=int, metavar="N", help="Rows of the table.  [default: 2001, more for fast motion]")
 @click.option("--every", metavar="DT", help="A row every DT instead.")
-@click.option("--method", "-m", default="auto", show_default=True, help="auto, or see below.")
-@click.option("--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10]")
+@click.option("--method", "-m", default="auto", show_default=True, help="auto or one of those above.")
+@click.option("--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10 in float64]")
 @click.option("--step", metavar="H", help="Length of a step, for methods of fixed step.")
 @click.option("--arithmetic", type=click.Choice(ARITHMETIC), default="float64", show_default=True)
 @click.option("--step-limit", type=click.IntRange(1, 10**12), default=10_000_000, show_default=True)
@@ -97,8 +99,9 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option(
     "--estimate/--no-estimate",
     default=None,
-    help="Repeat the run more finely to estimate its error.  [default: where that takes seconds]",
+    help="Repeat the run more finely to estimate its error.  [default: if the run was short]",
 )
+@click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
 @click.option("--format", "-f", "formats", default="csv,svg,png", callback=_formats, show_default=True)
 @click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
@@ -115,6 +118,7 @@ def command(
     step_limit: int,
     invariants: bool,
     estimate: bool | None,
+    whole: bool,
     formats: tuple[str, ...],
     out: Path | None,
     quiet: bool,
@@ -125,8 +129,12 @@ def command(
     name meaning its initial position and NAME_dot its initial velocity.  Written are trajectory.csv (t, coordinates,
     velocities, energy, relative drift), time histories, phase planes, drift, and simulation.json.
 
-    Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit), rk4 (explicit, fixed step),
-    radau, lsoda (stiff systems), and what else is installed.
+    Coordinates that provably rest (a spatial system that moves in a plane) are not integrated but put back into every
+    state, as the summary says; --whole integrates everything.
+
+    Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit); radau, lsoda, bdf (stiff
+    systems); taylor (very exact, needs heyoka); with a fixed step rk4 and, for conservative systems, midpoint,
+    midpoint4, midpoint6 (whose energy does not drift).
 
     A blow-up, a singular mass matrix or too many steps end a simulation early, and so does Ctrl-C: what was computed is
     kept in files named ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or
@@ -146,12 +154,24 @@ def command(
                 settings,
                 {"--time": end, "--every": every, "--tolerance": tolerance, "--step": step},
                 Request(
-                    0.0, samples, None, method, None, None, step_limit, arithmetic, formats, invariants, estimate, quiet
+                    0.0,
+                    samples,
+                    None,
+                    method,
+                    None,
+                    None,
+                    step_limit,
+                    arithmetic,
+                    formats,
+                    invariants,
+                    estimate,
+                    quiet,
+                    whole,
                 ),
             )
         )
     except KeyboardInterrupt:
-        print(f"{file}: interrupted before there was anything to keep", file=sys.stderr)
+        print(f"{file}: interrupted; what has been written is whole", file=sys.stderr)
         sys.exit(INTERRUPTED)
 
 
@@ -169,6 +189,10 @@ def _command(
         print("\n".join(complaints), file=sys.stderr)
         print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return BAD_INPUT
+    obstacle = _obstacle(folder)
+    if obstacle:
+        print(f"{file}: the results cannot be written: {obstacle}", file=sys.stderr)
+        return FAILED
     try:
         return _simulate(file, system, folder, overrides, request)
     except Refused as reason:
@@ -183,6 +207,16 @@ def _command(
     except Exception as error:
         print(f"{file}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
     return FAILED
+
+
+def _obstacle(folder: Path) -> str:
+    """Why a folder cannot be written to, known before hours of computing; empty if nothing speaks against it."""
+    for place in (folder, *folder.absolute().parents):
+        if place.exists():
+            if not place.is_dir():
+                return f"{place} is no folder"
+            return "" if os.access(place, os.W_OK) else f"{place} is not writable"
+    return ""
 
 
 def _read(
@@ -237,6 +271,7 @@ def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, 
     from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.methods.interface import Unusable
+    from mbsym.numerics.reduced import reduced
     from mbsym.numerics.scenario import Incomplete, scenario
 
     try:
@@ -248,7 +283,7 @@ def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, 
         with _status(request.quiet, f"{file.name}: compiling"):
             further = _integrals(system, request)
             dynamics = Dynamics(numbers, further[1]) if further else Dynamics(numbers)
-            chosen = _chosen(dynamics, request)
+            chosen = _chosen(dynamics, request, None if request.whole else reduced(dynamics))
     except SingularPoint as error:
         print(f"{file}: singular at these values: {error}; nothing was written.", file=sys.stderr)
         return BROKEN_DOWN
@@ -265,29 +300,36 @@ def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, 
 
 @dataclass(frozen=True)
 class Chosen:
-    """Everything settled before the first step; ``frequency`` is the greatest at the initial state, in rad per time."""
+    """Everything settled before the first step; ``frequency`` is the greatest at the initial state, in rad per time.
+
+    ``resting`` are the coordinates that rest; where that is proved, ``method`` integrates the others only.
+    """
 
     method: Method
     why: str
+    measured: str
     setting: Setting
     times: Any
     frequency: float
+    resting: Reduced | None = None
 
 
-def _chosen(dynamics: Dynamics, request: Request) -> Chosen:
+def _chosen(dynamics: Dynamics, request: Request, resting: Reduced | None) -> Chosen:
     from mbsym.numerics.choice import choose, rates
     from mbsym.numerics.methods.interface import Setting
     from mbsym.numerics.methods.table import METHODS
 
+    taken = resting if resting is not None and resting.proved else None
+    integrated = dynamics if taken is None else taken.dynamics
     tolerance = request.tolerance or TOLERANCE[request.arithmetic]
     name = request.method.lower()
     if name == "auto":
         if request.step is not None:
             raise Refused("--step needs a method of fixed step, for example --method rk4")
-        choice = choose(dynamics, tolerance, request.end, request.arithmetic)
-        method, why, frequency = choice.method, choice.why, choice.frequency
+        choice = choose(integrated, tolerance, request.end, request.arithmetic)
+        method, why, measured, frequency = choice.method, choice.why, choice.measured, choice.frequency
     elif name in METHODS:
-        method, why, frequency = METHODS[name], "as asked for", rates(dynamics)[1]
+        method, why, measured, frequency = METHODS[name], "as asked for", "", rates(integrated)[1]
     else:
         raise Refused(_unknown_method(request.method, METHODS))
     traits = method.traits
@@ -301,7 +343,9 @@ def _chosen(dynamics: Dynamics, request: Request) -> Chosen:
     if not traits.fixed and request.step is not None:
         raise Refused(f"{name} chooses its steps by a --tolerance; --step is for methods of fixed step")
     setting = Setting(None if traits.fixed else tolerance, request.step, request.step_limit)
-    return Chosen(method, why, setting, _times(request, frequency, dynamics.system), frequency)
+    if taken is not None:
+        method = taken.method(method)
+    return Chosen(method, why, measured, setting, _times(request, frequency, dynamics.system), frequency, resting)
 
 
 def _unknown_method(name: str, known: Mapping[str, Method]) -> str:
@@ -309,7 +353,7 @@ def _unknown_method(name: str, known: Mapping[str, Method]) -> str:
     from mbsym.source.scope import did_you_mean
 
     close = did_you_mean(name, known)
-    return f"unknown method {ascii_safe(name)}; " + (f"{close} (" if close else "(") + f"auto, {', '.join(known)})"
+    return f"unknown method {ascii_safe(name)}; " + (close or f"choose from auto, {', '.join(known)}")
 
 
 def _times(request: Request, frequency: float, system: System) -> Any:
@@ -366,18 +410,29 @@ def _integrate(
         "energy": {"conserved": status, "largest_relative_drift": _largest(found.drift)},
         "invariants": drifts,
         "estimated_error": estimated,
+        "resting": _resting(chosen.resting),
     }
     paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, status == CONSERVED)
     if not request.quiet:
-        _print_summary(file, dynamics, found, chosen, request, summary, paths)
+        print_summary(file, dynamics, found, chosen, request, summary, paths)
     if found.breakdown is not None:
-        print(_broken(file, found.breakdown, found, paths), file=sys.stderr)
+        print(broken(file, found.breakdown, found, paths), file=sys.stderr)
         return BROKEN_DOWN
     if found.interrupted or (estimated or {}).get("interrupted"):
         kept = f"; kept up to t = {found.times[-1]:.9g} in {paths[0].parent}" if found.interrupted else ""
         print(f"{file}: interrupted{kept}", file=sys.stderr)
         return INTERRUPTED
     return OK
+
+
+def _resting(found: Reduced | None) -> dict[str, Any] | None:
+    """Which coordinates rest, how that is known, and the operations of one right-hand side with and without them."""
+    if found is None:
+        return None
+    known = {"coordinates": list(found.names), "how": found.reduction.how, "taken_out": found.proved}
+    return known | (
+        {"operations": dict(zip(("whole", "reduced"), found.operations, strict=True))} if found.proved else {}
+    )
 
 
 def _largest(values: Any) -> float:
@@ -460,7 +515,7 @@ def _write(
         from mbsym.report.figures import figures
 
         with _status(request.quiet, "drawing"):
-            images = figures(found, kinds, _note(found), conserved)
+            images = figures(found, kinds, note(found), conserved)
     for name, content in images.items():
         stem, _, kind = name.rpartition(".")
         write(f"{stem}{mark}.{kind}", content)
@@ -478,99 +533,9 @@ def _write(
 
 def _ours(name: str) -> bool:
     """Whether a file name is one that this command writes."""
-    import re
-
     return (
         re.fullmatch(r"(trajectory|(histories|phase-planes)(-\d+)?|drift)(-partial)?\.(csv|svg|png)", name) is not None
     )
-
-
-def _note(found: Trajectory) -> str:
-    if found.breakdown is not None:
-        return f"ended early: {found.breakdown.kind} at t = {found.breakdown.time:.6g}"
-    return f"interrupted at t = {found.times[-1]:.6g}" if found.interrupted else ""
-
-
-def _broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path]) -> str:
-    """What happened, when, and in which state."""
-    from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK
-
-    names = [*found.system.coordinates, *found.system.velocities]
-    state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
-    hints = {
-        BLOW_UP: "the motion leaves every bound in finite time; is a sign of the forces right?",
-        SINGULAR: "start elsewhere, or choose other angles: these ones have no meaning there",
-        STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
-        STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
-    }
-    kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {paths[0].parent}"
-    return "\n".join(
-        [
-            f"{file}: error[{ended.kind.replace(' ', '-')}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
-            f"  state: {state}",
-            f"  hint: {hints.get(ended.kind, '')}",
-            f"{file}: {kept}",
-        ]
-    )
-
-
-def _print_summary(
-    file: Path,
-    dynamics: Dynamics,
-    found: Trajectory,
-    chosen: Chosen,
-    request: Request,
-    summary: Mapping[str, Any],
-    paths: Sequence[Path],
-) -> None:
-    from rich.text import Text
-
-    out = console()
-    out.print(Text.assemble((found.system.name, "bold"), (f"  {file}", "dim")))
-    for name, text in _lines(dynamics, found, chosen, request, summary):
-        style = "yellow" if name == "warning" else "bold cyan"
-        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
-    names = ", ".join(path.name for path in paths)
-    out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), f": {names}"))
-
-
-def _lines(
-    dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: Request, summary: Mapping[str, Any]
-) -> Iterator[tuple[str, str]]:
-    """(title, text) of the summary's lines."""
-    from mbsym.numerics.invariants import CHANGING
-    from mbsym.numerics.simulate import least_pivot
-
-    setting, work = found.setting, found.work
-    yield "method", f"{chosen.method.traits.title} ({chosen.why})"
-    how = f"step {setting.step:g}" if setting.step is not None else f"tolerance {setting.tolerance:g} per step"
-    yield "setting", f"{how}, {request.arithmetic}"
-    reached = "" if found.whole else f", reached {found.times[-1]:.9g}"
-    yield "time", f"0 to {request.end:g}, {len(chosen.times)} samples{reached}"
-    evaluations = counted(work.evaluations, "evaluation", "evaluations")
-    jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
-    rejected = f" ({work.rejected} rejected)" if work.rejected else ""
-    yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
-    energy = summary["energy"]
-    change = "change" if energy["conserved"] == CHANGING else "drift"
-    yield "energy", f"{energy['conserved']}; largest relative {change} {energy['largest_relative_drift']:.1e}"
-    for item in summary["invariants"].values():
-        yield "invariant", f"{item['name']} ({item['status']}): largest relative drift {item['drift']:.1e}"
-    estimated = summary["estimated_error"]
-    if estimated and "final" in estimated:
-        worst = f", {estimated['largest']:.1e} at worst" if estimated["largest"] > 2 * estimated["final"] else ""
-        yield "error", f"about {estimated['final']:.1e} at the end{worst} (relative, against {estimated['against']})"
-        if estimated["largest"] > 0.1:
-            yield (
-                "warning",
-                "the end depends on the last digits of everything: the motion is chaotic, or this is too coarse",
-            )
-    ratio, at = least_pivot(dynamics, found)
-    if found.breakdown is None and ratio < NEARLY_SINGULAR:
-        yield "warning", f"at t = {at:.6g} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})"
-    spacing = float(chosen.times[1] - chosen.times[0])
-    if chosen.frequency * spacing > pi / 2:
-        yield "warning", "fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples"
 
 
 @contextmanager

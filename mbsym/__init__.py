@@ -6,8 +6,8 @@
     ()
 
 ``load`` reads a description (YAML or the editor's text) and returns an ``Analysis`` whose attributes ``kinematics``,
-``energy``, ``equations``, ``equilibrium``, ``linearisation``, ``stability``, ``integrals`` and ``checks`` are derived
-when they are first asked for.  Matrices print as LaTeX in a notebook and convert with ``.to_sympy()``.
+``energy``, ``equations``, ``equilibrium``, ``linearisation``, ``stability``, ``integrals``, ``claims`` and ``checks``
+are derived when they are first asked for.  Matrices print as LaTeX in a notebook and convert with ``.to_sympy()``.
 """
 
 from __future__ import annotations

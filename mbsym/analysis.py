@@ -21,6 +21,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
+from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import angle_denominators, ring_environment, ring_of
 from mbsym.model.claims import Claim
@@ -30,6 +31,7 @@ from mbsym.problems import (
     claims,
     energy,
     equations,
+    equilibria,
     equilibrium,
     integrals,
     kinematics,
@@ -42,6 +44,7 @@ from mbsym.problems.checks import Check
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
+from mbsym.problems.equilibria import Equilibria
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
@@ -78,8 +81,8 @@ PROBLEMS = {
 ALL_PROBLEMS = tuple(PROBLEMS)
 
 
-#: One claim may take this part of the work that a whole run may take.
-CLAIM_SHARE = 8
+#: All claims together may take this part of the work that a run may take, and one of them this part.
+CLAIMS_SHARE, CLAIM_SHARE = 4, 16
 
 
 @dataclass(frozen=True)
@@ -160,6 +163,11 @@ class Analysis:
         with suppress(Unavailable):
             getattr(self, name)
         return self._stages[name]
+
+    @property
+    def derived(self) -> frozenset[str]:
+        """The names of the stages that something has asked for so far."""
+        return frozenset(self._stages)
 
     def _optional(self, attribute: str) -> Any:
         """A result, or None where there is none."""
@@ -290,6 +298,21 @@ class Analysis:
     def _integrals(self) -> tuple[Integral, ...]:
         return integrals.integrals(self.scene, self.energy, self.equations, self.programs)
 
+    # --- equilibria ---
+
+    @property
+    def equilibria(self) -> Equilibria:
+        """All relative equilibria at the description's numbers."""
+        return self._result("equilibria", self._equilibria)
+
+    def _equilibria(self) -> Equilibria:
+        values = given_values(self.system, {})
+        missing = missing_values(self.system, values)
+        if missing:
+            hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
+            raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint))
+        return equilibria.equilibria(self.system, values)
+
     # --- claims ---
 
     @property
@@ -305,7 +328,7 @@ class Analysis:
         if angle_denominators(self.system, arguments) != self.ring.angles:  # sines that only the claims hold
             source = Analysis(self.system, self.problems, self.terms)
             source.ring = ring_of(self.system, self.terms, arguments)
-        allowance = source.ring.work_budget
+        allowance = source.ring.work_budget // CLAIMS_SHARE
         found = []
         for claim in self.system.claims:
             result, spent = self._claim(source, claim, allowance)

@@ -166,9 +166,10 @@ def test_results_hold_what_was_asked_for():
     found = json.loads(TARGETS["json"].render(analysis, (1, 2, 3, 4, 5, 6, 7)))
     assert set(found) == {
         "system", "coordinates", "parameters", "kinematics", "energy", "equations", "equilibrium", "linearisation",
-        "stability", "integrals", "checks", "unavailable",
+        "stability", "integrals", "claims", "checks", "unavailable",
     }  # fmt: skip
     assert found["unavailable"] == {}
+    assert {claim["outcome"] for claim in found["claims"]} == {"holds exactly"}
     assert set(found["kinematics"]["bodies"][0]) == {
         "name", "rotation", "angular_velocity", "velocity_origin", "velocity_mass_centre",
     }  # fmt: skip

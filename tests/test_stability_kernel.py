@@ -928,6 +928,63 @@ def test_cases_are_true_at_random_points(name: str) -> None:
     assert len(seen) >= different
 
 
+# -- requirements that take each other for granted --------------------------------------------------------------------
+
+ONE, (X,) = ring("x")
+POINTS = [rational(F(k, 3)) for k in range(-14, 15)]
+
+
+def left_of_it_holds(wanted: theory.Requirement, x: Any) -> bool:
+    """The reduced condition at a point."""
+    condition = wanted.condition
+    if condition.kind in ("always", "never"):
+        return condition.kind == "always"
+    strict = condition.kind != "inequality" or condition.polynomial(x) > 0
+    return bool(strict and all(p(x) != 0 for p in condition.nonzero))
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.tuples(st.integers(-4, 6), st.integers(-3, 3)), min_size=3, max_size=6))
+def test_half_of_the_coefficients_decides_as_well(pairs: list[tuple[int, int]]) -> None:
+    """Lienard-Chipart with every second coefficient left out, against the count of roots at points."""
+    coefficients = (*(a + b * X for a, b in pairs), X * 0 + 1)
+    known = signs(ONE)
+    wanted = [theory.Requirement(label, p, known.condition(p)) for label, p in lienard_chipart(coefficients)[1:]]
+    kept = theory._without_implied(theory._spared(wanted, len(pairs)))
+    for x in POINTS:
+        stable = count_roots([fmpq(p(x)) for p in coefficients]).left == len(pairs)
+        assert all(left_of_it_holds(r, x) for r in kept) == stable
+
+
+def test_a_coefficient_is_spared() -> None:
+    wanted = [
+        theory.Requirement(label, p, signs(ONE).condition(p))
+        for label, p in lienard_chipart((X**2 + X, 1 + X, X**3 + X + 3, 2 * X + 1, X * 0 + 1))[1:]
+    ]
+    assert [r.label for r in wanted] == ["a3", "a2", "a1", "a0", "Hurwitz minor 3"]
+    assert [r.label for r in theory._spared(wanted, 4)] == ["a3", "a1", "a0", "Hurwitz minor 3"]
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.tuples(st.integers(-3, 5), st.integers(-2, 2)), min_size=6, max_size=6))
+def test_minors_may_presume_those_before_them(pairs: list[tuple[int, int]]) -> None:
+    a, b, c, d, e, f = (p + q * X for p, q in pairs)
+    rows = matrix(ONE, [[a, b, c], [b, d, e], [c, e, f]])
+    found = theory.definiteness(rows, signs(ONE), "K")
+    for x in POINTS:
+        values = [[fmpq(entry(x)) for entry in row] for row in rows]
+        minors = [determinant([[ONE.constant(y) for y in row[:k]] for row in values[:k]])(0) for k in (1, 2, 3)]
+        assert all(left_of_it_holds(r, x) for r in found.requirements) == all(m > 0 for m in minors)
+
+
+def test_a_diagonal_matrix_shows_its_entries() -> None:
+    context, (p, q) = ring("p q")
+    rows = matrix(context, [[p, p * 0], [q * 0, p + q]])
+    found = theory.definiteness(rows, signs(context), "K")
+    assert [r.condition.polynomial for r in found.requirements] == [p, p + q]
+    assert [r.polynomial for r in found.requirements] == [p, p * (p + q)]
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(1, 4).flatmap(square))
 def test_inertia(rows: list[list[int]]) -> None:

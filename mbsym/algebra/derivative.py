@@ -26,7 +26,7 @@ def gradient(program: Program, output: Node, inputs: Sequence[Node]) -> tuple[No
 
 
 def jacobian(program: Program, outputs: Sequence[Node], inputs: Sequence[Node]) -> tuple[tuple[Node, ...], ...]:
-    """Row i holds d outputs[i] / d x for x in inputs, by sweeps forwards or backwards, whichever takes fewer operations.
+    """Row i holds d outputs[i] / d x for x in inputs, by sweeps forwards or backwards, whichever costs less.
 
     The operations are counted from the dependences between nodes, before either is written down.
     """
@@ -104,7 +104,8 @@ class _Sweeps:
                     share = self._scaled(adjoint, factor)
                     known = adjoints.get(operand)
                     adjoints[operand] = share if known is None else known + share
-        return tuple(adjoints.get(node.number, program.zero) for node in self.inputs)
+        zero: Node = program.zero
+        return tuple(adjoints.get(node.number, zero) for node in self.inputs)
 
     def forwards(self, place: int) -> tuple[Node, ...]:
         """The derivatives of all outputs by one input."""
@@ -123,7 +124,8 @@ class _Sweeps:
                 if operand in tangents:
                     total = total + self._scaled(tangents[operand], factor)
             tangents[number] = total
-        return tuple(tangents.get(node.number, program.zero) for node in self.outputs)
+        zero: Node = program.zero
+        return tuple(tangents.get(node.number, zero) for node in self.outputs)
 
     def _scaled(self, value: Node, factor: _Factor) -> Node:
         node, minus = factor

@@ -32,14 +32,25 @@ class Search:
 
 def step(function: Function, jacobian: Jacobian, box: Box) -> Box | None:
     """K(box), or None where the Jacobian at the midpoint cannot be inverted."""
-    n = len(box)
     middle = tuple(arb(x.mid()) for x in box)
-    slope = arb_mat(n, n, [x for row in jacobian(middle) for x in row])
+    inverse = _inverse(jacobian(middle))
+    return None if inverse is None else _image(function, jacobian, box, middle, inverse)
+
+
+def _inverse(rows: Sequence[Sequence[Any]]) -> Any:
+    """A matrix of exact numbers close to the inverse, or None."""
+    n = len(rows)
     try:
-        inverse = slope.inv()
+        inverse = arb_mat(n, n, [x for row in rows for x in row]).inv()
     except ZeroDivisionError:
         return None
-    inverse = arb_mat(n, n, [arb(x.mid()) for x in inverse.entries()])
+    if not all(x.is_finite() for x in inverse.entries()):
+        return None
+    return arb_mat(n, n, [arb(x.mid()) for x in inverse.entries()])
+
+
+def _image(function: Function, jacobian: Jacobian, box: Box, middle: Box, inverse: Any) -> Box | None:
+    n = len(box)
     value = inverse * arb_mat(n, 1, list(function(middle)))
     spread = arb_mat(n, n, [arb(int(i == j)) for i in range(n) for j in range(n)])
     spread = spread - inverse * arb_mat(n, n, [x for row in jacobian(box) for x in row])
@@ -49,22 +60,31 @@ def step(function: Function, jacobian: Jacobian, box: Box) -> Box | None:
 
 
 def certified(function: Function, jacobian: Jacobian, start: Sequence[float], bits: int = 200) -> Box | None:
-    """A narrow box around a root near ``start``, proved to hold exactly one; None where that fails."""
+    """A narrow box around a root near ``start``, proved to hold exactly one; None where that fails.
+
+    The iteration keeps the Jacobian's first inverse: a start that is good to 8 digits gains 8 digits a step.
+    """
+    n = len(start)
     keep, ctx.prec = ctx.prec, bits
     try:
         centre: Box = tuple(arb(x) for x in start)
-        for _ in range(12):  # Newton's method at the working precision
-            moved = step(function, jacobian, centre)
-            if moved is None:
+        inverse = _inverse(jacobian(centre))
+        for turn in range(40):
+            if inverse is None:
                 return None
-            change = max(abs(float((a - b).mid())) for a, b in zip(moved, centre, strict=True))
-            centre = tuple(arb(x.mid()) for x in moved)
-            if change < 1e-40:
+            change = inverse * arb_mat(n, 1, list(function(centre)))
+            length = max(abs(float(change[i, 0].mid())) for i in range(n))
+            if not length < 10:
+                return None
+            centre = tuple(arb((x - change[i, 0]).mid()) for i, x in enumerate(centre))
+            if length < 1e-40:
                 break
+            if length > 1e-3 or turn % 8 == 7:  # too far away, or too slow: a new inverse
+                inverse = _inverse(jacobian(centre))
         for exponent in (-30, -20, -12):
             box = tuple(arb(x.mid(), arb(10) ** exponent) for x in centre)
-            image = step(function, jacobian, box)
-            if image is not None and all(outer.contains_interior(inner) for outer, inner in zip(box, image, strict=True)):
+            image = None if inverse is None else _image(function, jacobian, box, centre, inverse)
+            if image is not None and all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
                 return image
         return None
     finally:

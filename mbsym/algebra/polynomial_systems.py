@@ -18,9 +18,8 @@ an empty list means that nothing is missing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from itertools import combinations, product
 from typing import Any
 
@@ -29,6 +28,7 @@ from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz,
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
 Monomial = tuple[int, ...]
+_vector: Any = fmpz_mpoly_vec  # its type hints lack some arguments
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class Limits:
     number of solutions of one branch, and terms touched in all."""
 
     branches: int = 4_000
-    elements: int = 120
-    terms: int = 1_500
+    elements: int = 70
+    terms: int = 500
     bits: int = 6_000
-    pairs: int = 6_000
+    pairs: int = 3_000
     solutions: int = 96
-    work: int = 30_000_000
+    work: int = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def solve(
 class _Branch:
     equations: list[Polynomial]
     nonzero: list[Polynomial]
-    reduced: bool = False
+    special: bool = False  # split at the zeros of the bounded variables already
     families: list[Family] = field(default_factory=list)  # those whose closure this branch may touch
 
 
@@ -197,8 +197,26 @@ class _Solver:
             try:
                 self._treat(branch)
             except _TooLarge as reason:
-                self.unfinished.append(str(reason))
-        return Solutions(tuple(self.points), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
+                if branch.special or not self._specialised(branch):
+                    self.unfinished.append(str(reason))
+        # Branches do not share solutions, but a point may still be the limit of a family of another branch.
+        isolated = [p for p in self.points if not any(family.contains(p) for family in self.families)]
+        return Solutions(tuple(isolated), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
+
+    def _specialised(self, branch: _Branch) -> bool:
+        """Where a branch is too large: what lies at the zeros of sines and cosines apart, and then the rest again."""
+        known = {_key(x) for x in branch.nonzero}
+        gens = self.context.gens()
+        zeros = [gens[k] for k in sorted(self.bounded) if _key(gens[k]) not in known]
+        if not zeros:
+            return False
+        rest = _Branch(branch.equations, [*branch.nonzero, *zeros], families=branch.families, special=True)
+        self.pending.append(rest)
+        before = len(self.pending)
+        self._split(branch.equations, zeros, branch)
+        for part in self.pending[before:]:
+            part.special = True
+        return True
 
     def spend(self, work: int) -> None:
         self.work += work
@@ -222,7 +240,9 @@ class _Solver:
         done: list[Polynomial] = []
         fresh = []
         for factor in factors:
-            fresh.append(_Branch([*rest, factor], [*branch.nonzero, *done], families=branch.families))
+            fresh.append(
+                _Branch([*rest, factor], [*branch.nonzero, *done], special=branch.special, families=branch.families)
+            )
             done.append(factor)
         self.pending += reversed(fresh)
 
@@ -257,7 +277,7 @@ class _Solver:
         """Interreduced irreducible equations; None where the branch is empty or was split."""
         current = [x for x in branch.equations if not x.is_zero()]
         while True:
-            current = [x for x in fmpz_mpoly_vec(current, self.context).autoreduction() if not x.is_zero()]
+            current = [x for x in _vector(current, self.context).autoreduction() if not x.is_zero()]
             self.spend(sum(map(len, current)) * (1 + len(current)))
             smaller, splitting = [], []
             for position, x in enumerate(current):
@@ -271,7 +291,9 @@ class _Solver:
                 terms = _sum_of_squares(x)
                 if terms:  # over the reals every term vanishes
                     rest = [y for k, y in enumerate(current) if k != position]
-                    self.pending.append(_Branch([*rest, *terms], branch.nonzero, families=branch.families))
+                    self.pending.append(
+                        _Branch([*rest, *terms], branch.nonzero, special=branch.special, families=branch.families)
+                    )
                     return None
             if splitting:
                 _, _, position, factors = min(splitting, key=lambda item: item[:3])
@@ -288,17 +310,17 @@ class _Solver:
         basis = self._simplified(branch)
         if basis is None:
             return None
-        pairs = set(combinations(range(len(basis)), 2))
         leads = [x.monomial(0) for x in basis]
+        pairs = {(i, j): sum(_lcm(leads[i], leads[j])) for i, j in combinations(range(len(basis)), 2)}
         while pairs:
-            i, j = min(pairs, key=lambda pair: (sum(_lcm(leads[pair[0]], leads[pair[1]])), pair))
-            pairs.remove((i, j))
+            i, j = min(pairs, key=lambda pair: (pairs[pair], pair))
+            del pairs[i, j]
             if _useless(i, j, leads, pairs):
                 continue
             self.pairs += 1
             if self.pairs > self.limits.pairs:
                 raise _TooLarge(f"more than {self.limits.pairs} S-polynomials")
-            x = basis[i].spoly(basis[j]).reduction_primitive_part(fmpz_mpoly_vec(basis, self.context))
+            x = basis[i].spoly(basis[j]).reduction_primitive_part(_vector(basis, self.context))
             self.spend(len(basis[i]) + len(basis[j]) + len(x) * len(basis))
             if x.is_zero():
                 continue
@@ -312,14 +334,14 @@ class _Solver:
             x = factors[0]
             lead = x.monomial(0)
             if any(_divides(lead, other) for other in leads):  # the others get shorter: begin again with that
-                self.pending.append(_Branch([*basis, x], branch.nonzero, families=branch.families))
+                self.pending.append(_Branch([*basis, x], branch.nonzero, branch.special, branch.families))
                 return None
-            pairs |= {(k, len(basis)) for k in range(len(basis))}
+            pairs |= {(k, len(basis)): sum(_lcm(other, lead)) for k, other in enumerate(leads)}
             basis.append(x)
             leads.append(lead)
             if len(basis) > self.limits.elements:
                 raise _TooLarge(f"a Groebner basis of more than {self.limits.elements} elements")
-        return list(fmpz_mpoly_vec(basis, self.context).autoreduction(groebner=True))
+        return list(_vector(basis, self.context).autoreduction(groebner=True))
 
     def _check(self, x: Polynomial) -> None:
         if len(x) > self.limits.terms:
@@ -370,7 +392,7 @@ class _Solver:
             families = [*families, family]
         done: list[Polynomial] = []
         for x in exceptional:
-            self.pending.append(_Branch([*basis, x], [*branch.nonzero, *done], families=families))
+            self.pending.append(_Branch([*basis, x], [*branch.nonzero, *done], branch.special, families))
             done.append(x)
 
     def _exceptional(
@@ -406,7 +428,7 @@ class _Solver:
 
     def _bounded_basis(self, generators: list[Polynomial], where: Any) -> list[Polynomial]:
         limits = (self.limits.elements, self.limits.terms, self.limits.bits)
-        found, finished = fmpz_mpoly_vec(generators, where).buchberger_naive(limits=limits)
+        found, finished = _vector(generators, where).buchberger_naive(limits=limits)
         if not finished:
             raise _TooLarge("an elimination beyond the limits of a Groebner basis")
         self.spend(sum(map(len, found)) * len(found))
@@ -438,7 +460,7 @@ def _lcm(a: Monomial, b: Monomial) -> Monomial:
     return tuple(max(x, y) for x, y in zip(a, b, strict=True))
 
 
-def _useless(i: int, j: int, leads: Sequence[Monomial], pairs: set[tuple[int, int]]) -> bool:
+def _useless(i: int, j: int, leads: Sequence[Monomial], pairs: Container[tuple[int, int]]) -> bool:
     """Buchberger's criteria: coprime leading monomials, or a chain through an element whose pairs are done."""
     common = _lcm(leads[i], leads[j])
     if all(not (a and b) for a, b in zip(leads[i], leads[j], strict=True)):
@@ -457,7 +479,10 @@ def _key(x: Polynomial) -> str:
 
 
 def _irreducible(x: Polynomial) -> list[Polynomial]:
-    return [] if x.is_constant() else [factor for factor, _ in x.factor()[1]]
+    try:
+        return [] if x.is_constant() else [factor for factor, _ in x.factor()[1]]
+    except OverflowError:  # python-flint sorts factors by machine integers
+        raise _TooLarge("factors with coefficients too long to be sorted") from None
 
 
 def _sum_of_squares(x: Polynomial) -> list[Polynomial]:
@@ -643,7 +668,3 @@ def inverse_modulo(x: Univariate, p: Univariate) -> Univariate:
         raise ZeroDivisionError("zero has no inverse in the number field")
     _, s, _ = x.xgcd(p)
     return s % p
-
-
-def rational(value: Any) -> Fraction:
-    return Fraction(int(value.p), int(value.q))

@@ -72,13 +72,18 @@ class _Rewriting:
             for operand in program.instructions[number].operands:
                 users[operand] = program.instructions[number].operation
         additive = ("add", "subtract", "negative")
-        # A part of a sum that nobody else needs is no node of its own.
+        instructions = program.instructions
+        differences = {instructions[k].operands for k in self.live if instructions[k].operation == "subtract"}
+        # A part of a sum that nobody else needs is no node of its own; x - y is needed where y - x is.
         self.inner = {
             number
             for number in self.live
             if self.uses[number] == 1
-            and program.instructions[number].operation in additive
+            and instructions[number].operation in additive
             and users.get(number) in additive
+            and not (
+                instructions[number].operation == "subtract" and instructions[number].operands[::-1] in differences
+            )
         } - {node.number for node in outputs}
         self.image: dict[int, Node] = {}
 
@@ -172,6 +177,11 @@ class _Rewriting:
                 pending += [(k, below) for k in operands]
             elif operation == "divide":
                 pending += [(operands[0], below), (operands[1], not below)]
+            elif operation == "subtract" and operands[0] > operands[1]:
+                # y - x and x - y are two nodes; as factors they are one, with a sign.
+                coefficient = -coefficient
+                other = self.program.minus(Node(self.program, number)).number
+                factors.append(~other if below else other)
             else:
                 factors.append(~number if below else number)
             if len(factors) + len(pending) > MOST_FACTORS:
@@ -218,7 +228,15 @@ class _Rewriting:
 
     def _improve(self, whole: _Sum) -> None:
         """Every rule once for every pair of terms; each application leaves no more terms than there were."""
-        for rule in (self._squares_of_one_angle, self._cosines, self._roots, self._squares, self._two_angles):
+        kinds = {self._operation(f if f >= 0 else ~f)[0] for key in whole.coefficients for f in key}
+        turning = "sin" in kinds or "cos" in kinds
+        repeated = any(len(set(key)) < len(key) for key in whole.coefficients)
+        rules = [self._squares_of_one_angle] if turning and repeated else []
+        rules += [self._cosines] if "cos" in kinds else []
+        rules += [self._roots] if "sqrt" in kinds else []
+        rules += [self._squares] if repeated else []
+        rules += [self._two_angles] if turning else []
+        for rule in rules:
             for key in list(whole.coefficients):
                 if key in whole.coefficients:
                     rule(whole, key)

@@ -23,7 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.base import Algebra, Scalar, SingularPoint, Vector
-from mbsym.mechanics.articulation import Articulation, Frame, Matrix, MassProperties, symmetric, turned_symmetric
+from mbsym.mechanics.articulation import Articulation, MassProperties, Matrix, symmetric, turned_symmetric
 from mbsym.mechanics.coasting import Coasting
 from mbsym.mechanics.frames import Turn, axis_vector, turn_back
 
@@ -109,18 +109,21 @@ class _Articulated:
                     spin = algebra.add(spin, axis_vector(algebra, frame.turn.axis, frame.angle_derivatives[name]))
                 own[name] = spin, velocity
         return {
-            self.system.frame_of[body]: [(name, *twist) for name, twist in own.items()]
-            for body, own in partial.items()
+            self.system.frame_of[body]: [(name, *twist) for name, twist in own.items()] for body, own in partial.items()
         }
 
-    def _eliminate(self, number: int, inertia: _Inertia, name: str, spin: Vector, velocity: Vector) -> tuple[_Inertia, _Joint]:
+    def _eliminate(
+        self, number: int, inertia: _Inertia, name: str, spin: Vector, velocity: Vector
+    ) -> tuple[_Inertia, _Joint]:
         """A joint along (spin, velocity) taken out of the inertia and the wrench of a frame."""
         algebra, force, moment = self.algebra, self.forces[number], self.moments[number]
         u_force = algebra.add(algebra.apply(inertia.force, velocity), algebra.apply(inertia.mixed, spin))
         u_moment = algebra.add(algebra.apply(_transpose(inertia.mixed), velocity), algebra.apply(inertia.moment, spin))
         pivot = algebra.reduce(algebra.dot(velocity, u_force) + algebra.dot(spin, u_moment))
         share = self.generalized[name] - algebra.dot(velocity, force) - algebra.dot(spin, moment)
-        return self._taken_out(number, inertia, _Joint(name, spin, velocity, u_force, u_moment, share, pivot, algebra.one))
+        return self._taken_out(
+            number, inertia, _Joint(name, spin, velocity, u_force, u_moment, share, pivot, algebra.one)
+        )
 
     def _taken_out(self, number: int, inertia: _Inertia, joint: _Joint) -> tuple[_Inertia, _Joint]:
         """The inertia that is left, and the joint with its pivot inverted; the frame's wrench is updated."""

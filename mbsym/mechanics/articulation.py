@@ -144,7 +144,17 @@ class _Builder:
             offset, sliding, jerking, derivatives, still = moved
             self.frames.append(
                 Frame(
-                    body.name, parent, turn, offset, sliding, jerking, slopes[number], derivatives, fixed, still, together
+                    body.name,
+                    parent,
+                    turn,
+                    offset,
+                    sliding,
+                    jerking,
+                    slopes[number],
+                    derivatives,
+                    fixed,
+                    still,
+                    together,
                 )
             )
         self.frame_of[body.name] = len(self.frames) - 1
@@ -174,9 +184,7 @@ def _matter(scene: Scene, name: str) -> MassProperties:
 def total(algebra: Algebra, a: MassProperties, b: MassProperties) -> MassProperties:
     """Two bodies on one frame."""
     rows = [algebra.add(x, y) for x, y in zip(a.tensor, b.tensor, strict=True)]
-    return MassProperties(
-        a.mass + b.mass, algebra.add(a.first_moment, b.first_moment), (rows[0], rows[1], rows[2])
-    )
+    return MassProperties(a.mass + b.mass, algebra.add(a.first_moment, b.first_moment), (rows[0], rows[1], rows[2]))
 
 
 def nothing(algebra: Algebra) -> MassProperties:
@@ -216,9 +224,7 @@ def turned_back(algebra: Algebra, x: MassProperties, turn: Turn | None) -> MassP
     """The same body in the axes before a turn."""
     if turn is None:
         return x
-    return MassProperties(
-        x.mass, turn_back(algebra, turn, x.first_moment), turned_symmetric(algebra, turn, x.tensor)
-    )
+    return MassProperties(x.mass, turn_back(algebra, turn, x.first_moment), turned_symmetric(algebra, turn, x.tensor))
 
 
 def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
@@ -241,7 +247,11 @@ def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
     swung = turn_back(algebra, turn, (column[0], column[1], column[2]))
     for k in (i, j):
         rows[k][a] = rows[a][k] = swung[k]
-    return ((rows[0][0], rows[0][1], rows[0][2]), (rows[1][0], rows[1][1], rows[1][2]), (rows[2][0], rows[2][1], rows[2][2]))
+    return (
+        (rows[0][0], rows[0][1], rows[0][2]),
+        (rows[1][0], rows[1][1], rows[1][2]),
+        (rows[2][0], rows[2][1], rows[2][2]),
+    )
 
 
 def _regrouped(
@@ -279,5 +289,3 @@ def _split(algebra: Algebra, frame: Frame, own: MassProperties) -> tuple[MassPro
     along[frame.turn.axis - 1] = own.first_moment[frame.turn.axis - 1]
     stays = MassProperties(algebra.zero, (across[0], across[1], across[2]), own.tensor)
     return stays, MassProperties(own.mass, (along[0], along[1], along[2]), none.tensor)
-
-

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.tree import Name, names
-from mbsym.mechanics.frames import axis_vector, direction_cosines, forward
+from mbsym.mechanics.frames import axis_vector, back, direction_cosines, forward
 from mbsym.mechanics.rest import Rest, rest
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import Body, Rotation, System, velocity_name
@@ -62,8 +62,8 @@ class Joint:
 class Chart:
     """One description of the configurations: the system with some joints' angles replaced.
 
-    Only configurations with ``nonzero`` != 0 and ``restrictions`` = 0 are to be looked for in it, so that the charts of a
-    system have no configuration in common.
+    Only configurations with ``nonzero`` != 0 and ``restrictions`` = 0 are to be looked for in it, so that the charts of
+    a system have no configuration in common.
     """
 
     found: Rest
@@ -90,7 +90,7 @@ def joints(system: System, turning: Sequence[str]) -> tuple[Joint, ...]:
         turns = list(body.rotation.turns())
         angles = [angle.name for _, angle in turns if isinstance(angle, Name) and angle.name in system.coordinates]
         axes = [axis for axis, _ in turns]
-        distinct = len(set(angles)) == len(turns) and all(a != b for a, b in zip(axes, axes[1:], strict=False))
+        distinct = len(set(angles)) == len(turns) and all(a != b for a, b in pairwise(axes))
         if len(turns) not in (2, 3) or not distinct or set(angles[:2]) & set(turning):
             continue
         if _used_elsewhere(system, body, angles):
@@ -177,21 +177,29 @@ def rows(found: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
     return direction_cosines(found.ring, found.scene.motions[joint.body].turns)
 
 
-def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...] | None:
-    """The moment that three angles stand for, in body axes, instead of its projections on their oblique axes.
+def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
+    """The moment that three angles stand for, in the axes of the body and in those of the previous one.
 
     With the unit vectors w_i of the turns,  f_i = w_i . tau,  so
-    tau = [f1 (w2 x w3) + f2 (w3 x w1) + f3 (w1 x w2)] / w1.(w2 x w3).  The division comes out; None where it does not.
+    tau = [f1 (w2 x w3) + f2 (w3 x w1) + f3 (w1 x w2)] / w1.(w2 x w3),
+    and f and tau vanish together where the angles are regular.  Components for which the division does not come out are
+    left out; they say nothing that f does not say, only more shortly.
     """
     ring, turns = found.ring, found.scene.motions[joint.body].turns
     if len(joint.angles) != 3 or len(turns) != 3 or joint.direction_only:
-        return None
-    w = [forward(ring, turns[k + 1 :], axis_vector(ring, turn.axis, ring.one)) for k, turn in enumerate(turns)]
+        return ()
+    axes = [axis_vector(ring, turn.axis, ring.one) for turn in turns]
     f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]
-    total = ring.zero_vector
-    for k in range(3):
-        total = ring.add(total, ring.scale(f[k], ring.cross(w[(k + 1) % 3], w[(k + 2) % 3])))
-    volume = ring.dot(w[0], ring.cross(w[1], w[2]))
-    square = ring.reduce(volume * volume)
-    quotients = [ring.quotient(ring.reduce(ring.times(x, volume)), square) for x in total]
-    return None if any(x is None for x in quotients) else tuple(quotients)
+    parts: list[Polynomial] = []
+    for w in (
+        [forward(ring, turns[k + 1 :], axis) for k, axis in enumerate(axes)],
+        [back(ring, turns[:k], axis) for k, axis in enumerate(axes)],
+    ):
+        total = ring.zero_vector
+        for k in range(3):
+            total = ring.add(total, ring.scale(f[k], ring.cross(w[(k + 1) % 3], w[(k + 2) % 3])))
+        volume = ring.dot(w[0], ring.cross(w[1], w[2]))
+        square = ring.reduce(volume * volume)
+        quotients = [ring.quotient(ring.reduce(ring.times(x, volume)), square) for x in total]
+        parts += [x for x in quotients if x is not None]
+    return tuple(parts)

@@ -134,7 +134,11 @@ def _products(algebra: Algebra, w: Vector) -> Matrix:
     for i in range(3):
         for j in range(i, 3):
             rows[i][j] = rows[j][i] = algebra.reduce(algebra.times(w[i], w[j]))
-    return ((rows[0][0], rows[0][1], rows[0][2]), (rows[1][0], rows[1][1], rows[1][2]), (rows[2][0], rows[2][1], rows[2][2]))
+    return (
+        (rows[0][0], rows[0][1], rows[0][2]),
+        (rows[1][0], rows[1][1], rows[1][2]),
+        (rows[2][0], rows[2][1], rows[2][2]),
+    )
 
 
 def _whirl(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:

@@ -47,7 +47,10 @@ def solve(
 
 
 def elimination_order(pattern: Sequence[set[int]]) -> tuple[int, ...]:
-    """From the last row to the first if that fills in nothing, else greedily by least fill-in; ``pattern`` is symmetric."""
+    """From the last row to the first if that fills in nothing, else greedily by least fill-in.
+
+    ``pattern`` holds the columns of each row's nonzero entries, and is symmetric.
+    """
     backwards = tuple(reversed(range(len(pattern))))
     if _fill(pattern, backwards) == 0:
         return backwards

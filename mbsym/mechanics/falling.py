@@ -123,6 +123,6 @@ def _work(scene: Scene, about: str, w: Vector) -> Scalar:
 
 
 def overrides(scene: Scene, base: Vector) -> Mapping[str, Vector]:
-    """Accelerations of the origins of falling frames, less the gravity there; ``base`` is that of the inertial frame."""
+    """Accelerations of falling frames' origins, less the gravity there; ``base`` is that of the inertial frame."""
     felt = felt_accelerations(scene)
     return {name: scene.algebra.add(w, scene.to_axes(base, INERTIAL, name)) for name, w in felt.items()}

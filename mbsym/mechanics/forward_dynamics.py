@@ -20,7 +20,8 @@ from mbsym.algebra.ring import Ring
 from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.coasting import coasting, forcing
-from mbsym.mechanics.programs import coasting_scene, constants, lean_mass_matrix
+from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.programs import coasting_scene, constants
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 
@@ -72,9 +73,7 @@ def forward_dynamics(system: System, ring: Ring, method: str | None = None) -> F
             operations[FACTORISED] = least
             estimated.add(FACTORISED)
         else:
-            found[FACTORISED] = factorisation.solve(
-                program, lean_mass_matrix(frames, program, inputs), forcing(frames, needed)
-            )
+            found[FACTORISED] = factorisation.solve(program, mass_matrix(frames), forcing(frames, needed))
             operations[FACTORISED] = program.operations([x for part in found[FACTORISED] for x in part], given)
     chosen = min(found, key=lambda name: operations[name])
     accelerations, pivots = found[chosen]

@@ -48,8 +48,8 @@ class Scene:
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
     it and carried over.  With ``frozen`` the prescribed quantities and t stand still;
-    without ``bodies`` only expressions are lowered.  Seen from frames that are ``falling`` their origins are at rest and
-    gravity is what it is there beyond that at the origin (``mbsym.mechanics.falling``).
+    without ``bodies`` only expressions are lowered.  Seen from frames that are ``falling`` their origins are at rest,
+    and gravity is what it is beyond that at the origin (``mbsym.mechanics.falling``).
     """
 
     def __init__(

@@ -5,12 +5,7 @@
     energy    = T - U, without the gyrostatic term h.omega, which no energy contains
 
 All over one hash-consed program, so what they share is computed once, and zeros (branches that do not feel a joint)
-never become instructions.  Where a coordinate occurs in several joints (absolute angles), terms of the composite bodies
-may cancel that the general recursion never forms; then
-
-    column j of M = Newton-Euler residuals at q' = 0, q'' = e_j, without loads
-
-is written down too, and the shorter of the two is taken.
+never become instructions.
 """
 
 from __future__ import annotations
@@ -24,14 +19,12 @@ from flint import arb, arb_mat, fmpq_mat
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.articulated import applies
-from mbsym.mechanics.articulation import Articulation, articulation
+from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.coasting import coasting, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
-from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
@@ -74,40 +67,12 @@ def programs(system: System, ring: Ring) -> Programs:
     return Programs(
         program=program,
         environment=inputs,
-        mass_matrix=lean_mass_matrix(frames, program, inputs),
+        mass_matrix=mass_matrix(frames),
         forcing=forcing(frames, coasting(frames)),
         energy=kinetic - force - gyrostatic_term(scene),
         kinetic_energy=kinetic,
         force_function=force,
     )
-
-
-def lean_mass_matrix(
-    frames: Articulation, program: Program, inputs: Mapping[str, Node]
-) -> tuple[tuple[Node, ...], ...]:
-    """M by composite bodies or column by column, whichever costs less for one more state."""
-    composite = mass_matrix(frames)
-    if applies(frames):
-        return composite
-    columns = mass_matrix_by_columns(frames.scene.system, frames.scene.ring, program, inputs)
-    given = constants(frames.scene.system)
-    costs = [program.operations([x for row in rows for x in row], given) for rows in (composite, columns)]
-    return composite if costs[0] <= costs[1] else columns
-
-
-def mass_matrix_by_columns(
-    system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]
-) -> tuple[tuple[Node, ...], ...]:
-    """Column j = what the joints must supply for q'' = e_j at rest; the entries above the diagonal count."""
-    names = system.coordinates
-    at_rest = dict(inputs) | {velocity_name(name): program.zero for name in names}
-    columns = []
-    for moving in names:
-        unit = {acceleration_name(name): program.one if name == moving else program.zero for name in names}
-        column = residuals(Scene(system, program, at_rest | unit, ring, frozen=True), loads=False)
-        columns.append([column[name] for name in names])
-    n = len(names)
-    return tuple(tuple(columns[max(i, j)][min(i, j)] for j in range(n)) for i in range(n))
 
 
 def momenta(found: Programs, system: System) -> tuple[Node, ...]:

@@ -43,8 +43,9 @@ def offset_violation(
 ) -> str | None:
     """Why no body with the inertia ``tensor`` about O has its mass centre at ``centre`` from O, or None if some has.
 
-    About the axis i through O the mass alone, were it all at its centre, has m (c.c - c_i^2); no body has less.  What is
-    left about the mass centre must be the inertia of a body.  Where only some moments were meant, ``axes`` are theirs.
+    About the axis i through O the mass alone, were it all at its centre, has m (c.c - c_i^2); no body has less.  What
+    is left about the mass centre must be the inertia of a body.  Where only some moments were meant, ``axes`` are
+    theirs.
     """
     square = sum((component * component for component in centre), Fraction(0))
     for index in axes:
@@ -70,7 +71,8 @@ def symbolic_violation(
     for index in range(3):
         others = [other for other in range(3) if other != index]
         if about_joint:
-            lever = Operation("+", *(Operation("*", centre[other], centre[other]) for other in others))
+            squares = [Operation("*", centre[other], centre[other]) for other in others]
+            lever = Operation("+", squares[0], squares[1])
             left = Operation("-", tensor[index][index], Operation("*", mass, lever))
             if _surely_negative_sum(left, signs):
                 reason = f"{text(tensor[index][index])} < {_offset_words(index)}"

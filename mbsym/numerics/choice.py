@@ -23,6 +23,9 @@ from mbsym.numerics.methods.table import METHODS
 #: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
 STABLE = 5.0
 
+#: Only a decay so much faster than the oscillations makes a system stiff.
+STIFF = 3.0
+
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
 
@@ -35,15 +38,17 @@ EXPLICIT, IMPLICIT = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda")
 
 @dataclass(frozen=True)
 class Choice:
-    """A method and why; ``decay`` is the fastest rate 1/s at which a motion dies out, ``frequency`` the greatest
+    """A method and why.
 
-    angular frequency, both from the Jacobian at the initial state.
+    ``decay`` is the fastest rate at which a motion dies out and ``frequency`` the greatest angular frequency, both from
+    the Jacobian at the initial state; ``measured`` says what trials took, if there were any.
     """
 
     method: Method
     why: str
     decay: float
     frequency: float
+    measured: str = ""
 
 
 def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float, float]:
@@ -70,7 +75,8 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
     explicit = next(METHODS[name] for name in EXPLICIT if name in METHODS)
     decay, frequency = rates(dynamics)
     steps = decay * time_ / STABLE
-    if steps <= FEW_STEPS:
+    # Where the oscillations are as fast as that, they need the short steps themselves.
+    if steps <= FEW_STEPS or decay <= STIFF * frequency:
         return Choice(explicit, "explicit, of high order: nothing stiff in the initial state", decay, frequency)
     if scalar != FLOAT64:
         return Choice(explicit, f"the implicit methods do not compute in {scalar}", decay, frequency)
@@ -82,13 +88,10 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
         if seconds is not None and seconds < least:
             best, least = METHODS[name], seconds
     if best is explicit:
-        why = f"decay at up to {decay:.3g}/s is stiff, yet explicit steps are quicker here (about {first:.2g} s)"
-    else:
-        why = (
-            f"stiff: decay at up to {decay:.3g}/s would ask an explicit method for {steps:.2g} steps "
-            f"(about {first:.2g} s, against {least:.2g} s)"
-        )
-    return Choice(best, why, decay, frequency)
+        why = f"motions die out at rates up to {decay:.3g}, yet explicit steps are quicker here"
+        return Choice(best, why, decay, frequency, f"about {first:.2g} s")
+    why = f"stiff: motions die out at rates up to {decay:.3g}, which would cost an explicit method {steps:.2g} steps"
+    return Choice(best, why, decay, frequency, f"about {least:.2g} s instead of {first:.2g} s")
 
 
 def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: float, steps: float) -> float:

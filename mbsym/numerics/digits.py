@@ -32,7 +32,7 @@ from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import coasting_scene, programs
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
-from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import Scenario
@@ -137,10 +137,10 @@ class Truth:
 
     def inputs(self, scenario: Scenario, time: Fraction, state: Sequence[Fraction]) -> list[arb]:
         """Balls at the working precision."""
-        values = [_ball(scenario.parameters[name]) for name in self.system.parameter_names]
+        values = [ball(scenario.parameters[name]) for name in self.system.parameter_names]
         values.append(arb.pi())
-        values += [_ball(start + rate * time) for start, rate in (scenario.prescribed[p.name] for p in self._driven)]
-        return [*values, _ball(time), *(_ball(x) for x in state)]
+        values += [ball(start + rate * time) for start, rate in (scenario.prescribed[p.name] for p in self._driven)]
+        return [*values, ball(time), *(ball(x) for x in state)]
 
     @property
     def _driven(self) -> tuple[Any, ...]:
@@ -151,7 +151,7 @@ class Truth:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
                 balls = self.functions[name](self.inputs(scenario, time, state))
-                if _tight(balls):
+                if tight(balls):
                     return balls, bits
         return balls, 0
 
@@ -173,11 +173,11 @@ class Truth:
         return largest / norm if norm and isfinite(largest) else (inf if largest else 1.0)
 
 
-def _ball(value: Fraction) -> arb:
+def ball(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def _tight(balls: Sequence[arb]) -> bool:
+def tight(balls: Sequence[arb]) -> bool:
     if not all(x.is_finite() for x in balls):
         return False
     norm = max((abs(x.mid()) for x in balls), default=arb(0))
@@ -185,21 +185,59 @@ def _tight(balls: Sequence[arb]) -> bool:
 
 
 class Arithmetic:
-    """Compiled kernels of all quantities for one scenario, in float32 and float64: what a simulation would use."""
+    """All quantities for one scenario, in float32 and float64.
 
-    def __init__(self, scenario: Scenario, found: Sequence[Quantity]) -> None:
+    ``compiled``: by the kernels that a simulation would use.  Else by the same operations one by one, in NumPy's
+    numbers: that differs by contracted multiplications and additions only, and a scenario costs no compilation.
+    """
+
+    def __init__(self, scenario: Scenario, found: Sequence[Quantity], compiled: bool = True) -> None:
         fresh = bound(scenario)
         names = ("t", *scenario.system.coordinates, *scenario.system.velocities)
         codes: dict[str, Code] = {}
         for q in found:
             nodes: list[Node] = substituted(q.code.program, q.code.outputs, fresh)
             codes[q.name.replace(" ", "_")] = Code(fresh, names, tuple(stabilised(fresh, nodes, q.name == "energy")))
-        self._kernels = {scalar: kernels(codes, scalar) for scalar in (FLOAT32, FLOAT64)}
+        if compiled:
+            self._kernels = {scalar: kernels(codes, scalar) for scalar in FULL}
+        else:
+            self._kernels = {s: {name: _stepwise(code, s) for name, code in codes.items()} for s in FULL}
 
     def values(self, name: str, scalar: str, inputs: Any) -> Any:
         """Results for one state (t, q, q'), as float64 numbers."""
         with np.errstate(all="ignore"):
             return np.asarray(self._kernels[scalar][name.replace(" ", "_")](inputs), dtype=float)
+
+
+def _stepwise(code: Code, scalar: str) -> Kernel:
+    """A kernel that takes one instruction after another, with numbers of one type."""
+    kind, program = (np.float32 if scalar == FLOAT32 else np.float64), code.program
+    binary = {"add": np.add, "subtract": np.subtract, "multiply": np.multiply, "divide": np.divide}
+    named = {"log": np.log, "atan": np.arctan}
+    slots = {name: place for place, name in enumerate(code.inputs)}
+    steps: list[tuple[int, Any, tuple[int, ...]]] = []
+    given: dict[int, Any] = {}
+    entries: list[tuple[int, int]] = []
+    for number in program.live(code.outputs):
+        operation, operands, payload = program.instructions[number]
+        if operation == "constant":
+            assert isinstance(payload, Fraction)
+            given[number] = kind(float(payload))
+        elif operation == "input":
+            entries.append((number, slots[str(payload)]))
+        else:
+            function = binary.get(operation) or named.get(operation) or getattr(np, operation)
+            steps.append((number, function, operands))
+
+    def kernel(inputs: Any) -> Any:
+        values = dict(given)
+        for number, place in entries:
+            values[number] = kind(inputs[place])
+        for number, function, operands in steps:
+            values[number] = function(*(values[k] for k in operands))
+        return np.array([values[node.number] for node in code.outputs])
+
+    return kernel
 
 
 def measured(
@@ -221,8 +259,8 @@ def measured(
     for scalar, full in FULL.items():
         kept[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full)
     rounded = [Fraction(x) for x in inputs]
-    there, tight = truth.value(name, scenario, rounded[0], rounded[1:])
-    formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64])[0] if tight else 0.0
+    there, known = truth.value(name, scenario, rounded[0], rounded[1:])
+    formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64])[0] if known else 0.0
     return Digits(kept, worst, formula, truth.condition(name, scenario, time, state), bits, norm)
 
 
@@ -237,15 +275,15 @@ def compared(values: Any, exact: Sequence[arb], full: float) -> tuple[float, flo
             error = abs(arb(float(value)) - x).upper()
             largest = max(largest, error)
             if not x.contains(0):
-                worst = min(worst, _digits(error / abs(x), full))
+                worst = min(worst, digits_of(error / abs(x), full))
             elif error > 0 and size.is_zero():
                 worst = 0.0
         if size.is_zero():
             return (full, worst) if largest.is_zero() else (0.0, worst)
-        return _digits(largest / size, full), worst
+        return digits_of(largest / size, full), worst
 
 
-def _digits(error: arb, full: float) -> float:
+def digits_of(error: arb, full: float) -> float:
     value = float(error.mid())
     return full if value <= 0 else min(full, max(0.0, -log10(value)))
 

@@ -11,7 +11,7 @@ Zero is decided in the ring (``proved``); where there is no closed form, at rand
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -49,13 +49,14 @@ class Reduction:
         return (*free, *(len(names) + place for place in free)), whole.state
 
 
-def resting(scenario: Scenario, ring: Ring | None = None) -> Reduction | None:
+def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str] | None = None) -> Reduction | None:
     """The largest set of coordinates that provably rest in this scenario, or None where there is none.
 
-    Parameters keep their symbols unless their value here is zero, so the statement holds for other numbers as well.
+    ``among`` names those worth looking at (all, by default).  Parameters keep their symbols unless their value here is
+    zero, so the statement holds for other numbers as well.
     """
     system = scenario.system
-    candidates = _candidates(scenario)
+    candidates = {name: x for name, x in _candidates(scenario).items() if among is None or name in among}
     if not candidates or len(system.coordinates) < 2:
         return None
     try:

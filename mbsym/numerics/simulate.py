@@ -126,6 +126,8 @@ def simulate(
 
 def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:
     """What is wrong with the initial state itself: there the right-hand side must exist."""
+    if not np.all(np.abs(initial) < LARGEST):
+        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST:g}", 0.0, initial)
     point = np.concatenate(([0.0], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
@@ -145,14 +147,19 @@ def _neighbours(state: Any) -> Any:
 
 
 def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
-    """A blow-up or a vanishing step where the mass matrix is singular is called what it is.
+    """A vanishing step at a blow-up, and either of them where the mass matrix is singular, are called what they are.
 
     ``past`` holds earlier (t, q, q') in columns: a pivot is small compared with what it was, whatever its units.
     """
     if found.kind not in (BLOW_UP, STUCK):
         return found
-    message = _vanishing(dynamics, found.time, np.asarray(found.state, dtype=float), past, SINGULAR_PIVOT)
-    return Breakdown(SINGULAR, message, found.time, found.state) if message else found
+    state = np.asarray(found.state, dtype=float)
+    message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
+    if message:
+        return Breakdown(SINGULAR, message, found.time, found.state)
+    if not np.all(np.abs(state) < LARGEST):
+        return Breakdown(BLOW_UP, "a coordinate or velocity has left every bound", found.time, found.state)
+    return found
 
 
 def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: float) -> str:

@@ -110,16 +110,15 @@ def tradeoff(
 ) -> Tradeoff:
     """Measures every method's ladder against ``reference`` (whose times are the sampled ones), in ``budget`` seconds.
 
-    The budget is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or where
-    a finer setting no longer gives a smaller error.
+    The budget is one of integration (compiling comes on top, once a method) and is shared evenly between the ladders;
+    a ladder stops where its next rung would cost too much, or where a finer setting no longer gives a smaller error.
     """
     judge = _Judge(dynamics, reference)
     rows: list[Measured] = []
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
-    ends = time.perf_counter() + budget
     for place, (method, scalar) in enumerate(pairs):
-        share = (ends - time.perf_counter()) / (len(pairs) - place)
+        share = (budget - judge.spent) / (len(pairs) - place)
         try:
             for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
                 rows.append(row)
@@ -137,7 +136,7 @@ class _Judge:
         size = np.max(np.abs(reference.states), axis=1)
         self.scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.energy})["energy"]
-        self.floor = max(reference.error, float(np.finfo(float).eps))
+        self.spent = 0.0
 
     def measure(self, candidate: Candidate) -> Measured:
         """Error, drift and median seconds of a candidate; a breakdown is a result too."""
@@ -151,9 +150,11 @@ class _Judge:
                 for t in times[1:]:
                     states.append(np.array(run.advance(float(t)), dtype=float))
             except Breakdown as found:
-                spent = time.perf_counter() - started
-                return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, spent, str(found))
+                wasted = time.perf_counter() - started
+                self.spent += wasted
+                return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
             seconds.append(time.perf_counter() - started)
+            self.spent += seconds[-1]
         matrix = np.array(states).T
         error, drift = self._error(matrix), self._drift(times, matrix)
         work, typical = run.work, statistics.median(seconds)
@@ -176,7 +177,7 @@ def _ladder(
     judge: _Judge, method: Method, scalar: str, share: float, watch: Callable[[str], None]
 ) -> Iterator[Measured]:
     """From coarse to fine, until the next rung costs too much or brings nothing."""
-    started = time.perf_counter()
+    before = judge.spent
     idle, best = 0, inf
     last: Measured | None = None
     for setting in _settings(method, scalar, float(judge.reference.times[-1])):
@@ -188,8 +189,7 @@ def _ladder(
         best = min(best, row.error)
         growth = max(1.3, row.seconds / last.seconds) if last is not None and last.seconds > 0 else 2.0
         last = row
-        spent = time.perf_counter() - started
-        if idle >= 3 or spent + min(growth, 4.0) * row.seconds > share:
+        if idle >= 3 or judge.spent - before + min(growth, 4.0) * row.seconds > share:
             return
 
 

@@ -24,6 +24,8 @@ from mbsym.algebra.base import NotRational, Scalar, SingularPoint
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.programs import Programs
 from mbsym.mechanics.states import SEED, Oracles
@@ -167,11 +169,12 @@ def check_equations(truth: Oracles, equations: Equations) -> Check:
 
 
 def check_program(truth: Oracles, programs: Programs) -> Check:
-    """The straight-line program against d'Alembert's principle."""
+    """The straight-line program, and the general recursion it is a leaner form of, against d'Alembert's principle."""
     names = truth.system.coordinates
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
+        recursion = residuals(Scene(truth.system, state.numbers, state.values, truth.ring))
         nodes = [node for row in programs.mass_matrix for node in row] + [*programs.forcing, programs.energy]
         values = programs.program.evaluate(nodes, state.values, state.numbers)
         needed = oracle.residuals
@@ -182,6 +185,7 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
             for j, other in enumerate(names):
                 total = total + values[i * n + j] * state.values[acceleration_name(other)]
             found.append((f"equation {name}", total, needed[name]))
+            found.append((f"equation {name} of the general recursion", recursion[name], needed[name]))
         return found
 
     return compare(truth, "straight-line program", ("Newton-Euler recursion in body axes", D_ALEMBERT), pairs)

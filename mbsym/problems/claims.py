@@ -26,9 +26,9 @@ from typing import Any, Protocol
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import Lowering, NoClosedForm, NotRational
+from mbsym.algebra.base import Lowering, NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.point import Balls
+from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -53,7 +53,7 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.model.claims import CLAIMS, SUMS, Claim
-from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
+from mbsym.model.system import INERTIAL, System, acceleration_name, rational, velocity_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
@@ -78,6 +78,8 @@ PRECISION = 256
 MOST_PARTS = 60
 #: Digits of a derived number that are shown.
 DIGITS_SHOWN = 12
+#: Random parameters at which a claimed condition is tried.
+SAMPLES = 400
 _MOTION = ("velocity", "acceleration")
 
 
@@ -431,9 +433,11 @@ def _compared(
     homogeneous = CLAIMS[claim.kind].homogeneous
     if ring.is_zero(claimed - truth):  # in the description's own symbols, if both are written in them
         return result
-    factor = _factor(derived, claimed, truth, homogeneous)
-    if factor is not None:
-        return replace(result, outcome=FACTOR, factor=factor)
+    if homogeneous:
+        factor = _factor(derived, claimed, truth, homogeneous)
+        if factor is not None:
+            return replace(result, outcome=FACTOR, factor=factor)
+    own = ring.reduce(claimed - truth)
     claimed, truth = _in_parameters(derived, claimed), _in_parameters(derived, truth)
     difference = ring.reduce(claimed - truth)
     zero = ring.is_zero(difference)
@@ -454,6 +458,7 @@ def _compared(
     if claim.kind in SUMS and _same_equations(derived, difference):
         remark = "the equations of motion are the same" if _moving(derived, difference) else "it differs by a constant"
         return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
+    difference = min(difference, own, key=len)
     parts = _parts(derived, claim, symbols, difference)
     if claim.variable:  # the generator of the time stands for the variable: only the parts can be shown
         return replace(result, derived=None, outcome=DIFFERS, parts=parts)
@@ -688,20 +693,71 @@ def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.relation in ("<", "<="):
         left, right = right, left
     result = ClaimResult(claim, about, EXACT)
+    example = ""
     for own in (True, False):  # in the description's own symbols, then in declared parameters
-        wanted = _essential(derived, claim, left - right, own)
-        known = list(_conditions(derived, claim, own))
-        for same in (_proportional, partial(_same_condition, derived.signs)):
-            for what, found, relation in known:
-                if same(wanted, found, relation == "!="):
-                    equal = strict == (relation in ("<", ">", "!="))
-                    return replace(result, remark=what + ("" if equal else ", but for the case of equality"))
-        kind = "" if claim.relation == "!=" else derived.signs.condition(wanted).kind
+        try:
+            wanted = _essential(derived, claim, left - right, own)
+            known = list(_conditions(derived, claim, own))
+            for same in (_proportional, partial(_same_condition, derived.signs)):
+                for what, found, relation in known:
+                    if same(wanted, found, relation == "!="):
+                        equal = strict == (relation in ("<", ">", "!="))
+                        return replace(result, remark=what + ("" if equal else ", but for the case of equality"))
+            kind = "" if claim.relation == "!=" else derived.signs.condition(wanted).kind
+        except NoClosedForm:
+            if own:
+                raise
+            break
         if kind == "always":
             return replace(result, remark="it follows from the declared signs and assumptions")
         if kind == "never":
             return replace(result, outcome=DIFFERS, remark="with the declared signs and assumptions it never holds")
-    return replace(result, outcome=UNDECIDED, remark="it is not one of the conditions of problem 6 as they stand there")
+        if own and claim.relation != "!=":
+            example = _counterexample(derived, wanted, [found for _, found, relation in known if relation != "!="])
+    remark = "it is not one of the conditions of problem 6 as they stand there"
+    return replace(result, outcome=UNDECIDED, remark=remark + example)
+
+
+def _counterexample(derived: Derived, wanted: Polynomial, known: list[Polynomial]) -> str:
+    """Rational parameters at which all conditions of problem 6 hold and the claimed one does not, in words."""
+    source = random.Random(1788)
+    for number in range(SAMPLES):
+        try:
+            values = _sample(derived.system, source, near=number % 2 == 0)
+            carry = Carrier(derived.ring, Rationals({}, derived.ring.angles), values)
+            if carry(wanted) < 0 and all(carry(x) > 0 for x in known):
+                where = ", ".join(f"{name} = {values[name]}" for name in derived.system.parameter_names)
+                return f", and not necessary: those hold, and it does not, at {where}"
+        except (NotRational, SingularPoint, ZeroDivisionError):
+            continue
+        except KeyError:  # sines of constant angles and the like
+            break
+    return ""
+
+
+def _sample(system: System, source: random.Random, near: bool) -> dict[str, fmpq]:
+    """Random parameters of the declared signs (near the given values, if wanted), relations and notation with them.
+
+    Raises SingularPoint where an assumption does not hold.
+    """
+    values: dict[str, Any] = {"pi": fmpq(355, 113)}
+    numbers = Rationals({}, {})
+    for parameter in system.parameters:
+        value = fmpq(source.randint(1, 40), source.randint(1, 24))
+        given = rational(parameter.value)
+        if near and given:
+            value = abs(numbers.number(given)) * fmpq(source.randint(10, 40), 20)
+        values[parameter.name] = -value if parameter.sign in ("negative", "nonpositive") else value
+    for relation in system.relations:
+        values[relation.name] = Lowering(numbers, values)(relation.value)
+    for symbol in system.notation:
+        values[symbol.name] = Lowering(numbers, values)(symbol.value)
+    for assumption in system.assumptions:
+        lower = Lowering(numbers, values)
+        gap = lower(assumption.left) - lower(assumption.right)
+        if not {"<": gap < 0, "<=": gap <= 0, ">": gap > 0, ">=": gap >= 0, "!=": gap != 0}[assumption.relation]:
+            raise SingularPoint("an assumption does not hold")
+    return values
 
 
 def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str, Polynomial, str]]:
@@ -709,7 +765,7 @@ def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str
     for part in derived.stability.subsystems:
         whose = ", ".join(part.coordinates)
         for found, note in (
-            ((*part.conditions, *part.sufficient), ""),
+            ((*part.conditions, *part.unreduced, *part.sufficient), ""),
             (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
         ):
             for label, formula, relation in found:
@@ -838,9 +894,9 @@ def _agreeing(error: Any, value: Any, digits: int) -> int:
     """How many leading digits of the printed number are right, rounding allowed for."""
     if value.contains(0):
         return 0
-    ratio = 2 * error / abs(value)  # d digits hold: error <= 10^(1 - d) |value| / 2
+    leading = (abs(value).mid().log() / arb(10).log()).floor().mid()  # the power of ten of the first digit
     right = 0
-    while right < digits and ratio < arb(10) ** (-right):
+    while right < digits and 2 * error < arb(10) ** (leading - right):
         right += 1
     return right
 

@@ -34,8 +34,12 @@ Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly
 MASS_SINGULAR = "The mass matrix is singular: the coordinates are singular there."
 
 
-def enclosed_verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, bits: int = 200) -> Verdict:
-    """The verdict for M x'' + (D + G) x' + (K + N) x = 0 with entries in balls.  Never wrong; ``undecided`` if open."""
+def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 200) -> Verdict:
+    """The verdict for M x'' + (D + G) x' + (K + N) x = 0 with entries in balls, matrices in the order M, D, G, K, N.
+
+    ``conservative``: the nonlinear system has its energy integral.  What the balls leave open is ``undecided``.
+    """
+    m, d, g, k, n = matrices
     keep, ctx.prec = ctx.prec, bits
     try:
         return _verdict(m, d, g, k, n, conservative)
@@ -101,9 +105,7 @@ def _mirrored(roots: Sequence[Any]) -> bool:
 
 def _positive(rows: Rows) -> bool:
     size = len(rows)
-    return all(
-        arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1)
-    )
+    return all(arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
 
 
 def _no(rows: Rows) -> bool:

@@ -6,11 +6,11 @@ at a constant rate; prescribed quantities go on running.  With  M(q) q'' = f(q, 
     f_i(q, rates, t) = 0,        i = 1..n,  identically in t
 
 Where the f_i are polynomials in sines, cosines and plain coordinates (roots and reciprocals included), the system with
-s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number field,
-every f_i is zero there exactly, and the list is complete.  Where they are not (an angle that also stands outside sine and
-cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by bisection or from many
-starting points, each is proved to exist and to be unique in a box (Krawczyk), and the list **may be incomplete**; the
-result says so.
+s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number
+field, every f_i is zero there exactly, and the list is complete.  Where they are not (an angle that also stands outside
+sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by bisection or
+from many starting points, each is proved to exist and to be unique in a box (Krawczyk), and the list **may be
+incomplete**; the result says so.
 
 Angles that are singular somewhere (a gimbal) are replaced there by others, so that no orientation is lost, and
 coordinates that describe one configuration twice are counted once.
@@ -70,8 +70,9 @@ EXACT, CERTIFIED = "exact", "proved in a box"
 WITHIN = 10.0
 #: Working precision of enclosures, in bits.
 PRECISION = 200
-#: Boxes that a bisection looks at, and starting points of a search from many points.
+#: Boxes that a bisection looks at.
 MOST_BOXES = 6_000
+#: Starting points of a search from many points.
 STARTS = 400
 #: More unknowns than this are not searched for by bisection.
 MOST_BISECTED = 3
@@ -155,24 +156,44 @@ def equilibria(
     for chart in covering:
         search = _ChartSearch(chart, within, limits or Limits())
         search.run()
+        if families and chart.restrictions:
+            search.points = _off_families(search, within, limits or Limits())
         found += search.points
         families += search.families
         remarks += search.remarks
         complete = complete and search.complete
+        if not search.equations and not search.impossible:  # everywhere: other angles have nothing to add
+            break
     listed = [_described(group) for group in _groups(found)]
     listed.sort(key=lambda x: (_ORDER.get(x.verdict.word, 9), x.coordinates_of, _sort_key(x)))
-    if any(x.verdict.explanation == MASS_SINGULAR for x in listed):
+    verdicts = [x.verdict for x in listed] + [x.verdict for x in families]
+    if any(verdict.explanation == MASS_SINGULAR for verdict in verdicts):
         remarks.append(
-            "where the mass matrix is singular the coordinates are singular: such a solution need not be an equilibrium, "
-            "and equilibria there may be lost; choose other coordinates to see"
+            "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
+            "and its stability is to be seen in other coordinates"
         )
+    if families and covering[0].joints:
+        remarks.append("families are listed in coordinates: one set of configurations may be described more than once")
     turning = tuple(
         (name, float(first.ring.evaluate(first.rates[first.ring.index("velocity", name)], {}).mid()))
         for name in first.turning
     )
-    return Equilibria(
-        tuple(listed), tuple(families), complete, tuple(dict.fromkeys(remarks)), turning, len(covering)
-    )
+    return Equilibria(tuple(listed), tuple(families), complete, tuple(dict.fromkeys(remarks)), turning, len(covering))
+
+
+def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[_Candidate]:
+    """The points of a chart that are not limits of families which run on outside its restrictions."""
+    whole = _ChartSearch(replace(search.chart, restrictions=()), within, limits)
+    whole.run()
+    search.complete = search.complete and whole.complete
+    return [
+        point
+        for point in search.points
+        if not any(
+            all((value := point.place.residue(x)) is not None and value == 0 for x in equations)
+            for equations in whole.family_equations
+        )
+    ]
 
 
 _ORDER = {
@@ -274,11 +295,11 @@ def _groups(found: Iterable[_Candidate]) -> list[list[_Candidate]]:
 
 def _described(group: Sequence[_Candidate]) -> RelativeEquilibrium:
     """The configuration in its simplest coordinates, judged there."""
-    best = min(group, key=lambda c: (c.chart.chart.label, sum(abs(x.value) for x in c.values), [-x.value for x in c.values]))
-    judged = best.chart.verdict(best.place)
-    return RelativeEquilibrium(
-        best.values, best.proof, judged, best.chart.chart.label, best.free, len(group)
+    best = min(
+        group, key=lambda c: (c.chart.chart.label, sum(abs(x.value) for x in c.values), [-x.value for x in c.values])
     )
+    judged = best.chart.verdict(best.place)
+    return RelativeEquilibrium(best.values, best.proof, judged, best.chart.chart.label, best.free, len(group))
 
 
 # --- one chart -------------------------------------------------------------------------------------------------------
@@ -294,6 +315,8 @@ class _ChartSearch:
         self.families: list[EquilibriumFamily] = []
         self.remarks: list[str] = []
         self.complete = True
+        self.points_at_zero = False
+        self.family_equations: list[list[Polynomial]] = []
 
     def run(self) -> None:
         self._conditions()
@@ -312,12 +335,11 @@ class _ChartSearch:
 
     def _conditions(self) -> None:
         found, ring = self.found, self.ring
-        forcing = {name: (x,) for name, x in zip(found.system.coordinates, found.at_rest, strict=True)}
+        forcing = list(found.at_rest)
         for joint, other in zip(self.chart.joints, self.chart.replaced, strict=True):
-            better = None if other else moments(found, joint)
-            if better is not None:  # f and tau vanish together where the angles are regular
-                forcing |= {name: () for name in joint.angles} | {joint.angles[0]: better}
-        polynomials = [y for parts in forcing.values() for x in parts for y in self._for_all_times(x)]
+            # Where the angles are regular these follow, and with them the exact solution is much faster.
+            forcing += () if other else moments(found, joint)
+        polynomials = [y for x in forcing for y in self._for_all_times(x)]
         self.equations: list[Polynomial] = []
         self.nonzero: list[Polynomial] = []
         self.impossible = False
@@ -329,12 +351,13 @@ class _ChartSearch:
             elif not numerator.is_zero():
                 self.equations.append(numerator)
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
-        self.occurring = tuple(
-            name for name in found.constant if any(ring.depends_on(x, name) for x in self.equations)
-        )
+        self.occurring = tuple(name for name in found.constant if any(ring.depends_on(x, name) for x in self.equations))
         self.free = tuple(name for name in found.constant if name not in self.occurring)
-        usual = [x for x in self.chart.nonzero if any(d > 0 and ring.generators[k].name in self.occurring
-                                                     for k, d in enumerate(x.degrees()))]
+        usual = [
+            x
+            for x in self.chart.nonzero
+            if any(d > 0 and ring.generators[k].name in self.occurring for k, d in enumerate(x.degrees()))
+        ]
         self.nonzero += usual
         self.reason = self._obstacle(used)
 
@@ -346,8 +369,13 @@ class _ChartSearch:
         if not present:
             yield x
             return
-        indices = [k for k, g in enumerate(ring.generators) if g.name in present and g.argument is None
-                   and g.kind in ("sine", "cosine", "coordinate", "prescribed", "time")]
+        indices = [
+            k
+            for k, g in enumerate(ring.generators)
+            if g.name in present
+            and g.argument is None
+            and g.kind in ("sine", "cosine", "coordinate", "prescribed", "time")
+        ]
         parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for monomial, coefficient in x.terms():
             rest_of = list(monomial)
@@ -355,7 +383,9 @@ class _ChartSearch:
                 rest_of[k] = 0
             parts.setdefault(tuple(monomial[k] for k in indices), {})[tuple(rest_of)] = coefficient
         if len(present) > 1:
-            self._incomplete(f"the equations vary with {', '.join(present)}; only solutions for all values of each are listed")
+            self._incomplete(
+                f"the equations vary with {', '.join(present)}; only solutions for all values of each are listed"
+            )
         for terms in parts.values():
             part = ring.context.from_dict(terms)
             if ring.dependencies(part, moving):
@@ -404,7 +434,9 @@ class _ChartSearch:
                 self._add_family(table, family)
         if result.unfinished:
             reasons = "; ".join(result.unfinished)
-            self._incomplete(f"the exact solution is not finished ({reasons}); the rest was searched for from {STARTS} points")
+            self._incomplete(
+                f"the exact solution is not finished ({reasons}); the rest was searched for from {STARTS} points"
+            )
             self._search_numerically(bisect=False)
 
     def _place(self, table: _Variables, point: AlgebraicPoint) -> _Place:
@@ -421,21 +453,21 @@ class _ChartSearch:
             exact |= {ring.index("coordinate", name): fmpq_poly([0])}
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-        for name in self.found.system.coordinates:
-            index = ring.index("velocity", name)
-            if self.found.rates[index].is_constant():
-                rate = self.found.rates[index]
-                exact[index] = fmpq_poly([rate.leading_coefficient() if rate else 0])
-        return _Place(self.found, balls, exact, point.modulus)
+        return _Place(self.found, balls, exact | self._exact_rates(), point.modulus)
+
+    def _exact_rates(self) -> dict[int, Any]:
+        rates = {k: rate for k, rate in self.found.rates.items() if rate.is_constant()}
+        return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
 
     def _add_free_point(self) -> None:
-        self._add(_Place(self.found, {}, {}, None), EXACT)
+        self._add(self._zero(), EXACT)
         self.remarks.append("every position is an equilibrium")
 
     def _add_family(self, table: _Variables, family: Family) -> None:
         place = self._place(table, family.sample)
         names = [self.ring.generators[table.indices[k]].name for k in family.free]
         texts = tuple(table.text(x) for x in family.equations if not table.is_relation(x))
+        self.family_equations.append([table.back(x) for x in family.equations])
         self.families.append(
             EquilibriumFamily(
                 family.dimension,
@@ -485,10 +517,30 @@ class _ChartSearch:
             ranges = ", ".join(f"{name} within {_short(self._range(name)[1])}" for name in limited)
             self._incomplete(f"looked for with {ranges} of zero only")
         for start in starts:
+            if not bisect and (self._known(start, 1e-6) or self._is_excluded(start)):
+                continue
             box = krawczyk.certified(function, jacobian, start, PRECISION)
-            if box is not None and all(low - 1e-9 <= float(x.mid()) <= high + 1e-9
-                                       for x, (low, high) in zip(box, bounds, strict=True)):
+            if box is not None and all(
+                low - 1e-9 <= float(x.mid()) <= high + 1e-9 for x, (low, high) in zip(box, bounds, strict=True)
+            ):
                 self._add_certified(dict(zip(names, box, strict=True)))
+
+    def _is_excluded(self, start: Sequence[float]) -> bool:
+        """Whether some polynomial that must not vanish is about zero there: no root of this chart will be found."""
+        at = dict.fromkeys(self.ring.names(), arb(0)) | {
+            name: arb(x) for name, x in zip(self.occurring, start, strict=True)
+        }
+        return any(abs(float(self.ring.evaluate(x, at).mid())) < 1e-5 for x in self.nonzero)
+
+    def _zero(self) -> _Place:
+        """The place where every coordinate is 0, exactly."""
+        ring, zero, one = self.ring, fmpq_poly([0]), fmpq_poly([1])
+        exact = {}
+        for name in self.found.constant:
+            exact[ring.index("coordinate", name)] = zero
+            if name in ring.angles:
+                exact |= {ring.index("sine", name): zero, ring.index("cosine", name): one}
+        return _Place(self.found, {}, exact | self._exact_rates(), fmpq_poly([0, 1]))
 
     def _square_system(self) -> list[Polynomial] | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""
@@ -499,12 +551,26 @@ class _ChartSearch:
             if name in self.occurring
         ]
         varying = any(len(list(self._for_all_times(x))) != 1 for x in chosen)
-        others = [x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in self.occurring]
-        if varying or any(not x.is_zero() for x in others) or self.chart.restrictions or any(x.is_zero() for x in chosen):
+        others = [
+            x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in self.occurring
+        ]
+        if (
+            varying
+            or any(not x.is_zero() for x in others)
+            or self.chart.restrictions
+            or any(x.is_zero() for x in chosen)
+        ):
             return None
         return chosen
 
     def _add_certified(self, box: Mapping[str, Any]) -> None:
+        if all(x.contains(0) for x in box.values()) and not self.points_at_zero:
+            place = self._zero()
+            if all((value := place.residue(x)) is not None and value == 0 for x in self.equations):
+                self.points_at_zero = True
+                if not self._known([0.0] * len(self.occurring), 1e-12):
+                    self._add(place, EXACT)
+                return
         place = _Place(self.found, box, {}, None)
         keep, ctx.prec = ctx.prec, PRECISION
         try:
@@ -514,12 +580,18 @@ class _ChartSearch:
                 return
         finally:
             ctx.prec = keep
-        candidate = self._candidate(place, CERTIFIED)
-        for other in self.points:
-            same = zip(candidate.values, other.values, strict=True)
-            if all(abs(_turned(a.value - b.value) if a.angle else a.value - b.value) < 1e-8 for a, b in same):
-                return
-        self.points.append(candidate)
+        if not self._known([float(box[name].mid()) for name in self.occurring], 1e-12):
+            self._add(place, CERTIFIED)
+
+    def _known(self, place: Sequence[float], tolerance: float) -> bool:
+        """Whether a solution is listed already, within ``tolerance``."""
+        return any(
+            all(
+                abs(_turned(x - item.value, self.ring.angles[item.name]) if item.angle else x - item.value) < tolerance
+                for x, item in zip(place, other.values, strict=True)
+            )
+            for other in self.points
+        )
 
     def _periodic(self, name: str) -> bool:
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
@@ -576,7 +648,7 @@ class _ChartSearch:
         return top if part.denominator == 1 else f"{top}/{part.denominator}"
 
     def _features(self, place: _Place) -> tuple[Any, ...]:
-        """Direction cosines of the joints that have other angles, sines and cosines or values of the other coordinates."""
+        """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates."""
         features, done = [], set(self.free)
         for joint in self.chart.joints:
             if set(joint.angles) & set(self.free):
@@ -628,7 +700,7 @@ def _turned(value: float, denominator: int = 1) -> float:
 
 
 def _short(value: float) -> str:
-    return f"{value:.10g}"
+    return f"{value + 0.0:.10g}" if abs(value) > 1e-15 else "0"
 
 
 # --- polynomial variables --------------------------------------------------------------------------------------------
@@ -668,6 +740,16 @@ class _Variables:
         terms = {tuple(m[k] for k in self.indices): fmpz(int((c * common).p)) for m, c in x.terms()}
         return self.context.from_dict(terms)
 
+    def back(self, x: Any) -> Polynomial:
+        """An integer polynomial in the unknowns, in the ring."""
+        terms = {}
+        for monomial, coefficient in x.terms():
+            exponents = [0] * len(self.ring.generators)
+            for k, e in zip(self.indices, monomial, strict=True):
+                exponents[k] = int(e)
+            terms[tuple(exponents)] = fmpq(coefficient)
+        return self.ring.context.from_dict(terms)
+
     def relations(self) -> list[Any]:
         """s^2 + c^2 = 1 of every angle, root^2 = radicand, x * reciprocal = 1."""
         ring, found = self.ring, []
@@ -691,18 +773,16 @@ class _Variables:
     def roots_agree(self, point: AlgebraicPoint) -> bool:
         """Whether every square root is not negative."""
         for i, k in enumerate(self.indices):
-            if self.ring.generators[k].kind == "root" and point.values[i] != 0:
-                if point.enclosure(point.values[i], PRECISION) < 0:
-                    return False
+            is_root = self.ring.generators[k].kind == "root" and point.values[i] != 0
+            if is_root and point.enclosure(point.values[i], PRECISION) < 0:
+                return False
         return True
 
     def text(self, x: Any) -> str:
         """A polynomial as a reader writes it."""
         parts = []
         for monomial, coefficient in x.terms():
-            factors = [
-                name if e == 1 else f"{name}**{e}" for name, e in zip(self.names, monomial, strict=True) if e
-            ]
+            factors = [name if e == 1 else f"{name}**{e}" for name, e in zip(self.names, monomial, strict=True) if e]
             number = int(coefficient)
             if not factors or abs(number) != 1:
                 factors.insert(0, str(abs(number)))
@@ -767,12 +847,19 @@ def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[s
             return known[index]
         g = ring.generators[index]
         if g.argument is not None:
-            table = [(float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e])
-                     for m, c in g.argument.terms()]
+            table = [
+                (float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e])
+                for m, c in g.argument.terms()
+            ]
             inner = total(table, q, known)
             outer: dict[str, Callable[[Any], Any]] = {
-                "sine": np.sin, "cosine": np.cos, "root": np.sqrt, "reciprocal": lambda x: 1 / x,
-                "exp": np.exp, "log": np.log, "atan": np.arctan,
+                "sine": np.sin,
+                "cosine": np.cos,
+                "root": np.sqrt,
+                "reciprocal": lambda x: 1 / x,
+                "exp": np.exp,
+                "log": np.log,
+                "atan": np.arctan,
             }
             known[index] = outer[g.name if g.kind == "function" else g.kind](inner)
         elif g.name == "pi":
@@ -822,7 +909,8 @@ class _Linear:
         verdicts = []
         for indices in blocks(*values):
             cyclic = tuple(
-                at for at, i in enumerate(indices)
+                at
+                for at, i in enumerate(indices)
                 if i in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
             )
             if rational:
@@ -842,7 +930,9 @@ def _linear(found: Rest) -> _Linear:
     half = ring.number(Fraction(1, 2))
     n = range(len(names))
     mass = found.mass_matrix()
-    velocity = [[-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing]
+    velocity = [
+        [-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing
+    ]
     position = [[-ring.derivative(f, name) for name in names] for f in found.at_rest]
     moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
     every = (x for rows_ in (mass, velocity, position) for row in rows_ for x in row)
@@ -866,7 +956,9 @@ def _linear(found: Rest) -> _Linear:
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 
-def _rational_verdict(parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...]) -> Verdict:
+def _rational_verdict(
+    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...]
+) -> Verdict:
     """By exact counting of roots."""
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
     found = verdict_at(LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic), {}).verdict
@@ -875,7 +967,7 @@ def _rational_verdict(parts: Sequence[Sequence[Sequence[fmpq]]], conservative: b
 
 def _enclosed_verdict(parts: Sequence[Sequence[Sequence[Any]]], conservative: bool, cyclic: tuple[int, ...]) -> Verdict:
     """By enclosures, cyclic coordinates ignored after Routh where their momenta are constant."""
-    plain = enclosed_verdict(*parts, conservative=conservative, bits=PRECISION)
+    plain = enclosed_verdict(parts, conservative, PRECISION)
     if not cyclic or plain.word == UNSTABLE or plain.explanation == MASS_SINGULAR:
         return plain
     symbols: list[Any] = []
@@ -893,7 +985,8 @@ def _enclosed_verdict(parts: Sequence[Sequence[Sequence[Any]]], conservative: bo
     where = fmpq_mpoly_ctx.get(names)
     gens, zero = where.gens(), where.constant(0)
     made = [
-        tuple(tuple(gens[at[i, j]] if (i, j) in at else zero for j in range(size)) for i in range(size)) for at in places
+        tuple(tuple(gens[at[i, j]] if (i, j) in at else zero for j in range(size)) for i in range(size))
+        for at in places
     ]
     try:
         system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic)
@@ -916,4 +1009,4 @@ def _enclosed_verdict(parts: Sequence[Sequence[Sequence[Any]]], conservative: bo
         smaller = [[[value(x) for x in row] for row in rows_] for rows_ in reduced.matrices]
     finally:
         ctx.prec = keep
-    return drifting(enclosed_verdict(*smaller, conservative=conservative, bits=PRECISION))
+    return drifting(enclosed_verdict(smaller, conservative, PRECISION))

@@ -49,7 +49,7 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
-from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine
+from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
 from mbsym.problems.stability_theory import Stability as Theory
 
 _DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
@@ -82,6 +82,12 @@ class SubsystemStability:
         Known-positive factors are dropped; one that cannot hold is given as it arose.
         """
         return tuple(self._open(self.theory.requirements))
+
+    @property
+    def unreduced(self) -> tuple[tuple[str, Formula, str], ...]:
+        """The open conditions as they arise: whole coefficients, minors and discriminants."""
+        wanted = [r for r in self.theory.requirements if not r.always and r.condition.kind != "unwritten"]
+        return tuple((r.label, self._formula(r.polynomial), r.relation) for r in wanted)
 
     @property
     def sufficient(self) -> tuple[tuple[str, Formula, str], ...]:
@@ -165,6 +171,32 @@ def _judge(
     cyclic: Sequence[str],
     turned: Sequence[Polynomial],
 ) -> SubsystemStability:
+    made = _prepared(scene, part, elimination, signs, energy_conserved, cyclic, turned)
+    point = None if values is None else _point(scene, made.ring, made.system.matrices, values)
+    theory = analyse(made.system, made.known, point)
+    return SubsystemStability(part.coordinates, made.matrices, made.factor, made.ring, theory)
+
+
+@dataclass(frozen=True)
+class _Prepared:
+    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
+
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
+    factor: Formula
+    ring: Ring
+    known: Signs
+    system: LinearSystem
+
+
+def _prepared(
+    scene: Scene,
+    part: Subsystem,
+    elimination: Elimination,
+    signs: Signs,
+    energy_conserved: bool,
+    cyclic: Sequence[str],
+    turned: Sequence[Polynomial],
+) -> _Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
     rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
     idle = tuple(
@@ -179,8 +211,49 @@ def _judge(
         turned = [ring.project(x) for x in turned]
     mass, damping, gyroscopic, stiffness, circulatory = rows
     system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, energy_conserved, idle, tuple(turned))
-    point = None if values is None else _point(scene, ring, rows, values)
-    return SubsystemStability(part.coordinates, matrices, factor, ring, analyse(system, known, point))
+    return _Prepared(matrices, factor, ring, known, system)
+
+
+class ExactVerdicts:
+    """The verdict at any exact parameter values; what does not depend on them is made once."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        energy_conserved: bool,
+        cyclic: Sequence[str],
+        linear: Linearisation,
+        equilibrium: Equilibrium,
+        signs: Signs,
+    ) -> None:
+        self.scene, self.equilibrium = scene, equilibrium
+        elimination, spin = _elimination(scene), free_spin(scene.system)
+        self._parts = [
+            _prepared(scene, part, elimination, signs, energy_conserved, cyclic, turned)
+            for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
+        ]
+
+    def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
+        """Right, or "undecided" with the reason."""
+        numbers = Rationals({}, {})
+        carry = Carrier(self.scene.ring, numbers, {name: numbers.number(value) for name, value in values.items()})
+        for name, wanted in self.equilibrium.solved:
+            try:
+                fits = bool(carry(wanted.polynomial) == numbers.number(values[name]))
+            except (NotRational, SingularPoint):
+                fits = False
+            if not fits:
+                return Verdict("undecided", "", f"The motion does not exist there: {name} has another value.")
+        elsewhere = _motion_at(self.scene, self.equilibrium, values)
+        if elsewhere is not None:
+            return elsewhere
+        found = []
+        for part in self._parts:
+            point = _point(self.scene, part.ring, part.system.matrices, values)
+            if point is None:
+                return Verdict("undecided", "", "A number there is irrational.")
+            found.append(verdict_at(part.system, point).verdict)
+        return combine(found)
 
 
 def _turned(

@@ -462,11 +462,12 @@ def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
     """
     if degree < 3 or any(r.never for r in wanted):
         return wanted
-    halves = [[r for k, r in zip(range(degree - 1, 0, -1), wanted, strict=False) if k % 2 == odd] for odd in (0, 1)]
+    first = 1 if degree % 2 == 0 else 0
+    numbered = list(zip(range(degree - 1 - first, 0, -1), wanted[first:], strict=False))
+    halves = [[r for k, r in numbered if k % 2 == odd] for odd in (0, 1)]
     weight = [sum(len(r.condition.polynomial) for r in half if not r.always) for half in halves]
     left_out = halves[0] if weight[0] > weight[1] else halves[1]
-    spared = [r for r in left_out if not (degree % 2 == 0 and r is wanted[0])]
-    return [r for r in wanted if not any(r is other for other in spared)]
+    return [r for r in wanted if not any(r is other for other in left_out)]
 
 
 def _without_implied(wanted: list[Requirement]) -> list[Requirement]:

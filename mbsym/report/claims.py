@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import groupby
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
@@ -40,6 +41,25 @@ def claim_line(result: ClaimResult) -> ClaimLine:
     if result.outcome == UNDECIDED or (result.remark and not result.parts):
         outcome += f": {result.remark}" if result.remark else ""
     return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)))
+
+
+def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
+    """Neighbours from one place that hold in the same way, and by themselves those that are to be told one by one."""
+    for _, group in groupby(lines, lambda line: (line.word == HELD and line.place, line.outcome, line.lines)):
+        found = list(group)
+        if found[0].word == HELD and found[0].place:
+            yield found
+        else:
+            yield from ([line] for line in found)
+
+
+def titles(lines: Iterable[ClaimLine]) -> str:
+    """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
+    stems: dict[str, list[str]] = {}
+    for line in lines:
+        stem, bracket, index = line.title.partition(" [")
+        stems.setdefault(stem, []).extend([bracket.strip() + index] if bracket else [])
+    return "; ".join(f"{stem} {', '.join(indices)}".strip() for stem, indices in stems.items())
 
 
 def _differences(result: ClaimResult) -> Iterator[str]:

@@ -16,7 +16,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
-from mbsym.report.claims import claim_line, repair
+from mbsym.report.claims import claim_line, repair, titles, together
 from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
@@ -69,6 +69,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "displays": displays,
             "prose": prose,
             "claim_line": claim_line,
+            "together": together,
+            "titles": titles,
             "printed": lambda value: expression(value, printed),
             "printed_name": lambda name: str(printed[name]),
             "same": lambda words: same(words, printed),
@@ -136,7 +138,8 @@ def refer(reference: Reference) -> str:
 
 def prose(words: str) -> str:
     """Words of the stability kernel, with lambda as a symbol."""
-    return re.sub(r"\blambda(\\\^\{\}2)?", lambda m: r"$\lambda^2$" if m[1] else r"$\lambda$", escaped(words))
+    power = r"\blambda(\\\^\{\}(\d+))?"
+    return re.sub(power, lambda m: rf"$\lambda^{{{m[2]}}}$" if m[1] else r"$\lambda$", escaped(words))
 
 
 def label(words: str) -> str:

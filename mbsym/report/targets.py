@@ -12,13 +12,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Target:
-    """``needs``: the problems whose results the file can hold; of these it shows the ones that were asked for."""
+    """``needs``: the problems whose results the file can hold; of these it shows the ones that were asked for.
+
+    ``companions`` are written beside it, as a header is.
+    """
 
     name: str
     filename: str
     needs: tuple[int, ...]
     title: str
     text: Callable[[Analysis, Sequence[int]], str]
+    companions: tuple[Target, ...] = ()
 
     def render(self, analysis: Analysis, problems: Sequence[int]) -> str:
         """The file's whole text: the same bytes for the same description, whenever and wherever it is made."""
@@ -46,6 +50,18 @@ def _python(analysis: Analysis, problems: Sequence[int]) -> str:
     return render(analysis, problems)
 
 
+def _c(analysis: Analysis, problems: Sequence[int]) -> str:
+    from mbsym.report.c_source import render
+
+    return render(analysis, problems)
+
+
+def _c_header(analysis: Analysis, problems: Sequence[int]) -> str:
+    from mbsym.report.c_source import header
+
+    return header(analysis, problems)
+
+
 def _json(analysis: Analysis, problems: Sequence[int]) -> str:
     from mbsym.report.results_json import render
 
@@ -53,6 +69,7 @@ def _json(analysis: Analysis, problems: Sequence[int]) -> str:
 
 
 _ALL = (1, 2, 3, 4, 5, 6, 7)
+_HEADER = Target("header", "model.h", (), "declarations of the C source", _c_header)
 
 TARGETS = {
     target.name: target
@@ -60,6 +77,7 @@ TARGETS = {
         Target("latex", "report.tex", _ALL, "an appendix for pdflatex", _latex),
         Target("wolfram", "report.wl", _ALL, "definitions in the Wolfram Language", _wolfram),
         Target("python", "model.py", (5,), "a numpy module of the equations, from the straight-line program", _python),
+        Target("c", "model.c", (), "C99 source of the equations, with model.h", _c, (_HEADER,)),
         Target("json", "results.json", _ALL, "every result as text in Python syntax", _json),
     )
 }

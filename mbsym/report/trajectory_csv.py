@@ -16,7 +16,10 @@ from mbsym.model.system import System
 from mbsym.numerics.simulate import Trajectory
 
 #: A table has at most so many numbers.
-MOST_NUMBERS = 20_000_000
+MOST_NUMBERS = 10_000_000
+
+#: Rows turned into text at a time: numbers of Python take more room than those of an array.
+BLOCK = 10_000
 
 
 def columns(system: System) -> tuple[str, ...]:
@@ -41,4 +44,7 @@ def trajectory_csv(found: Trajectory, more: Mapping[str, Any] | None = None) -> 
 def written(names: Sequence[str], rows: Any) -> str:
     """A header and rows of numbers."""
     line = ",".join(["%.17g"] * len(names))
-    return "\n".join([",".join(names), *(line % tuple(row) for row in rows.tolist()), ""])
+    pieces = [",".join(names)]
+    for start in range(0, len(rows), BLOCK):
+        pieces.append("\n".join(line % tuple(row) for row in rows[start : start + BLOCK].tolist()))
+    return "\n".join([*pieces, ""])

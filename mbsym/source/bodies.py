@@ -15,7 +15,7 @@ from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
 
-MAX_BODIES = 100
+MAX_BODIES = 250
 MAX_COORDINATES = 6
 MAX_BODY_NAME = 80
 

@@ -191,8 +191,8 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
         doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
         if doubt is not None:
             own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
-            hint = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
-            reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, hint)
+            advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+            reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, advice)
 
 
 def _rod_hint(moment: str, axis: int) -> str:

@@ -65,7 +65,7 @@ LOADS: dict[str, dict[str, str]] = {
     "newtonian gravity": {
         "constant": "gravitational parameter nu of the attracting centre",
         "centre": "the frame whose origin attracts, mostly 0",
-        "about": "the frame that carries the attracted bodies; its origin, a point of the orbit, is that of the expansion",
+        "about": "the frame that carries the attracted bodies; the field is expanded about its origin, on the orbit",
         "order": "2, 3 or 4: order of the expansion (2 when left out); exact: the exact distance of every mass centre",
     },
     "uniform gravity": {

@@ -135,7 +135,8 @@ class Scope:
         if name in self.later:
             return f"{self.ordered} read in order: move its definition up"
         if name.endswith("_ddot") and "acceleration" not in allowed.kinds:
-            return "accelerations are what the equations are solved for; they stand in no description"
+            none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
+            return f"accelerations are what the equations are solved for; {none}"
         known = [one for one in self.kinds if self.kinds[one] in allowed.kinds]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
@@ -151,6 +152,8 @@ class Scope:
             return f"it cannot be a name: {reason[0]}" + (f"; {reason[1]}" if reason[1] else "")
         if not allowed.kinds:
             return "a number is wanted here"
+        if "abbreviation" in allowed.kinds:
+            return "declare it under 'abbreviations' or 'parameters'"
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
 
 

@@ -83,8 +83,7 @@ def read_comparisons(scalar: Scalar, reading: Reading, allowed: Allowed) -> list
     errors = reading.errors
     cuts = [0, *(edge for sign in signs for edge in sign.span()), len(scalar.text)]
     sides = [
-        reading.expression(scalar.part(begin, end), allowed)
-        for begin, end in zip(cuts[::2], cuts[1::2], strict=True)
+        reading.expression(scalar.part(begin, end), allowed) for begin, end in zip(cuts[::2], cuts[1::2], strict=True)
     ]
     if reading.errors != errors:
         return []

@@ -1,4 +1,6 @@
-"""``make bench``: mbsym beside SymPy, as whole processes run in turn, in one sitting; see README.md in this folder.
+"""``make bench``: mbsym beside its peers in one sitting; see README.md in this folder.
+
+Derivations are timed as whole processes run in turn, numbers inside one process (``numbers_bench.py``).
 
 Nothing here asserts: the targets are printed beside what was measured.  The process stays small on purpose, because
 a child's peak memory counts from the moment it is forked.
@@ -21,6 +23,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +35,7 @@ import peer_arm  # noqa: E402  (imports sympy only where it derives)
 import peer_satellite  # noqa: E402
 
 SATELLITE = "systems/satellite.yaml"
+ALL = ("satellite", "arm", "forward", "simulation", "growth")
 KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",
@@ -473,8 +477,9 @@ def main() -> None:
     """Run the sections asked for, print their tables, write the record."""
     parser = argparse.ArgumentParser(description="mbsym beside SymPy: time, memory, size of formulas")
     parser.add_argument("--runs", type=int, default=3, help="counted runs of each process (default 3)")
-    parser.add_argument("--sections", default="satellite,arm", help="which of satellite,arm (default both)")
+    parser.add_argument("--sections", default=",".join(ALL), help=f"which of {', '.join(ALL)} (default: all)")
     parser.add_argument("--joints", type=int, default=6, help="largest arm (default 6)")
+    parser.add_argument("--sympy-joints", type=int, default=5, help="largest chain lambdified from SymPy (default 5)")
     parser.add_argument("--full", action="store_true", help="LagrangesMethod too goes to the largest arm (default: 4)")
     parser.add_argument("--quick", action="store_true", help="one run, arms of 2 and 3 joints, no library linearizer")
     parser.add_argument("--timeout", type=float, default=600.0, help="seconds after which a process is stopped")
@@ -493,6 +498,11 @@ def main() -> None:
         "satellite": (satellite, show_satellite),
         "arm": (arm, show_arm),
     }
+    if set(options.sections.split(",")) - set(sections):
+        import numbers_bench  # NumPy and compilers: not in a process whose children's memory is measured
+
+        for name, (work, show) in numbers_bench.SECTIONS.items():
+            sections[name] = (work, partial(show, table=table))
     record: Record = {"versions": versions(), "runs": options.runs}
     print(", ".join(f"{name} {version}" for name, version in record["versions"].items()))
     for name in options.sections.split(","):

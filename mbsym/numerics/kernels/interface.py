@@ -6,6 +6,7 @@
 ``llvm``       machine code, float64, float32 and extended  simulation
 ``arrays``     NumPy source, vectorised over states         portable, readable, no compiler
 ``balls``      ``arb`` at any precision                     rigorous enclosures
+``precise``    ``arb`` as a Python function                 reference solutions
 =============  ===========================================  ==================================
 """
 

@@ -99,17 +99,79 @@ _ARITHMETIC = {"add": "fadd", "subtract": "fsub", "multiply": "fmul", "divide": 
 
 def available(scalar: str) -> bool:
     """Whether this machine computes in that arithmetic."""
-    return scalar != EXTENDED or (platform.machine().lower() in ("x86_64", "amd64") and np.finfo(np.longdouble).nmant == 63)
+    return scalar != EXTENDED or (
+        platform.machine().lower() in ("x86_64", "amd64") and np.finfo(np.longdouble).nmant == 63
+    )
+
+
+#: Longer programs are split into functions of ``PART`` operations, for which compilers take more than linear time, and
+#: are not searched for operations that could be done side by side, which takes longest and gains some percent.
+LONG, PART = 4_000, 500
 
 
 def function_text(name: str, code: Code, scalar: Scalar) -> str:
     """The LLVM text of ``name`` (one state), without the declarations of library functions."""
-    kind, program = scalar.type, code.program
-    lines = [f"define void @{name}(ptr noalias readonly %in, ptr noalias %out) #0 {{"]
+    live = code.program.live(code.outputs)
+    head = f"define void @{name}(ptr noalias readonly %in, ptr noalias %out) #0 {{"
+    if len(live) <= LONG:
+        lines, values = _body(code, live, scalar, {}, {})
+        return "\n".join([head, *lines, *_stores(code, scalar, values), "  ret void", "}", ""])
+    return _split(name, head, code, live, scalar)
+
+
+def _split(name: str, head: str, code: Code, live: list[int], scalar: Scalar) -> str:
+    """Parts one after the other; what a later part needs goes through memory."""
+    kind, instructions = scalar.type, code.program.instructions
+    parts = [live[start : start + PART] for start in range(0, len(live), PART)]
+    home = {number: place for place, part in enumerate(parts) for number in part}
+    kept: dict[int, int] = {}
+    for number in live:
+        for operand in instructions[number].operands:
+            if home[operand] != home[number] and instructions[operand].operation != "constant":
+                kept.setdefault(operand, len(kept))
+    last = len(parts) - 1
+    for node in code.outputs:
+        if home[node.number] != last and instructions[node.number].operation != "constant":
+            kept.setdefault(node.number, len(kept))
+    texts, main = [], [head, f"  %w = alloca [{max(len(kept), 1)} x {kind}]"]
+    for place, part in enumerate(parts):
+        arguments = "ptr noalias readonly %in, ptr noalias %w" + (", ptr noalias %out" if place == last else "")
+        needed = {operand for number in part for operand in instructions[number].operands if home[operand] != place}
+        if place == last:
+            needed |= {node.number for node in code.outputs if home[node.number] != last}
+        lines, values = _body(code, part, scalar, {number: kept.get(number, -1) for number in sorted(needed)}, kept)
+        if place == last:
+            lines += _stores(code, scalar, values)
+        texts.append(
+            "\n".join([f"define internal void @{name}.{place}({arguments}) #2 {{", *lines, "  ret void", "}", ""])
+        )
+        given = "ptr %in, ptr %w" + (", ptr %out" if place == last else "")
+        main.append(f"  call void @{name}.{place}({given})")
+    return "".join(texts) + "\n".join([*main, "  ret void", "}", ""])
+
+
+def _body(
+    code: Code, numbers: Iterable[int], scalar: Scalar, given: Mapping[int, int], kept: Mapping[int, int]
+) -> tuple[list[str], dict[int, str]]:
+    """Lines for the instructions, and where their values are.
+
+    ``given`` values of other parts come from their places in %w (those without a place are constants); values in
+    ``kept`` go to theirs.
+    """
+    kind, instructions = scalar.type, code.program.instructions
+    lines: list[str] = []
     slots = {input_: place for place, input_ in enumerate(code.inputs)}
     values: dict[int, str] = {}
-    for number in program.live(code.outputs):
-        instruction = program.instructions[number]
+    for number, place in given.items():
+        payload = instructions[number].payload
+        if isinstance(payload, Fraction):
+            values[number] = scalar.constant(payload)
+            continue
+        lines.append(f"  %w{number} = getelementptr {kind}, ptr %w, i64 {place}")
+        lines.append(f"  %v{number} = load {kind}, ptr %w{number}")
+        values[number] = f"%v{number}"
+    for number in numbers:
+        instruction = instructions[number]
         if instruction.operation == "constant":
             assert isinstance(instruction.payload, Fraction)
             values[number] = scalar.constant(instruction.payload)
@@ -127,10 +189,18 @@ def function_text(name: str, code: Code, scalar: Scalar) -> str:
                 lines.append(f"  {local} = {_ARITHMETIC[operation]} contract {kind} {a}, {b}")
             case function, [a]:
                 lines.append(f"  {local} = call {kind} @{function}{scalar.suffix}({kind} {a}) #1")
+        if number in kept:
+            lines.append(f"  %k{number} = getelementptr {kind}, ptr %w, i64 {kept[number]}")
+            lines.append(f"  store {kind} {local}, ptr %k{number}")
+    return lines, values
+
+
+def _stores(code: Code, scalar: Scalar, values: Mapping[int, str]) -> list[str]:
+    lines = []
     for place, node in enumerate(code.outputs):
-        lines.append(f"  %o{place} = getelementptr {kind}, ptr %out, i64 {place}")
-        lines.append(f"  store {kind} {values[node.number]}, ptr %o{place}")
-    return "\n".join([*lines, "  ret void", "}", ""])
+        lines.append(f"  %o{place} = getelementptr {scalar.type}, ptr %out, i64 {place}")
+        lines.append(f"  store {scalar.type} {values[node.number]}, ptr %o{place}")
+    return lines
 
 
 def many_text(name: str, code: Code, scalar: Scalar) -> str:
@@ -190,7 +260,11 @@ def declarations(codes: Iterable[Code], scalar: Scalar) -> str:
 
 
 #: No errno, no traps: sin and cos of one argument may be computed together.
-ATTRIBUTES = 'attributes #0 = { nounwind }\nattributes #1 = { nounwind willreturn memory(none) }\n'
+ATTRIBUTES = (
+    "attributes #0 = { nounwind }\n"
+    "attributes #1 = { nounwind willreturn memory(none) }\n"
+    "attributes #2 = { noinline nounwind }\n"
+)
 
 
 @cache
@@ -205,7 +279,7 @@ def _started() -> None:
 class Library:
     """Compiled functions by name; their machine code lives as long as this object."""
 
-    def __init__(self, text: str, level: int = 2) -> None:
+    def __init__(self, text: str, level: int = 2, thorough: bool = True) -> None:
         _started()
         target = llvm.Target.from_default_triple()
         machine = target.create_target_machine(
@@ -216,6 +290,7 @@ class Library:
         module.data_layout = str(machine.target_data)
         module.verify()
         options = llvm.create_pipeline_tuning_options(speed_level=level)
+        options.slp_vectorization = thorough
         builder = llvm.create_pass_builder(machine, options)
         builder.getModulePassManager().run(module, builder)
         self._engine = llvm.create_mcjit_compiler(module, machine)
@@ -234,7 +309,8 @@ def compiled(codes: Mapping[str, Code], scalar: str = FLOAT64, more: str = "", m
         parts.append(function_text(name, code, chosen))
         if many:
             parts.append(many_text(name, code, chosen))
-    return Library("\n".join([*parts, more, ATTRIBUTES]))
+    longest = max((len(code.program.live(code.outputs)) for code in codes.values()), default=0)
+    return Library("\n".join([*parts, more, ATTRIBUTES]), thorough=longest <= LONG)
 
 
 def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:

@@ -23,7 +23,8 @@ def precise(code: Code, bits: int) -> Callable[[Sequence[arb]], list[arb]]:
     program, balls = code.program, Balls({})
     scope: dict[str, Any] = {}
     slots = {name: place for place, name in enumerate(code.inputs)}
-    lines, values = ["def f(x):"], {}
+    lines = ["def f(x):"]
+    values: dict[int, str] = {}
     with ctx.workprec(bits):
         for number in program.live(code.outputs):
             instruction = program.instructions[number]

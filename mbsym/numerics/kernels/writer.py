@@ -1,7 +1,7 @@
 """Writing LLVM functions: values with the usual operators, loops, branches.
 
-A ``Function`` collects text; a ``Value`` is a number that it computes.  Local variables live in ``slots`` (memory on the
-stack), which the optimiser turns into registers.
+A ``Function`` collects text; a ``Value`` is a number that it computes.  Local variables live in ``slots`` (memory on
+the stack), which the optimiser turns into registers.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ the times that it is asked for and counts its work.  What goes wrong is a ``Brea
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from mbsym.numerics.dynamics import Dynamics
@@ -78,17 +78,17 @@ class Run(Protocol):
 class Method(Protocol):
     """A way to integrate x' = rhs(t, x)."""
 
-    traits: Traits
+    @property
+    def traits(self) -> Traits:
+        """What it says of itself."""
 
     def start(self, dynamics: Dynamics, setting: Setting, scalar: str = "float64") -> Run:
         """A run from the scenario's initial state at t = 0.  Compiling happens here, not in ``advance``."""
 
 
-@dataclass(frozen=True)
 class Unusable(Exception):
     """A method that does not apply here; the message says why and what to use instead."""
 
-    reason: str = field(default="")
-
-    def __str__(self) -> str:
-        return self.reason
+    def __init__(self, reason: str = "") -> None:
+        super().__init__(reason)
+        self.reason = reason

@@ -1,4 +1,7 @@
-"""SciPy's integrators on compiled kernels: DOP853, RK45, LSODA, Radau and BDF, the stiff ones with the exact Jacobian."""
+"""SciPy's integrators on compiled kernels: DOP853, RK45, and for stiff systems LSODA, Radau and BDF.
+
+The stiff ones get the exact Jacobian, by differentiating the program.
+"""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ REACHED, PAUSED, STOPPED = range(3)
 
 
 class Stages:
-    """Text for the stages of a tableau: state ``x``, slopes ``k`` stage by stage, stage argument (t, x) in ``place``."""
+    """Text for the stages of a tableau: state ``x``, slopes ``k`` stage by stage, (t, x) of a stage in ``argument``."""
 
     def __init__(self, function: Function, size: int, scalar: Scalar) -> None:
         self.f, self.size, self.scalar = function, size, scalar
@@ -167,7 +167,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     f.place(some)
     f.leave(STOPPED)
     f.place(large)
-    # The last slope of an accepted step is the first one of the next; it is copied late because dense output needs both.
+    # The last slope of an accepted step is the first of the next; it is copied late because dense output needs both.
     with f.when(f.load(INTEGER, count, FRESH).compare("!=", 0)):
         s.copy(s.slope(k, stages), s.slope(k, 0))
         f.store(0, INTEGER, count, FRESH)
@@ -290,7 +290,10 @@ def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -
 
 
 def dense_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
-    """``i64 @prepare(x, old, k, terms, clock)``: the terms F of the last step;  ``i64 @between(old, terms, share, out)``."""
+    """Dense output of the last step.
+
+    ``i64 @prepare(x, old, k, terms, clock)`` computes the terms F, ``i64 @between(old, terms, share, out)`` their sum.
+    """
     f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock")])
     s = Stages(f, size, scalar)
     k, stages = f["k"], len(tableau.stages)
@@ -472,11 +475,13 @@ class AdaptiveRun(_Arrays):
             scale = absolute + np.abs(self.x) * relative
             slope = self.k[0] = f(np.concatenate(([self.dtype(0)], self.x)))
             position, speed = size(self.x), size(slope)
-            first = 1e-6 if position < 1e-5 or speed < 1e-5 else 0.01 * position / speed
+            if not isfinite(speed):
+                return 1e-6
+            first = 1e-6 if position < 1e-5 or speed < 1e-5 else max(0.01 * position / speed, 1e-100)
             there = f(np.concatenate(([self.dtype(first)], self.x + self.dtype(first) * slope)))
             bend = size(there - slope) / first
             self.work.evaluations += 2
-            if not (isfinite(bend) and isfinite(speed)):
+            if not isfinite(bend):
                 return 1e-6
             largest = max(speed, bend)
             second = max(1e-6, first * 1e-3) if largest <= 1e-15 else (0.01 / largest) ** (1 / self.tableau.order)

@@ -260,7 +260,8 @@ class MidpointRun:
         self.x = np.concatenate((self.state[:n], momenta))
         self.carry = np.zeros(2 * n, self.dtype)
         self.guess = np.concatenate((self.state[n:], self.state[n:]))
-        self.clock = np.zeros(3, np.longdouble if clock_kind(chosen) == "x86_fp80" else np.float64)
+        self._clock_type: Any = np.longdouble if clock_kind(chosen) == "x86_fp80" else np.float64
+        self.clock = np.zeros(3, self._clock_type)
         self.count = np.zeros(3, np.int64)
         arrays = (self.x, self.carry, self.guess, self.clock, self.count)
         self._pointers = tuple(address(array) for array in arrays)
@@ -273,7 +274,7 @@ class MidpointRun:
         if length <= 0:
             return self.state
         count = max(1, ceil(length / self.step * (1 - 1e-9)))
-        step = self.clock.dtype.type(length) / count
+        step: Any = self._clock_type(length) / count
         self.clock[START], self.clock[STEP] = self.time, step
         done = 0
         while done < count:
@@ -298,7 +299,9 @@ class MidpointRun:
         state = self._state(now) if finite else np.where(np.isfinite(before), before, 0.0)
         if self.count[TROUBLE] == NOT_FINITE or not finite:
             raise Breakdown(BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
-        message = f"the implicit equation has no solution within {MOST_ITERATIONS} iterations; h = {step:.3g} is too long"
+        message = (
+            f"the implicit equation has no solution within {MOST_ITERATIONS} iterations; h = {step:.3g} is too long"
+        )
         raise Breakdown(STUCK, message, now, np.array(state, dtype=float))
 
     def _state(self, time: float) -> Any:
@@ -364,7 +367,9 @@ class Symplectic:
         """A run in (q, p).  Raises Unusable where a load has no force function."""
         loads = without_potential(dynamics)
         if loads:
-            raise Unusable(f"{self.name} is for conservative systems; these loads have no potential: {', '.join(loads)}")
+            raise Unusable(
+                f"{self.name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
+            )
         if not available(scalar) or scalar not in self.traits.scalars:
             raise Unusable(f"{self.name} does not run in {scalar} here")
         return MidpointRun(dynamics, self, setting, scalar)

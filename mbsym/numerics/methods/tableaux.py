@@ -1,7 +1,7 @@
 """Coefficients of explicit Runge-Kutta methods, as exact decimals and fractions.
 
-Sources: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (2nd ed.), II.1 (the classical method), II.5
-and II.6 (Dormand & Prince 5(4) with its continuous extension), and the coefficients of DOP853 that E. Hairer and
+Sources: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (2nd ed.), II.1 (the classical method),
+II.5 and II.6 (Dormand & Prince 5(4) with its continuous extension), and the coefficients of DOP853 that E. Hairer and
 G. Wanner publish with their code to 30 digits (method of order 8, error estimates of orders 5 and 3, continuous
 extension of order 7).
 """

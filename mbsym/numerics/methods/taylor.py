@@ -1,8 +1,8 @@
 """Taylor series of high order by heyoka (Biscani & Izzo, MNRAS 504 (2021) 2614): an extra, imported only on use.
 
-Every instruction of the straight-line program becomes one heyoka expression, shared like the instruction; heyoka derives
-the recurrences of the Taylor coefficients from them and compiles them.  The order follows from the tolerance (about
--ln(tol)/2 + 1), the step from the decay of the coefficients; times between steps come from the series itself.
+Every instruction of the straight-line program becomes one heyoka expression, shared like the instruction; heyoka
+derives the recurrences of the Taylor coefficients from them and compiles them. The order follows from the tolerance
+(about -ln(tol)/2 + 1), the step from the decay of the coefficients; times between steps come from the series itself.
 
 heyoka's tolerance bounds the remainder of each step, relative to the largest component of the state if that exceeds 1.
 """
@@ -34,7 +34,7 @@ from mbsym.numerics.methods.kept import once
 from mbsym.numerics.methods.runge_kutta import exact_number, initial_state
 
 #: Beyond so many operations heyoka is told to compile loops instead of straight code, which is slower to run.
-STRAIGHT = 400
+STRAIGHT = 100
 
 #: heyoka's own loop is left after so many steps, so that Ctrl-C works.
 STEPS_AT_A_TIME = 2_000
@@ -50,7 +50,8 @@ def _heyoka() -> Any:
 
 def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
     """The outputs as heyoka expressions; the input ``t`` is heyoka's time."""
-    program, values = code.program, {}
+    program = code.program
+    values: dict[int, Any] = {}
     for number in program.live(code.outputs):
         instruction = program.instructions[number]
         operands = [values[operand] for operand in instruction.operands]
@@ -114,7 +115,7 @@ class TaylorRun:
         self._heyoka = _heyoka()
         self._taylor = _integrator(dynamics, min(max(tolerance, smallest), 1e-2), scalar)
         outcomes = self._heyoka.taylor_outcome
-        self._success, self._paused = outcomes.success, outcomes.step_limit
+        self._success, self._pauses = outcomes.success, (outcomes.success, outcomes.step_limit, outcomes.time_limit)
         self._least = smallest
         self._dtype = SCALARS[scalar].dtype
         self._limit = setting.step_limit
@@ -125,6 +126,8 @@ class TaylorRun:
 
     def advance(self, until: float) -> Any:
         taylor = self._taylor
+        if taylor.time < until and not self.work.steps:
+            self._one()
         if taylor.time < until:
             self._far(until)
         while taylor.time < until:
@@ -146,9 +149,12 @@ class TaylorRun:
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
+            if outcome not in self._pauses or not shortest > self._least * max(1.0, abs(now)):
+                taylor.time = now  # once more step by step, to see where it goes wrong
+                taylor.state[:] = before
+                return
             work.steps += int(made)
             work.evaluations += self.order * int(made)
-            self._judge(outcome not in (self._success, self._paused), shortest if made else last, now, before)
 
     def _one(self) -> None:
         """One step that keeps its series."""

@@ -1,0 +1,59 @@
+"""The ledger of a run on the terminal: a table where it is wide enough, hanging lines elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from mbsym_cli.console import console
+
+if TYPE_CHECKING:
+    from mbsym.report.ledger import LedgerLine
+
+#: A table of three columns of sentences needs so many characters.
+WIDE = 100
+
+_COLOURS = {"proved": "green", "verified numerically": "green", "estimated": "yellow", "undecided": "yellow"}
+
+
+def show_ledger(lines: Sequence[LedgerLine], unmeasured: Sequence[str]) -> None:
+    """What was left out, why that is safe, what it saved."""
+    out = console()
+    out.print(Text("  ledger: left out because this scene does not need it", style="bold cyan"))
+    if not lines:
+        out.print("    nothing: everything in the description is needed")
+    elif out.is_terminal and out.width >= WIDE:
+        out.print(Padding(_table(lines), (0, 0, 0, 4)))
+    else:
+        for line in lines:
+            _hanging(Text.assemble((line.kind, "bold"), f": {line.what}"), 4)
+            _hanging(_why(line), 6)
+            for text in line.saved:
+                _hanging(Text(text), 6)
+    if unmeasured:
+        _hanging(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
+
+
+def _table(lines: Sequence[LedgerLine]) -> Table:
+    table = Table(box=None, padding=(0, 2, 1, 0), header_style="bold")
+    table.add_column("left out", ratio=3)
+    table.add_column("why it is safe", ratio=4)
+    table.add_column("with it, and without it", ratio=4)
+    for line in lines:
+        left = Text.assemble((line.kind, "bold"), f"\n{line.what}")
+        table.add_row(left, _why(line), Text("\n".join(line.saved)))
+    return table
+
+
+def _why(line: LedgerLine) -> Text:
+    return Text.assemble(f"{line.why} ", (f"({line.how})", _COLOURS[line.how]))
+
+
+def _hanging(text: Text, indent: int) -> None:
+    """Wrapped with a hanging indent on a terminal; one line elsewhere."""
+    out = console()
+    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)

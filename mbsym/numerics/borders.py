@@ -1,0 +1,290 @@
+"""The linear equations at the extremes: matrices, eigenvalues, and verdicts on both sides of a border of stability.
+
+Verdicts come from exact arithmetic (problem 6 at exact parameter values): they are right or "undecided".  Beside them
+stands what float64 eigenvalues would say,
+
+    unstable if max Re lambda > 1e-10 max |lambda|,  asymptotically stable if < -1e-10 max |lambda|,  no growth seen else,
+
+which near a border, where eigenvalues coincide and are known to half the digits only, is often wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from flint import acb, ctx, fmpq_mat
+
+from mbsym.algebra.base import NotRational, SingularPoint
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.program import Program
+from mbsym.algebra.roots import enclosures
+from mbsym.algebra.stable import stabilised
+from mbsym.analysis import Analysis, Unavailable
+from mbsym.expressions.tree import Expression
+from mbsym.numerics.digits import FULL, PRECISIONS, Digits, ball, compared, digits_of, tight
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
+from mbsym.numerics.scenario import Incomplete, Scenario
+from mbsym.problems.stability import ExactVerdicts, conserves_energy
+from mbsym.problems.stability_theory import ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, UNDECIDED, UNSTABLE, Verdict
+
+BORDER = "border of stability"
+
+#: Borders are sought between these powers of 2 times the given value, and approached to these distances.
+POWERS = range(-10, 11)
+APPROACH = tuple(10.0**-k for k in range(2, 15, 2))
+
+#: Eigenvalues nearer to the imaginary axis than this part of the largest are taken to lie on it.
+ON_THE_AXIS = 1e-10
+
+NO_GROWTH = "no growth seen"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """``exact`` is the verdict; ``floats`` what eigenvalues in float32 and float64 say."""
+
+    exact: Verdict
+    floats: Mapping[str, str]
+
+    def wrong(self, scalar: str) -> bool:
+        """Whether the floats contradict an exact verdict that was reached."""
+        said = self.floats[scalar]
+        if self.exact.word == UNDECIDED:
+            return False
+        stable = self.exact.word in (ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC)
+        if self.exact.word == UNSTABLE:
+            return said != UNSTABLE
+        return said == UNSTABLE or (said == ASYMPTOTIC and not stable)
+
+
+class LinearModel:
+    """The matrices M, D, G, K, N of one analysis as programs of the parameters, and exact verdicts.
+
+    Raises Unavailable where there is no first approximation.
+    """
+
+    def __init__(self, analysis: Analysis) -> None:
+        linear = analysis.linearisation
+        scene = analysis.parameters_scene
+        energies = analysis.stage(2).value
+        cyclic = () if energies is None else energies.cyclic
+        conserved = conserves_energy(scene, energies)
+        self.verdict_of = ExactVerdicts(scene, conserved, cyclic, linear, analysis.equilibrium, analysis.signs)
+        self.ring, self.linear = scene.ring, linear
+        self.size = len(linear.coordinates)
+        self.names = (*analysis.system.parameter_names, "pi")
+        program = Program()
+        carry = Carrier(scene.ring, program, {name: program.input(name) for name in self.names})
+        self.codes: dict[str, Code] = {}
+        for name, matrix in zip("MDGKN", linear.matrices, strict=True):
+            nodes = [carry(x) for row in matrix.polynomials for x in row]
+            self.codes[name] = Code(program, self.names, tuple(stabilised(program, nodes)))
+        self._truth = {name: precise(code, PRECISIONS[-1]) for name, code in self.codes.items()}
+        self._kernels = {scalar: kernels(self.codes, scalar) for scalar in (FLOAT32, FLOAT64)}
+        self.shown = [name for name, m in zip("MDGKN", linear.matrices, strict=True) if any(x for x in _entries(m))]
+
+    # --- digits ---
+
+    def digits(self, given: Scenario) -> dict[str, Digits]:
+        """Of every matrix that is not zero, by its letter, and of the ``eigenvalues``."""
+        inputs = self._floats(given)
+        found = {}
+        for name in self.shown:
+            exact, bits = self._exact(name, given)
+            pairs = {s: compared(self._values(name, s, inputs), exact, full) for s, full in FULL.items()}
+            kept, worst = ({s: pair[i] for s, pair in pairs.items()} for i in (0, 1))
+            norm = max((abs(float(x.mid())) for x in exact), default=0.0)
+            condition = self._condition(name, given)
+            found[name] = Digits(kept, worst, kept[FLOAT64], condition, bits, norm)
+        eigenvalues = self._eigenvalue_digits(given)
+        if eigenvalues is not None:
+            found["eigenvalues"] = eigenvalues
+        return found
+
+    def _values(self, name: str, scalar: str, inputs: Any) -> Any:
+        with np.errstate(all="ignore"):
+            return np.asarray(self._kernels[scalar][name](inputs), dtype=float)
+
+    def _floats(self, given: Scenario) -> Any:
+        return np.array([float(given.parameters.get(name, Fraction(0))) for name in self.names[:-1]] + [np.pi])
+
+    def _exact(self, name: str, given: Scenario) -> tuple[list[Any], int]:
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                balls = self._truth[name](self._balls(given))
+                if tight(balls):
+                    return balls, bits
+        return balls, 0
+
+    def _balls(self, given: Scenario) -> list[Any]:
+        return [*(ball(given.parameters[name]) for name in self.names[:-1]), acb.pi().real]
+
+    def _condition(self, name: str, given: Scenario) -> float:
+        with ctx.workprec(512):
+            inputs = self._balls(given)
+            base = self._truth[name](inputs)
+            sums = [0.0] * len(base)
+            for place in range(len(inputs) - 1):
+                moved = list(inputs)
+                moved[place] = inputs[place] * (1 + acb(2).real ** -200)
+                values = self._truth[name](moved)
+                sums = [
+                    s + abs(float(((a - b) * acb(2).real ** 200).mid()))
+                    for s, a, b in zip(sums, values, base, strict=True)
+                ]
+            norm = max((abs(float(x.mid())) for x in base), default=0.0)
+        return max(sums) / norm if norm else 1.0
+
+    def eigenvalues(self, given: Scenario, scalar: str) -> Any:
+        """Of the first-order system, in floating point throughout; None where M is singular to it."""
+        n, kind = self.size, np.float32 if scalar == FLOAT32 else np.float64
+        inputs = self._floats(given)
+        m, d, g, k, c = (self._values(x, scalar, inputs).astype(kind).reshape(n, n) for x in "MDGKN")
+        first = self._first_order(m, d + g, k + c, kind)
+        with np.errstate(all="ignore"):
+            if first is None or not np.all(np.isfinite(first)):
+                return None
+            return np.linalg.eigvals(first)
+
+    def _first_order(self, m: Any, velocity: Any, position: Any, kind: Any) -> Any:
+        n = self.size
+        first = np.zeros((2 * n, 2 * n), kind)
+        first[:n, n:] = np.eye(n)
+        try:
+            with np.errstate(all="ignore"):
+                first[n:, :n], first[n:, n:] = -np.linalg.solve(m, position), -np.linalg.solve(m, velocity)
+        except np.linalg.LinAlgError:
+            return None
+        return first
+
+    def exact_eigenvalues(self, given: Scenario) -> list[Any] | None:
+        """Certified balls with multiplicity; None where a value is irrational or M singular."""
+        try:
+            m, d, g, k, c = (self._rational(matrix, given) for matrix in self.linear.matrices)
+            inverse = m.inv()
+        except (NotRational, SingularPoint, ZeroDivisionError):
+            return None
+        n = self.size
+        position, velocity = inverse * (k + c), inverse * (d + g)
+        first = fmpq_mat(2 * n, 2 * n)
+        for i in range(n):
+            first[i, n + i] = 1
+            for j in range(n):
+                first[n + i, j], first[n + i, n + j] = -position[i, j], -velocity[i, j]
+        found = enclosures(first.charpoly().coeffs(), bits=256)
+        return [root.ball for root in found for _ in range(root.multiplicity)]
+
+    def _rational(self, matrix: Any, given: Scenario) -> Any:
+        numbers = Rationals({}, {})
+        carry = Carrier(self.ring, numbers, {name: numbers.number(x) for name, x in given.parameters.items()})
+        return fmpq_mat(self.size, self.size, [carry(x) for row in matrix.polynomials for x in row])
+
+    def _eigenvalue_digits(self, given: Scenario) -> Digits | None:
+        exact = self.exact_eigenvalues(given)
+        if exact is None:
+            return None
+        kept = {}
+        size = max(abs(x).mid() for x in exact)
+        for scalar, full in FULL.items():
+            values = self.eigenvalues(given, scalar)
+            kept[scalar] = 0.0 if values is None else _matched(values, exact, size, full)
+        condition = self._eigenvalue_condition(given)
+        return Digits(kept, kept, kept[FLOAT64], condition, 256, float(size))
+
+    def _eigenvalue_condition(self, given: Scenario) -> float:
+        """max ||A|| / (|y.x| max |lambda|) over the unit left and right eigenvectors y, x."""
+        n, inputs = self.size, self._floats(given)
+        m, d, g, k, c = (self._values(x, FLOAT64, inputs).reshape(n, n) for x in "MDGKN")
+        first = self._first_order(m, d + g, k + c, float)
+        if first is None or not np.all(np.isfinite(first)):
+            return inf
+        values, left, right = scipy.linalg.eig(first, left=True, right=True)
+        largest = np.max(np.abs(values))
+        moving = np.abs(values) > 1e-6 * largest  # the zeros of cyclic coordinates are structural
+        cosines = np.abs(np.sum(left.conj() * right, axis=0))[moving]
+        if not largest > 0 or not np.min(cosines) > 0:
+            return inf
+        return float(np.linalg.norm(first, 2) / (np.min(cosines) * largest))
+
+    # --- verdicts ---
+
+    def judged(self, given: Scenario) -> Judged:
+        """The exact verdict, and what floats say."""
+        floats = {}
+        for scalar in FULL:
+            values = self.eigenvalues(given, scalar)
+            if values is None:
+                floats[scalar] = UNDECIDED
+                continue
+            size, growth = np.max(np.abs(values)), np.max(values.real)
+            limit = ON_THE_AXIS * size
+            floats[scalar] = UNSTABLE if growth > limit else ASYMPTOTIC if growth < -limit else NO_GROWTH
+        return Judged(self.verdict_of(given.parameters), floats)
+
+    def borders(self, given: Scenario, overrides: dict[str, Expression]) -> Iterator[Ladder]:
+        """For every free parameter the nearest value where the verdict changes, approached from both sides."""
+        for name in free_parameters(given):
+            inside = self._bracket(given, overrides, name)
+            if inside is None:
+                continue
+            low, high = inside
+            border = (low + high) / 2
+            value = float(given.parameters[name] * border)
+            for side, sign in (("from below", -1), ("from above", 1)):
+                probes = []
+                for size in APPROACH:
+                    there = scaled(given, overrides, name, border * (1 + sign * Fraction(f"{size:e}")))
+                    probes.append(Probe(size, there, there.state))
+                yield Ladder(BORDER, f"{name} -> {value:.6g} {side}", tuple(probes))
+
+    def _bracket(
+        self, given: Scenario, overrides: dict[str, Expression], name: str
+    ) -> tuple[Fraction, Fraction] | None:
+        """Two factors 1e-20 apart with different verdicts, both of them decided; the nearest to 1."""
+
+        def word(factor: Fraction) -> str:
+            try:
+                return self.verdict_of(scaled(given, overrides, name, factor).parameters).word
+            except (Incomplete, SingularPoint, ValueError, ZeroDivisionError):
+                return UNDECIDED
+
+        words = {k: word(Fraction(2) ** k) for k in POWERS}
+        for k in sorted(POWERS[:-1], key=lambda k: abs(k + 0.5)):
+            below, above = words[k], words[k + 1]
+            if below != above and UNDECIDED not in (below, above):
+                low, high = Fraction(2) ** k, Fraction(2) ** (k + 1)
+                while high - low > low / 10**20:
+                    middle = (low + high) / 2
+                    found = word(middle)
+                    if found == UNDECIDED:
+                        return middle, middle  # exactly on the border
+                    low, high = (middle, high) if found == below else (low, middle)
+                return low, high
+        return None
+
+
+def _entries(matrix: Any) -> list[bool]:
+    return [not x.is_zero() for row in matrix.polynomials for x in row]
+
+
+def _matched(values: Any, exact: list[Any], size: Any, full: float) -> float:
+    """Digits of the worst eigenvalue after pairing each exact one with its nearest, relative to the largest."""
+    left = [acb(complex(x).real, complex(x).imag) for x in values]
+    largest = abs(acb(0))
+    for root in exact:
+        nearest = min(range(len(left)), key=lambda i: float(abs(left[i] - root).mid()))
+        largest = max(largest, abs(left.pop(nearest) - root).upper())
+    return full if size == 0 else digits_of(largest / size, full)
+
+
+__all__ = ["BORDER", "Judged", "LinearModel", "Unavailable"]

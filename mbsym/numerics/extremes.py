@@ -1,0 +1,322 @@
+"""A model at its extremes: how many digits each quantity keeps, where it breaks down, and why.
+
+Ladders of states and parameters (``probes``, ``borders``) times quantities (``digits``): every rung is evaluated by the
+compiled kernels in float32 and float64 and by rigorous balls, with the condition of the question beside it.  What is
+said in sentences follows from the rows and from nothing else.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.program import Program
+from mbsym.algebra.ring import Ring
+from mbsym.analysis import Analysis, Unavailable
+from mbsym.expressions.tree import Expression
+from mbsym.mechanics.falling import falling_frames
+from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.programs import coasting_scene
+from mbsym.mechanics.variables import program_environment
+from mbsym.model.system import System
+from mbsym.numerics.borders import BORDER, Judged, LinearModel
+from mbsym.numerics.digits import FEW, FULL, Arithmetic, Digits, Quantity, Truth, Watch, measured, quantities
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
+from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR, Ladder, Probe, ladders
+from mbsym.numerics.scenario import Scenario
+
+#: Sums are called good where float64 keeps at least so many digits.
+GOOD = 10.0
+
+#: The Jacobian is left out where its program is longer than this, and where kernels have to be compiled again.
+MOST_OPERATIONS = 20_000
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity on one rung."""
+
+    kind: str
+    subject: str
+    size: float
+    quantity: str
+    found: Digits
+
+
+@dataclass(frozen=True)
+class VerdictRow:
+    """The verdict on one rung, exact and by floats."""
+
+    kind: str
+    subject: str
+    size: float
+    judged: Judged
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """All rows in the order measured; ``left_out`` says what was not, and why.
+
+    ``falling`` is there where a frame falls in a Newtonian field.
+    """
+
+    system: System
+    rows: tuple[Row, ...]
+    verdicts: tuple[VerdictRow, ...]
+    left_out: tuple[str, ...]
+    seconds: float
+    falling: Falling | None = None
+
+    @property
+    def ladders(self) -> tuple[tuple[str, str], ...]:
+        """(kind, subject) of every ladder."""
+        measured_ = [(row.kind, row.subject) for row in self.rows]
+        return tuple(dict.fromkeys([*measured_, *((row.kind, row.subject) for row in self.verdicts)]))
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row.quantity for row in self.rows))
+
+    def of(self, kind: str, subject: str, quantity: str) -> tuple[Row, ...]:
+        """One quantity along one ladder, in the order of the rungs."""
+        return tuple(r for r in self.rows if (r.kind, r.subject, r.quantity) == (kind, subject, quantity))
+
+
+def extremes(
+    given: Scenario,
+    ring: Ring,
+    overrides: dict[str, Expression],
+    budget: float = 60.0,
+    watch: Watch = lambda text: None,
+) -> Extremes:
+    """Everything that applies to a scenario, in about ``budget`` seconds.
+
+    Raises NoClosedForm or SingularPoint where the equations have no program at all.
+    """
+    started = time.perf_counter()
+    left_out: list[str] = []
+    watch("programs")
+    found = _quantities(given.system, ring, left_out)
+    truth = Truth(given.system, found)
+    linear = _linear(given, left_out)
+    watch("kernels")
+    rungs = _Rungs(given, found, truth, linear)
+    for ladder in _all(given, overrides, truth, found, linear):
+        if time.perf_counter() - started > budget:
+            left_out.append(f"{ladder.title}: out of time; raise --budget")
+            continue
+        watch(ladder.title)
+        rungs.climb(ladder)
+    joined = falling(given, ring, found, truth)
+    seconds = time.perf_counter() - started
+    return Extremes(given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined)
+
+
+class _Rungs:
+    """Takes measurements, one rung after another."""
+
+    def __init__(self, given: Scenario, found: Sequence[Quantity], truth: Truth, linear: LinearModel | None) -> None:
+        self.given, self.found, self.truth, self.linear = given, found, truth, linear
+        self.lean = tuple(q for q in found if q.name != "Jacobian")
+        self.usual = Arithmetic(given, found)
+        self.rows: list[Row] = []
+        self.verdicts: list[VerdictRow] = []
+
+    def climb(self, ladder: Ladder) -> None:
+        for probe in ladder.probes:
+            if ladder.kind != BORDER:
+                self._state(ladder, probe)
+            if self.linear is not None and ladder.kind in (BORDER, RATIO):
+                self._linear(ladder, probe, self.linear)
+
+    def _state(self, ladder: Ladder, probe: Probe) -> None:
+        usual = probe.scenario is self.given
+        try:
+            arithmetic = self.usual if usual else Arithmetic(probe.scenario, self.lean, compiled=False)
+        except (SingularPoint, NoClosedForm):  # a division by zero in the parameters alone: nothing to evaluate
+            return
+        for q in self.found if usual else self.lean:
+            digits = measured(self.truth, arithmetic, q.name, probe.scenario, probe.state)
+            self.rows.append(Row(ladder.kind, ladder.subject, probe.size, q.name, digits))
+
+    def _linear(self, ladder: Ladder, probe: Probe, linear: LinearModel) -> None:
+        place = (ladder.kind, ladder.subject, probe.size)
+        self.rows += [Row(*place, name, digits) for name, digits in linear.digits(probe.scenario).items()]
+        self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
+
+
+def _all(
+    given: Scenario,
+    overrides: dict[str, Expression],
+    truth: Truth,
+    found: Sequence[Quantity],
+    linear: LinearModel | None,
+) -> Iterator[Ladder]:
+    """Ladders that need no new kernels come first."""
+    bordering = linear is not None
+    for ladder in ladders(given, overrides, truth, found):
+        if bordering and linear is not None and ladder.kind == RATIO:
+            yield from linear.borders(given, overrides)
+            bordering = False
+        yield ladder
+
+
+def _quantities(system: System, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
+    found = quantities(system, ring)
+    kept = tuple(q for q in found if q.code.operations <= MOST_OPERATIONS)
+    left_out += [f"{q.name}: {q.code.operations} operations are too many here" for q in found if q not in kept]
+    return kept
+
+
+def _linear(given: Scenario, left_out: list[str]) -> LinearModel | None:
+    try:
+        return LinearModel(Analysis(given.system))
+    except (Unavailable, NoClosedForm, SingularPoint) as reason:
+        left_out.append(f"linear equations, eigenvalues and verdicts: {reason}")
+        return None
+
+
+# --- frames that fall ---
+
+
+@dataclass(frozen=True)
+class Falling:
+    """Digits of the forcing in the given state, in float64: with gravity and the frame's acceleration taken separately
+    (``apart``) and joined (``joined``); ``frames`` are the frames that fall."""
+
+    frames: tuple[str, ...]
+    apart: float
+    joined: float
+
+
+def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth) -> Falling | None:
+    """None where no frame falls, or the forcing has no tight enclosure."""
+    frames = tuple(falling_frames(given.system))
+    usual = next((q for q in found if q.name == "forcing"), None)
+    if not frames or usual is None:
+        return None
+    program = Program()
+    scene = coasting_scene(given.system, ring, program, program_environment(given.system, program))
+    nodes = tuple(-x for x in residuals(scene).values())
+    apart = Quantity("forcing", Code(program, usual.code.inputs, nodes))
+    digits = [
+        measured(truth, Arithmetic(given, [q], compiled=False), "forcing", given, given.state) for q in (apart, usual)
+    ]
+    if not digits[0].bits:
+        return None
+    return Falling(frames, digits[0].formula, digits[1].formula)
+
+
+# --- what follows ---
+
+
+def sentences(found: Extremes) -> Iterator[str]:
+    """Where the model breaks down, in plain words; each follows from the rows."""
+    if found.falling is not None:
+        yield (
+            f"Gravity and the acceleration of {', '.join(found.falling.frames)} are joined before numbers are put in: "
+            f"float64 keeps {found.falling.joined:.1f} digits of the forcing in the given state, where term by term it "
+            f"would keep {found.falling.apart:.1f}."
+        )
+    for kind, subject in found.ladders:
+        if kind == SINGULAR:
+            yield from _singular(found, subject)
+    for kind, title in (
+        (RATES, "rates from 1e-8 to 1e8"),
+        (EQUILIBRIUM, "states that approach the unperturbed motion"),
+    ):
+        yield from _range(found, kind, title)
+    yield from _ratios(found)
+    yield from _verdicts(found)
+    yield from _formulas(found)
+
+
+def _singular(found: Extremes, subject: str) -> Iterator[str]:
+    parts = []
+    for quantity in ("accelerations", "Jacobian"):
+        rows = found.of(SINGULAR, subject, quantity)
+        for scalar in FULL:
+            lost = [r.size for r in rows if r.found.digits[scalar] < FEW]
+            if lost:
+                parts.append(f"{scalar} keeps fewer than {FEW:.0f} digits of the {quantity} from {max(lost):.0e} on")
+    what = "; ".join(parts) if parts else "nothing is lost down to 1e-14"
+    yield f"{subject}: the mass matrix is singular; {what}."
+    rows = found.of(SINGULAR, subject, "accelerations")
+    avoidable = [r for r in rows if r.found.verdict == "formula"]
+    if avoidable:
+        r = avoidable[0]
+        yield (
+            f"{subject}: from {r.size:.0e} on more digits of the accelerations are lost than the question makes "
+            f"unavoidable (condition {r.found.condition:.0e}, {r.found.formula:.1f} digits at the state as rounded); "
+            "other coordinates help, see --sequences."
+        )
+
+
+def _range(found: Extremes, kind: str, title: str) -> Iterator[str]:
+    rows = [r for r in found.rows if r.kind == kind and r.found.bits]
+    if not rows:
+        return
+    least = min(rows, key=lambda r: r.found.digits[FLOAT64])
+    single = min(rows, key=lambda r: r.found.digits[FLOAT32])
+    yield (
+        f"{title[0].upper()}{title[1:]}: float64 keeps at least {least.found.digits[FLOAT64]:.1f} digits (worst: "
+        f"{least.quantity} at {least.size:.0e}), float32 {single.found.digits[FLOAT32]:.1f} ({single.quantity} at "
+        f"{single.size:.0e})."
+    )
+
+
+def _ratios(found: Extremes) -> Iterator[str]:
+    rows = [r for r in found.rows if r.kind == RATIO and r.found.bits]
+    if not rows:
+        return
+    poor: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.found.digits[FLOAT64] < GOOD:
+            poor.setdefault(row.subject, []).append(row)
+    fine = [subject for kind, subject in found.ladders if kind == RATIO and subject not in poor]
+    if fine:
+        yield (f"Times 1e-12 to 1e12, {', '.join(fine)}: float64 keeps at least {GOOD:.0f} digits of everything.")
+    for subject, lost in poor.items():
+        worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
+        names = ", ".join(dict.fromkeys(r.quantity for r in lost))
+        why = "the formula" if worst.found.verdict == "formula" else "the question itself"
+        yield (
+            f"{subject} times {worst.size:.0e}: {worst.found.digits[FLOAT64]:.1f} digits of the {worst.quantity} are "
+            f"left in float64, lost by {why} (condition {worst.found.condition:.0e}); below {GOOD:.0f} digits: {names}."
+        )
+
+
+def _verdicts(found: Extremes) -> Iterator[str]:
+    borders = [row for row in found.verdicts if row.kind == BORDER]
+    subjects = dict.fromkeys(row.subject.rsplit(" from ", 1)[0] for row in borders)
+    for subject in subjects:
+        own = [row for row in borders if row.subject.startswith(subject + " from ")]
+        words = {row.subject.rsplit(" ", 1)[1]: row.judged.exact.word for row in own}
+        below, above = words.get("below", ""), words.get("above", "")
+        text = f"{subject}: a border, {below} below and {above} above, decided exactly down to a distance of "
+        text += f"{min(row.size for row in own):.0e}"
+        for scalar in FULL:
+            wrong = [row.size for row in own if row.judged.wrong(scalar)]
+            if wrong:
+                text += f"; {scalar} eigenvalues say otherwise from {max(wrong):.0e} on"
+        yield text + "."
+    others = [row for row in found.verdicts if row.kind == RATIO]
+    misjudged = [row for row in others if row.judged.wrong(FLOAT64)]
+    if misjudged:
+        listed = ", ".join(f"{row.subject} times {row.size:.0e}" for row in misjudged[:8])
+        yield f"float64 eigenvalues contradict the exact verdict for {listed}."
+
+
+def _formulas(found: Extremes) -> Iterator[str]:
+    rows = [
+        r for r in found.rows if r.found.verdict == "formula" and r.kind != SINGULAR and isfinite(r.found.condition)
+    ]
+    if rows:
+        listed = dict.fromkeys(f"{r.quantity} ({r.subject})" for r in rows)
+        yield f"More is lost than the condition explains, so another formula could keep it: {', '.join(listed)}."
+    open_ = dict.fromkeys(f"{r.quantity} ({r.subject} {r.size:.0e})" for r in found.rows if not r.found.bits)
+    if open_:
+        yield f"Undecided, no tight enclosure within 2048 bits: {', '.join(list(open_)[:8])}."

@@ -1,0 +1,84 @@
+"""NumPy source: readable, needs no compiler, and is vectorised over states.
+
+    def f(t, q1, q2, ...):  ->  [outputs]
+
+Arithmetic is that of the arrays handed in: float64, float32 or long double; constants are float64 unless they are
+asked for in another type.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from mbsym.formulas.names import injective
+from mbsym.formulas.straight_line import Dialect, Listing, listing
+from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
+
+_NAMES = {"atan": "arctan"}
+_TYPES = {"float32": np.float32, "float64": np.float64, "extended": np.longdouble}
+
+
+def source(code: Code) -> str:
+    """The kernel as the text of a Python function ``f`` that uses NumPy as ``np``."""
+    names = _names(code)
+    dialect = Dialect(
+        call=lambda function, argument: f"np.{_NAMES.get(function, function)}({argument})",
+        local=lambda count: f"s{count}",
+        number=lambda value: repr(float(value)),
+    )
+    found = listing(code.program, code.outputs, names, dialect, {"np", "f"})
+    return _text(code, found, names)
+
+
+def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:
+    """A Kernel in NumPy; every constant is a correctly rounded number of the arithmetic."""
+    names, dtype = _names(code), _TYPES[scalar]
+    constants: dict[str, Any] = {}
+
+    def constant(value: Fraction) -> str:
+        name = f"c[{len(constants)}]"
+        head = float(value)
+        constants[name] = dtype(head) if dtype is not np.longdouble else _long(value, head)
+        return name
+
+    dialect = Dialect(
+        call=lambda function, argument: f"np.{_NAMES.get(function, function)}({argument})",
+        local=lambda count: f"s{count}",
+        number=constant,
+    )
+    text = _text(code, listing(code.program, code.outputs, names, dialect, {"np", "f", "c"}), names)
+    scope: dict[str, Any] = {"np": np, "c": list(constants.values())}
+    exec(compile(text, "<straight-line program>", "exec"), scope)  # our own text, made of numbers and own names only
+    run = scope["f"]
+
+    def called(values: Any) -> Any:
+        inputs = np.asarray(values, dtype=dtype)
+        if inputs.shape[0] != len(code.inputs) or inputs.ndim > 2:
+            raise ValueError(f"expected {len(code.inputs)} rows, not an array of shape {inputs.shape}")
+        out = np.empty((len(code.outputs), *inputs.shape[1:]), dtype=dtype)
+        with np.errstate(all="ignore"):
+            for place, row in enumerate(run(*inputs)):
+                out[place] = row
+        return out
+
+    return called
+
+
+def _long(value: Fraction, head: float) -> Any:
+    return np.longdouble(head) + np.longdouble(float(value - Fraction(head)))
+
+
+def _names(code: Code) -> Mapping[str, str]:
+    """Inputs as Python names, whatever they are called."""
+    return injective(code.inputs, lambda name: f"x_{''.join(c if c.isalnum() else '_' for c in name)}")
+
+
+def _text(code: Code, found: Listing, names: Mapping[str, str]) -> str:
+    lines = [f"def f({', '.join(names[name] for name in code.inputs)}):"]
+    lines += [f"    {name} = {text}" for name, text in found.assignments]
+    lines.append(f"    return [{', '.join(found.results)}]")
+    return "\n".join([*lines, ""])

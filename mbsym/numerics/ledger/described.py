@@ -1,0 +1,164 @@
+"""Savings that the description itself allows: frames without mass, point masses, axes nobody turns about, gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.point import Balls
+from mbsym.expressions.tree import ZERO, Expression, names
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.orbit import Orbit, central_inertia, trace
+from mbsym.mechanics.variables import ring_of
+from mbsym.model.system import (
+    EXACT,
+    GRAVITY_ORDERS,
+    Body,
+    Inertia,
+    NewtonianGravity,
+    Rotation,
+    Tensor,
+    acceleration_name,
+    rational,
+)
+from mbsym.numerics.ledger.entry import ESTIMATED, PROVED, UNDECIDED, Saving
+from mbsym.numerics.ledger.work import REFUSALS, Symbols, Work, changed_bodies, moving_names
+from mbsym.numerics.scenario import PRECISION, Scenario
+
+
+def massless_bodies(work: Work) -> Iterator[Saving]:
+    """Frames without mass and inertia, against the same frames with a mass."""
+    found = {body.name for body in work.system.bodies if rational(body.mass) == 0 and body.inertia is None}
+    if not found:
+        return
+    symbols = Symbols(work.system)
+
+    def heavy(body: Body) -> Body:
+        return replace(body, mass=symbols("m")) if body.name in found else body
+
+    other = changed_bodies(work.system, heavy, symbols)
+    why = "structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0"
+    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
+    yield Saving("massless bodies", _in_order(work, found), why, PROVED, measures)
+
+
+def point_masses(work: Work) -> Iterator[Saving]:
+    """Bodies with a mass and no tensor, against the same bodies with principal moments about their mass centres."""
+    found = {body.name for body in work.system.bodies if rational(body.mass) != 0 and body.inertia is None}
+    if not found:
+        return
+    symbols = Symbols(work.system)
+
+    def extended(body: Body) -> Body:
+        if body.name not in found:
+            return body
+        a, b, c = symbols("J1"), symbols("J2"), symbols("J3")
+        tensor: Tensor = ((a, ZERO, ZERO), (ZERO, b, ZERO), (ZERO, ZERO, c))
+        return replace(body, inertia=Inertia("mass centre", tensor))
+
+    other = changed_bodies(work.system, extended, symbols)
+    why = "structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment"
+    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
+    yield Saving("point masses", _in_order(work, found), why, PROVED, measures)
+
+
+def unused_axes(work: Work) -> Iterator[Saving]:
+    """Joints that turn about fewer than three axes, against joints with constant angles about the others."""
+    found = {body.name for body in work.system.bodies if len(list(body.rotation.turns())) < 3}
+    if not found:
+        return
+    symbols = Symbols(work.system)
+
+    def turned(body: Body) -> Body:
+        if body.name not in found:
+            return body
+        axes, angles = map(list, (body.rotation.axes, body.rotation.angles))
+        used = [(axis, angle) for axis, angle in zip(axes, angles, strict=True) if axis]
+        while len(used) < 3:
+            used.append((used[-1][0] % 3 + 1 if used else 1, symbols("x")))
+        return replace(body, rotation=Rotation(tuple(a for a, _ in used), tuple(x for _, x in used)))
+
+    other = changed_bodies(work.system, turned, symbols)
+    why = "structural: a turn that is not there is the identity matrix, and is never multiplied"
+    measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
+    yield Saving("unused axes", _in_order(work, found), why, PROVED, measures)
+
+
+def constant_rotations(work: Work) -> Iterator[Saving]:
+    """Turns by angles that do not move, against the same turns worked out in every state."""
+    moving = moving_names(work.system)
+
+    def constant(angle: Expression) -> bool:
+        return angle != ZERO and not names(angle) & moving
+
+    found = [b.name for b in work.system.bodies if any(constant(angle) for _, angle in b.rotation.turns())]
+    if not found:
+        return
+    symbols = Symbols(work.system)
+
+    def turned(body: Body) -> Body:
+        angles = tuple(symbols("x") if constant(angle) else angle for angle in body.rotation.angles)
+        return replace(body, rotation=Rotation(body.rotation.axes, angles))
+
+    other = changed_bodies(work.system, turned, symbols)
+    why = "the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1"
+    measures = work.right_hand_sides(other, changing=symbols.names)
+    yield Saving("constant rotations", tuple(found), why, PROVED, measures)
+
+
+def gravity_orders(work: Work) -> Iterator[Saving]:
+    """Terms of the Newtonian field above the chosen order, against the next order; safe by their size only."""
+    for place, load in enumerate(work.system.loads):
+        if not isinstance(load, NewtonianGravity) or load.order == EXACT:
+            continue
+        order = int(load.order)
+        following = GRAVITY_ORDERS[GRAVITY_ORDERS.index(order) + 1]
+        loads = list(work.system.loads)
+        loads[place] = replace(load, order=following)
+        measures = work.right_hand_sides(replace(work.system, loads=tuple(loads), claims=()))
+        ratio = _relative_size(work.numbers, load)
+        if ratio is None:
+            why, how = (
+                f"terms above (l/R)^{order} are dropped; without numbers for l and R nobody knows if that is safe",
+                UNDECIDED,
+            )
+        else:
+            dropped, kept = ratio ** (order + 1), ratio ** (order - 1)
+            why = (
+                f"with the size l of the bodies about O1, l/R = {ratio:.1e}: the largest term dropped is "
+                f"about (l/R)^{order + 1} = {dropped:.1e} of nu m/R, {kept:.1e} of the terms of order 2"
+            )
+            how = ESTIMATED
+        yield Saving("order of gravity", (f"terms of the field above order {order}",), why, how, measures)
+
+
+def _relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:
+    """l/R at t = 0: the greatest distance of a body's mass from O1 (with its radius of gyration) over that of O1."""
+    if numbers is None:
+        return None
+    system = numbers.system
+    state = dict(zip((*system.coordinates, *system.velocities), numbers.state, strict=True))
+    values = {**numbers.parameters, **state, **{name: initial for name, (initial, _) in numbers.prescribed.items()}}
+    with ctx.workprec(PRECISION):
+        environment = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in values.items()}
+        environment |= {"t": arb(0), "pi": arb.pi()}
+        for name in system.coordinates:
+            environment[acceleration_name(name)] = arb(0)
+        try:
+            scene = Scene(system, Balls(environment), environment, ring_of(system))
+            orbit = Orbit(load, scene)
+            largest = 0.0
+            for motion, _, c in orbit.bodies():
+                tensor = central_inertia(scene, motion)
+                gyration = arb(0) if tensor is None or motion.mass.contains(0) else trace(tensor) / (2 * motion.mass)
+                largest = max(largest, float((c[0] ** 2 + c[1] ** 2 + c[2] ** 2).sqrt() + abs(gyration).sqrt()))
+            ratio = largest * float(abs(orbit.inverse))
+        except REFUSALS:
+            return None
+    return ratio if 0 < ratio < float("inf") else None
+
+
+def _in_order(work: Work, found: set[str]) -> tuple[str, ...]:
+    return tuple(body.name for body in work.system.bodies if body.name in found)

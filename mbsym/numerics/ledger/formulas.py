@@ -1,0 +1,117 @@
+"""Savings in closed formulas: what nobody asked for, entries that vanish, subsystems that move by themselves."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+from mbsym.algebra.characteristic import LONGEST, TooLargeError, characteristic_polynomial
+from mbsym.analysis import PROBLEMS
+from mbsym.formulas.formula import Matrix
+from mbsym.numerics.ledger.entry import COUNT, PROVED, SECONDS, TERMS, Measure, Saving
+from mbsym.numerics.ledger.work import REFUSALS, Counted, Work
+from mbsym.problems.linearisation import Linearisation, components
+
+
+def problems_not_asked(work: Work) -> Iterator[Saving]:
+    """Problems that nobody asked for and nothing asked for needed, against deriving them."""
+    analysis = work.analysis
+    left = [n for n in PROBLEMS if n not in analysis.problems and PROBLEMS[n].attribute not in analysis.derived]
+    for number in left:
+        work.require(0.0)
+        problem, other = PROBLEMS[number], work.bounded
+        stage = other.stage(number)
+        if stage.failure is not None:
+            if other.ring.work <= other.ring.work_budget and "budget" not in stage.failure.reason:
+                continue
+            terms = Measure("terms", TERMS, analysis.terms, 0, True)
+        else:
+            terms = Measure("terms", TERMS, _TERMS[number](stage.value), 0)
+        why = "liveness: nobody asked for it, and nothing that was asked for needs it"
+        if number == 3 and "linearisation" in analysis.derived:
+            why += "; the linearisation is that of the quadratised Lagrangian"
+        seconds = Measure("seconds of deriving it", SECONDS, stage.seconds, 0.0, terms.at_least)
+        what = f"problem {number}, {problem.title}"
+        yield Saving("outputs nobody asked for", (what,), why, PROVED, (terms, seconds))
+
+
+def _total(formulas: Iterable[Any]) -> int:
+    return sum(x.terms for x in formulas)
+
+
+def _kinematics(found: Any) -> int:
+    parts = ((*(x for row in b.rotation for x in row), *b.angular_velocity, *b.velocity_origin, *b.velocity_mass_centre)
+             for b in found.bodies)  # fmt: skip
+    return sum(_total(part) for part in parts)
+
+
+_TERMS: dict[int, Callable[[Any], int]] = {
+    1: _kinematics,
+    2: lambda found: found.kinetic_energy.terms + found.force_function.terms,
+    3: lambda found: found.mass_matrix.terms + _total(found.forcing),
+    4: lambda found: _total(found.residuals),
+    5: lambda found: _total(found.matrices),
+    6: lambda found: sum(_total(part.characteristic) for part in found.subsystems),
+    7: lambda found: _total(item.formula for item in found),
+}
+
+
+def vanishing_entries(work: Work) -> Iterator[Saving]:
+    """Entries of M, D, G, K, N that are identically zero, and matrices that vanish as a whole."""
+    found = _linearisation(work)
+    if found is None:
+        return
+    letters = dict(zip("MDGKN", found.matrices, strict=True))
+    n = len(found.coordinates)
+    entries = sum(not m[i, j].is_zero for m in found.matrices for i in range(n) for j in range(n))
+    gone = [name for name, matrix in letters.items() if matrix.is_zero]
+    what = [f"{5 * n * n - entries} of {5 * n * n} entries"]
+    if gone:
+        what.append(f"{', '.join(gone)} as a whole")
+    why = "identities of the ring: their polynomials are 0"
+    measures = (Measure("entries of M, D, G, K, N", COUNT, 5 * n * n, entries),)
+    yield Saving("entries that vanish", tuple(what), why, PROVED, measures)
+
+
+def subsystems(work: Work) -> Iterator[Saving]:
+    """Characteristic polynomials of subsystems, against that of the whole system."""
+    found = _linearisation(work)
+    parts = components(found.matrices) if found is not None else []
+    if found is None or len(parts) < 2 or 6 not in work.analysis.problems:
+        return
+    work.require(1.0)
+    divided = [_characteristic(found, part) for part in parts]
+    if any(item.at_least for item in divided):
+        return
+    here = Counted(sum(x.size for x in divided), sum(x.seconds for x in divided))
+    there = _characteristic(found, range(len(found.coordinates)))
+    names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
+    why = "identities of the ring: no matrix couples them, so the determinant is the product of theirs"
+    measures = (
+        Measure("terms of det(M s^2 + (D + G) s + K + N)", TERMS, there.size, here.size, there.at_least),
+        Measure("seconds of the determinants", SECONDS, there.seconds, here.seconds, there.at_least),
+    )
+    yield Saving("subsystems", tuple(names), why, PROVED, measures)
+
+
+def _linearisation(work: Work) -> Linearisation | None:
+    if "linearisation" not in work.analysis.derived:
+        return None
+    found: Linearisation | None = work.result("linearisation")
+    return found
+
+
+def _characteristic(found: Linearisation, part: Sequence[int]) -> Counted:
+    """Size of the characteristic polynomial of some coordinates in the declared parameters, within its budget."""
+
+    def cut(*matrices: Matrix) -> list[list[Any]]:
+        ring = found.M[0, 0].ring
+        return [[ring.reduce(sum((m[i, j].polynomial for m in matrices), ring.zero)) for j in part] for i in part]
+
+    started = time.perf_counter()
+    try:
+        polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
+    except (TooLargeError, *REFUSALS):
+        return Counted(LONGEST, time.perf_counter() - started, True)
+    return Counted(sum(len(x) for x in polynomial), time.perf_counter() - started)

@@ -1,0 +1,197 @@
+"""Savings that the motion allows: coordinates that rest, cyclic coordinates, parameters that drop out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+
+from flint import arb, ctx
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import names
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.states import ball_states
+from mbsym.mechanics.variables import expressions, ring_environment, ring_of
+from mbsym.model.system import INERTIAL, System
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERMS, VERIFIED, Measure, Saving
+from mbsym.numerics.ledger.work import REFUSALS, Work, holds
+from mbsym.numerics.reduced import reduced
+from mbsym.problems.energy import Energy
+
+#: Random states, and bits, at which a parameter is given two values; and instructions that this may cost in all.
+STATES, PRECISION, INSTRUCTIONS = 3, 256, 3_000_000
+
+#: A reason that lets terms of L keep the parameter.
+ONE_POWER = "identity of the ring: in every row of M q'' = f it stands to one power, and cancels"
+
+
+def resting_coordinates(work: Work) -> Iterator[Saving]:
+    """Coordinates that rest in this scene, against integrating all of them."""
+    if work.scenario is None:
+        return
+    started = time.perf_counter()
+    whole = Dynamics(work.scenario)
+    before = whole.right_hand_side.operations
+    seconds = time.perf_counter() - started
+    work.require(seconds)
+    found = reduced(whole)
+    if found is None:
+        return
+    started = time.perf_counter()
+    after = found.dynamics.right_hand_side.operations
+    spent = time.perf_counter() - started
+    normal = _plane(found.dynamics.system)
+    plane = f"; what is left moves in the plane normal to inertial axis {normal}" if normal else ""
+    why = f"from this initial state, with q_S held, f_S and M_SF vanish for all other q, q', t: q_S'' = 0{plane}"
+    n = whole.size
+    measures = (
+        Measure("coordinates to integrate", COUNT, n, n - len(found.names)),
+        Measure("operations of the right-hand side at these values", OPERATIONS, before, after),
+        Measure("seconds of writing the right-hand side", SECONDS, seconds, spent),
+    )
+    kind = "plane motion" if normal else "coordinates that rest"
+    yield Saving(kind, found.names, why, found.reduction.how, measures)
+
+
+def _plane(system: System) -> int | None:
+    """The inertial axis (1 to 3) to which all motion is normal: omega_k = w e, V_Ck.e = 0 for every body."""
+    ring = ring_of(system)
+    try:
+        scene = Scene(system, ring, ring_environment(system, ring), ring)
+        axes = {1, 2, 3}
+        for name, motion in scene.motions.items():
+            spin = scene.to_axes(motion.angular_velocity, name, INERTIAL)
+            velocity = scene.to_axes(motion.velocity_mass_centre, name, INERTIAL)
+            for axis in tuple(axes):
+                others = [x for k, x in enumerate(spin, start=1) if k != axis]
+                if not all(ring.reduce(x).is_zero() for x in (*others, velocity[axis - 1])):
+                    axes.discard(axis)
+    except REFUSALS:
+        return None
+    return min(axes) if len(axes) == 1 else None
+
+
+def cyclic_coordinates(work: Work) -> Iterator[Saving]:
+    """Coordinates that neither L nor the other loads hold, and that no force drives."""
+    energy: Energy | None = work.result("energy")
+    if energy is None or not set(energy.cyclic) & set(work.system.coordinates):
+        return
+    found = tuple(name for name in energy.cyclic if name in _undriven(work))
+    if not found:
+        return
+    n = len(work.system.coordinates)
+    why = "identities of the ring: dL/dq = 0 and Q = 0, so p = dL/dq' is constant and q follows by a quadrature"
+    measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
+    yield Saving("cyclic coordinates", found, why, PROVED, measures)
+
+
+def _undriven(work: Work) -> set[str]:
+    """The coordinates on which no force without a force function acts."""
+    equations = work.result("equations") if "equations" in work.analysis.derived else None
+    if equations is not None:
+        forces = dict(zip(work.system.coordinates, equations.generalized_force, strict=True))
+        return {name for name, force in forces.items() if force.is_zero}
+    ring = ring_of(work.system)
+    try:
+        found = generalized_forces(Scene(work.system, ring, ring_environment(work.system, ring), ring))
+    except REFUSALS:
+        return set()
+    return {name for name, force in found.items() if ring.reduce(force).is_zero()}
+
+
+def dropped_parameters(work: Work) -> Iterator[Saving]:
+    """Parameters of bodies and loads that the accelerations do not depend on, by how that is known."""
+    parts = (work.system.bodies, work.system.loads, work.system.prescribed)
+    occurring = {name for x in expressions(parts) for name in names(x)}
+    used = [name for name in work.system.parameter_names if name in occurring]
+    forward = work.forward
+    live = {
+        str(x.payload)
+        for k in forward.program.live(forward.accelerations)
+        if (x := forward.program.instructions[k])[0] == "input"
+    }
+    unread = [name for name in used if name not in live]
+    if unread:
+        why = "liveness: no instruction that q'' needs reads it"
+        yield Saving("parameters that drop out", tuple(unread), why, PROVED, _dropped(work, used, unread))
+    read = [name for name in used if name in live]
+    by_reason: dict[tuple[str, str], list[str]] = {}
+    for name in _without_influence(work, read):
+        by_reason.setdefault(_reason(work, name), []).append(name)
+    for (why, how), found in by_reason.items():
+        measures = _dropped(work, used, found)[: 1 if why == ONE_POWER else 2]
+        yield Saving("parameters that drop out", tuple(found), why, how, measures)
+
+
+def _dropped(work: Work, used: Sequence[str], found: Sequence[str]) -> tuple[Measure, ...]:
+    measures = [Measure("parameters that q'' depends on", COUNT, len(used), len(used) - len(found))]
+    energy: Energy | None = work.result("energy")
+    if energy is not None:
+        ring = energy.kinetic_energy.ring
+        lagrangian = ring.reduce(energy.kinetic_energy.polynomial + energy.force_function.polynomial)
+        terms = len(lagrangian)
+        without = sum(_term_holds(ring, term, found) for term in _terms(ring, lagrangian))
+        measures.append(Measure("terms of L without them", TERMS, terms, terms - without))
+    return tuple(measures)
+
+
+def _terms(ring: Ring, x: Polynomial) -> Iterator[Polynomial]:
+    for monomial, coefficient in zip(x.monoms(), x.coeffs(), strict=True):
+        yield ring.context.term(exp_vec=monomial, coeff=coefficient)
+
+
+def _term_holds(ring: Ring, term: Polynomial, found: Sequence[str]) -> bool:
+    return any(holds(ring, term, name) for name in found)
+
+
+def _without_influence(work: Work, read: Sequence[str]) -> list[str]:
+    """Those whose value makes no difference to q'' at random states, in balls of ``PRECISION`` bits."""
+    forward = work.forward
+    size = len(forward.program.live(forward.accelerations))
+    if size * (len(read) + 1) * STATES > INSTRUCTIONS:
+        return []
+    left = list(read)
+    with ctx.workprec(PRECISION):
+        for state in ball_states(work.system, ring_of(work.system), STATES):
+            at = [work.accelerations_at(state.values)]
+            for name in tuple(left):
+                other = work.accelerations_at({**state.values, name: state.values[name] * arb(7) / 5})
+                if not all(_same(a, b) for a, b in zip(at[0], other, strict=True)):
+                    left.remove(name)
+    return left
+
+
+def _same(a: arb, b: arb) -> bool:
+    """Whether two balls are narrow and overlap."""
+    narrow = all(x.is_finite() and x.rad() <= arb(2) ** (-PRECISION // 2) * (1 + abs(x.mid())) for x in (a, b))
+    return bool(narrow and a.overlaps(b))
+
+
+def _reason(work: Work, name: str) -> tuple[str, str]:
+    """Why a parameter makes no difference: (justification, how)."""
+    equations = work.result("equations")
+    if equations is not None:
+        ring, matrix = equations.mass_matrix[0, 0].ring, equations.mass_matrix.polynomials
+        rows = [[*row, force.polynomial] for row, force in zip(matrix, equations.forcing, strict=True)]
+        if not any(holds(ring, x, name) for row in rows for x in row):
+            return "identity of the ring: it cancels from M and f", PROVED
+        if all(_one_power(ring, row, name) for row in rows):
+            return ONE_POWER, PROVED
+    return f"q'' is the same for two values at {STATES} random states, in {PRECISION}-bit balls", VERIFIED
+
+
+def _one_power(ring: Ring, row: Sequence[Polynomial], name: str) -> bool:
+    """Whether all terms of a row hold a parameter to the same power, and in no other way."""
+    index = ring.index("parameter", name)
+    powers = {int(monomial[index]) for x in row for monomial in x.monoms()}
+    bare = [ring.substitute(x, {index: ring.one}) for x in row]
+    return len(powers) <= 1 and not any(holds(ring, x, name) for x in bare) and not _adjoined(ring, row, name)
+
+
+def _adjoined(ring: Ring, row: Sequence[Polynomial], name: str) -> bool:
+    """Whether something adjoined that occurs in the row was made of the parameter."""
+    used = {k for x in row for k, degree in enumerate(x.degrees()) if degree > 0}
+    arguments = (ring.generators[k].argument for k in used)
+    return any(argument is not None and holds(ring, argument, name) for argument in arguments)

@@ -1,0 +1,228 @@
+"""What all kinds of savings share: the model as it is, the building of counterfactuals, and a bound on both."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeVar
+
+from flint import arb
+
+from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.point import Balls
+from mbsym.algebra.program import Node
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.analysis import Analysis, Unavailable
+from mbsym.expressions.tree import Expression, Name
+from mbsym.formulas.names import free_name
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.programs import constants
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.system import Body, Parameter, System
+from mbsym.numerics.ledger.entry import OPERATIONS, SECONDS, TERMS, Measure
+from mbsym.numerics.scenario import Incomplete, Scenario, scenario
+
+#: Seconds that all counterfactuals together may take, and steps of polynomial arithmetic that one may take.
+BUDGET, WORK = 20.0, 20_000_000
+
+#: What is built faster than this is built twice, and the shorter time counts.
+SOON = 0.2
+
+#: What a model may refuse: nothing that the ledger looks at must stop a run.
+REFUSALS = (NoClosedForm, NotRational, SingularPoint, Unavailable)
+
+Made = TypeVar("Made")
+
+
+class OutOfTime(Exception):
+    """The next counterfactual would take more time than is left."""
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Size of something built, and the seconds that took; ``at_least`` where it was not finished."""
+
+    size: int
+    seconds: float
+    at_least: bool = False
+
+
+class Work:
+    """The model of an analysis and its counterfactuals."""
+
+    def __init__(self, analysis: Analysis, seconds: float = BUDGET) -> None:
+        self.analysis = analysis
+        self.system = analysis.system
+        self._end = time.perf_counter() + seconds
+
+    # --- numbers ---
+
+    @cached_property
+    def scenario(self) -> Scenario | None:
+        """Parameters and initial state, if every one of them has a number."""
+        try:
+            return scenario(self.system)
+        except Incomplete:
+            return None
+
+    @cached_property
+    def numbers(self) -> Scenario | None:
+        """Parameters only; the state is then zero where none is given."""
+        try:
+            return scenario(self.system, state=False)
+        except Incomplete:
+            return None
+
+    # --- programs ---
+
+    @cached_property
+    def cost(self) -> tuple[ForwardDynamics, float]:
+        """The accelerations, and the seconds that writing their program takes."""
+        return self._timed(lambda: forward_dynamics(self.system, ring_of(self.system)))
+
+    @property
+    def forward(self) -> ForwardDynamics:
+        """The accelerations as they are computed."""
+        return self.cost[0]
+
+    @cached_property
+    def given(self) -> frozenset[str]:
+        """The inputs that do not change with the state."""
+        return constants(self.system)
+
+    def operations(self, outputs: Collection[Node]) -> int:
+        """Operations of one more state, in the program of ``forward``."""
+        return self.forward.program.operations(outputs, self.given)
+
+    def accelerations_at(self, values: Mapping[str, arb]) -> list[arb]:
+        """q'' at numbers for all inputs."""
+        found: list[arb] = self.forward.program.evaluate(self.forward.accelerations, values, Balls(values))
+        return found
+
+    def right_hand_sides(self, other: System, changing: Collection[str] = ()) -> tuple[Measure, ...]:
+        """The accelerations of another system against those of this one: operations, and seconds of building them.
+
+        ``changing`` are parameters of the other system that count as if they changed with the state.
+        """
+        here, seconds = self.operations(self.forward.accelerations), self.cost[1]
+        self.require(seconds)
+        found, spent = self._timed(lambda: forward_dynamics(other, ring_of(other)))
+        there = found.program.operations(found.accelerations, constants(other) - set(changing))
+        return (
+            Measure("operations of q'' for one state", OPERATIONS, there, here),
+            Measure("seconds of writing the program of q''", SECONDS, spent, seconds),
+        )
+
+    # --- closed formulas ---
+
+    @cached_property
+    def bounded(self) -> Analysis:
+        """A fresh analysis of the same system for what the run itself did not derive."""
+        return self.fresh(self.system)
+
+    def fresh(self, system: System) -> Analysis:
+        found = Analysis(system, (), self.analysis.terms, suggests=False)
+        found.ring.work_budget = min(found.ring.work_budget, WORK)
+        return found
+
+    def result(self, stage: str) -> Any:
+        """A result of the run, or of a bounded analysis where the run did not need it; None where there is none."""
+        source = self.analysis if stage in self.analysis.derived else self.bounded
+        try:
+            return getattr(source, stage)
+        except REFUSALS:
+            return None
+
+    def kinetic_energy(self, system: System) -> Counted:
+        """The terms of T in the ring, within the budgets."""
+        ring = ring_of(system, self.analysis.terms)
+        ring.work_budget = min(ring.work_budget, WORK)
+        started = time.perf_counter()
+        try:
+            kinetic: Polynomial = kinetic_energy(Scene(system, ring, ring_environment(system, ring), ring))
+        except NoClosedForm:
+            return Counted(self.analysis.terms, time.perf_counter() - started, True)
+        return Counted(len(kinetic), time.perf_counter() - started)
+
+    @cached_property
+    def own_kinetic_energy(self) -> Counted:
+        return self.kinetic_energy(self.system)
+
+    def kinetic_energies(self, other: System) -> tuple[Measure, ...]:
+        """T of another system against T of this one: terms and seconds; nothing where this one has no closed form."""
+        here = self.own_kinetic_energy
+        if here.at_least:
+            return ()
+        self.require(here.seconds)
+        there = self.kinetic_energy(other)
+        return (
+            Measure("terms of T", TERMS, there.size, here.size, there.at_least),
+            Measure("seconds of deriving T", SECONDS, there.seconds, here.seconds, there.at_least),
+        )
+
+    # --- bounds ---
+
+    def require(self, seconds: float) -> None:
+        """Raises OutOfTime unless something that takes about twice these seconds may still be begun."""
+        if time.perf_counter() + 2 * seconds > self._end:
+            raise OutOfTime
+
+    def _timed(self, build: Callable[[], Made]) -> tuple[Made, float]:
+        """What is built, and the seconds that took."""
+        best = float("inf")
+        while True:
+            started = time.perf_counter()
+            found = build()
+            spent = time.perf_counter() - started
+            if best < float("inf") or spent > SOON:
+                return found, min(best, spent)
+            best = spent
+
+
+# --- counterfactual systems ---
+
+
+class Symbols:
+    """Fresh parameters for a counterfactual system."""
+
+    def __init__(self, system: System) -> None:
+        moving = (*system.coordinates, *system.velocities, *(item.name for item in system.prescribed))
+        self._taken = [*system.parameter_names, *moving, *(item.name for item in system.notation)]
+        self.made: list[Parameter] = []
+
+    def __call__(self, like: str) -> Expression:
+        name = free_name(like, self._taken)
+        self._taken.append(name)
+        self.made.append(Parameter(name, "positive"))
+        return Name(name)
+
+    @property
+    def names(self) -> frozenset[str]:
+        return frozenset(item.name for item in self.made)
+
+
+def changed_bodies(system: System, change: Callable[[Body], Body], symbols: Symbols) -> System:
+    """The system with other bodies and the fresh parameters that they use."""
+    bodies = tuple(change(body) for body in system.bodies)
+    return replace(system, bodies=bodies, parameters=(*system.parameters, *symbols.made), claims=())
+
+
+def moving_names(system: System) -> frozenset[str]:
+    """Everything that changes with the state or the time."""
+    return frozenset((*system.coordinates, *system.velocities, *(item.name for item in system.prescribed), "t"))
+
+
+def holds(ring: Ring, x: Polynomial, name: str) -> bool:
+    """Whether a parameter occurs in a polynomial: plainly, under sin and cos, or inside what is adjoined."""
+    for k, degree in enumerate(x.degrees()):
+        if degree > 0:
+            found = ring.generators[k]
+            if found.name == name and found.kind in ("parameter", "sine", "cosine"):
+                return True
+            if found.argument is not None and holds(ring, found.argument, name):
+                return True
+    return False

@@ -1,0 +1,161 @@
+"""``model.c`` and ``model.h``: the equations as portable C99, from the straight-line program.
+
+Mass matrix, forcing, accelerations by factorisation (never an inverse), right-hand side, energy, and the Jacobian of
+the right-hand side by differentiating the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.program import Node
+from mbsym.expressions.tree import Expression, names, text
+from mbsym.formulas.names import injective
+from mbsym.formulas.straight_line import Dialect
+from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
+from mbsym.model.system import velocity_name
+from mbsym.numerics.scenario import exact
+from mbsym.report.environment import rendered
+from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.programs import programs_of
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: Words of C, C++ and their preprocessors, what <math.h> defines or declares, and what the file itself uses.
+_WORDS = """
+    auto break case char const continue default do double else enum extern float for goto if inline int long register
+    restrict return short signed sizeof static struct switch typedef union unsigned void volatile while asm typeof
+    alignas alignof bool constexpr false nullptr static_assert thread_local true and and_eq bitand bitor catch class
+    compl const_cast delete dynamic_cast explicit export friend mutable namespace new not not_eq operator or or_eq
+    private protected public reinterpret_cast static_cast template this throw try typeid typename using virtual wchar_t
+    xor xor_eq linux unix i386 near far complex imaginary I NULL EOF errno EDOM ERANGE
+    NAN INFINITY HUGE HUGE_VAL HUGE_VALF HUGE_VALL MAXFLOAT DOMAIN SING OVERFLOW UNDERFLOW TLOSS PLOSS signgam
+    M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2
+    FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 FP_ILOGBNAN
+    acos asin atan atan2 cos sin tan cosh sinh tanh acosh asinh atanh exp exp2 expm1 frexp ldexp log log2 log10 log1p
+    logb ilogb modf pow sqrt cbrt hypot fabs abs ceil floor fmod round trunc rint remainder gamma lgamma tgamma erf erfc
+    fma fmin fmax fdim nan nextafter copysign scalb scalbn drem significand isnan isinf isfinite isnormal signbit
+    j0 j1 jn y0 y1 yn main
+    t q qd qdd x xd p M f J
+"""
+RESERVED = frozenset(_WORDS.split())
+
+#: A Jacobian of more operations than this is left out.
+LARGEST_JACOBIAN = 100_000
+
+
+def number(value: Fraction) -> str:
+    """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short."""
+    shown = repr(float(value))
+    if Fraction(shown) == value or max(abs(value.numerator), value.denominator) > 10**6:
+        return shown
+    return f"{value.numerator}.0/{value.denominator}.0"
+
+
+DIALECT = Dialect(
+    call=lambda function, argument: f"{function}({argument})",
+    local=lambda count: f"s{count}",
+    number=number,
+    angle=lambda function, name: f"{function}_{name}",
+)
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The text of ``model.c``."""
+    return _rendered("model.c.j2", analysis, bodies=True)
+
+
+def header(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The text of ``model.h``."""
+    return _rendered("model.h.j2", analysis, bodies=False)
+
+
+def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
+    system, (code, no_code) = analysis.system, programs_of(analysis)
+    n = len(system.coordinates)
+    members = injective(system.parameter_names, proposed, taken=RESERVED)
+    writer = Functions(system, DIALECT, RESERVED, proposed, "3.14159265358979323846")
+    solved, no_solution = _forward(analysis) if code else (None, "")
+    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    slopes, no_slopes = _slopes(analysis, solved) if solved else (None, "")
+    functions: dict[str, Function | None] = dict.fromkeys(("mass", "forcing", "energy", "accelerations", "jacobian"))
+    entries: list[tuple[int, int]] = []
+    if bodies and code:
+        functions["mass"] = writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper])
+        functions["forcing"] = writer.function(code.program, code.forcing)
+        functions["energy"] = writer.function(code.program, [code.energy])
+    if bodies and solved:
+        functions["accelerations"] = writer.function(solved.program, solved.accelerations)
+    if slopes:
+        assert solved is not None
+        entries = [(i, j) for i, row in enumerate(slopes) for j, node in enumerate(row) if not _zero(solved, node)]
+        if bodies:
+            functions["jacobian"] = writer.function(solved.program, [slopes[i][j] for i, j in entries])
+    return rendered(
+        template,
+        {},
+        system=system,
+        title=comment(system.name),
+        description=fill(comment(system.description), 110),
+        n=n,
+        members=[(name, members[name]) for name in system.parameter_names],
+        defaults=[(item.name, _default(item.value)) for item in system.parameters],
+        meanings={item.name: comment(item.meaning) for item in system.parameters if item.meaning},
+        relations=[(item.name, text(item.value)) for item in system.relations],
+        prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
+        no_code=comment(no_code),
+        no_solution=comment(no_solution),
+        no_slopes=comment(no_slopes),
+        has={"code": code is not None, "solved": solved is not None, "slopes": slopes is not None},
+        functions=functions,
+        upper=upper,
+        entries=entries,
+    )
+
+
+def proposed(name: str) -> str:
+    """A C identifier for a name; what C reserves gets an underscore at its end."""
+    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter == "_") else "_" for letter in name)
+    if plain.startswith("_") or plain[:1].isdigit():
+        plain = "v" + plain
+    return plain + "_" if plain in RESERVED else plain
+
+
+def comment(words: str) -> str:
+    """Text that may stand in a comment: nothing in it ends the comment or continues a line."""
+    return " ".join(words.replace("\\", "/").replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").split())
+
+
+def _forward(analysis: Analysis) -> tuple[ForwardDynamics | None, str]:
+    try:
+        return forward_dynamics(analysis.system, analysis.ring), ""
+    except (SingularPoint, NoClosedForm) as reason:
+        return None, str(reason)
+
+
+def _slopes(analysis: Analysis, solved: ForwardDynamics) -> tuple[tuple[tuple[Node, ...], ...] | None, str]:
+    """d q'' / d (q, q'), n rows; or why it is left out."""
+    system = analysis.system
+    names_ = [*system.coordinates, *(velocity_name(name) for name in system.coordinates)]
+    rows = jacobian(solved.program, solved.accelerations, [solved.environment[name] for name in names_])
+    operations = solved.program.operations([node for row in rows for node in row])
+    if operations > LARGEST_JACOBIAN:
+        return None, f"the Jacobian takes {operations} operations; it is left out"
+    return rows, ""
+
+
+def _zero(solved: ForwardDynamics, node: Node) -> bool:
+    return solved.program.vanishes(node)
+
+
+def _default(value: Expression | None) -> str:
+    """A number as C reads it in a constant initialiser, or NAN: nothing is made up."""
+    if value is None or names(value) - {"pi"}:
+        return "NAN"
+    return number(exact(value, {}))

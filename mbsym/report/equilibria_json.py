@@ -1,0 +1,54 @@
+"""The relative equilibria of a system as JSON: everything that the table shows, and the enclosures' midpoints."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from mbsym.model.system import System
+from mbsym.problems.equilibria import CoordinateValue, Equilibria
+from mbsym.problems.stability_theory import Verdict
+
+
+def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equilibria) -> str:
+    """One JSON object, keys in a fixed order, the same text for the same input."""
+    data = {
+        "system": system.name,
+        "values": {name: str(value) for name, value in values.items()},
+        "turning": dict(found.turning),
+        "complete": found.complete,
+        "remarks": list(found.remarks),
+        "equilibria": [
+            {
+                "coordinates": [_coordinate(item) for item in one.values],
+                "angles of": one.coordinates_of or None,
+                "arbitrary": list(one.free),
+                "descriptions": one.described,
+                "proof": one.proof,
+                "stability": _verdict(one.verdict),
+            }
+            for one in found.equilibria
+        ],
+        "families": [
+            {
+                "dimension": family.dimension,
+                "equations": list(family.equations),
+                "free": list(family.free),
+                "angles of": family.coordinates_of or None,
+                "sample": [_coordinate(item) for item in family.sample],
+                "stability of the sample": _verdict(family.verdict),
+            }
+            for family in found.families
+        ],
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _coordinate(item: CoordinateValue) -> dict[str, Any]:
+    return {"name": item.name, "value": item.text, "exact": item.exact, "number": item.value}
+
+
+def _verdict(verdict: Verdict) -> dict[str, str]:
+    return {"verdict": verdict.word, "theorem": verdict.theorem, "explanation": verdict.explanation}

@@ -1,0 +1,378 @@
+"""Digits at the extremes: measured against known conditions, borders of stability against published thresholds."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from fractions import Fraction as F
+from math import cos, isfinite, log10, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from flint import Ordering, arb, fmpq_mpoly_ctx
+
+from mbsym.algebra.program import Program
+from mbsym.algebra.roots import count_roots, rational
+from mbsym.analysis import Analysis
+from mbsym.expressions.tree import Number
+from mbsym.mechanics.variables import ring_of
+from mbsym.model.system import System
+from mbsym.numerics.borders import BORDER, Judged, LinearModel
+from mbsym.numerics.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
+from mbsym.numerics.extremes import extremes, sentences
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
+from mbsym.numerics.probes import RATIO, SINGULAR, ladders, scaled, singular
+from mbsym.numerics.scenario import scenario
+from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
+from mbsym.problems.stability_theory import UNDECIDED, UNSTABLE, LinearSystem, Verdict, verdict_at
+from mbsym.report.extremes_tables import HEADER, extremes_csv, extremes_json, tables
+from mbsym.source import load
+from mbsym_cli.main import main
+
+ROOT = Path(__file__).parent.parent
+HARD = json.loads((ROOT / "tests/references/hard_polynomials.json").read_text())["reference"]
+
+
+def system(name: str) -> System:
+    found, complaints, _ = load(ROOT / "systems" / f"{name}.yaml")
+    assert found is not None, complaints
+    return found
+
+
+def run(*words: object) -> Result:
+    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+
+
+# --- digits ---
+
+
+def test_digits_of_a_known_error() -> None:
+    exact = [arb(1), arb(-4)]
+    assert compared([1 + 4e-7, -4.0], exact, FULL[FLOAT64])[0] == pytest.approx(7, abs=0.01)
+    assert compared([1 + 4e-7, -4.0], exact, FULL[FLOAT64])[1] == pytest.approx(-log10(4e-7), abs=0.01)
+    assert compared([1.0, -4.0], exact, FULL[FLOAT64]) == (FULL[FLOAT64], FULL[FLOAT64])
+    assert compared([float("nan"), -4.0], exact, FULL[FLOAT64]) == (0.0, 0.0)
+
+
+def test_conditions_that_are_known() -> None:
+    """theta'' = -(m g l sin(theta) + b theta')/(J + m l^2): M has the condition (|J| + 3 m l^2)/(J + m l^2)."""
+    given = scenario(system("simple-pendulum"))
+    ring = ring_of(given.system)
+    found = quantities(given.system, ring)
+    truth = Truth(given.system, found)
+    p = {name: float(value) for name, value in given.parameters.items()}
+    inertia = p["m"] * p["l"] ** 2
+    expected = (p["J"] + 3 * inertia) / (p["J"] + inertia)
+    assert truth.condition("mass matrix", given, F(0), given.state) == pytest.approx(expected, rel=1e-12)
+    theta = float(given.positions[0])
+    # forcing -m g l sin(theta) at rest: three factors, and theta cot(theta)
+    expected = 3 + abs(theta * cos(theta) / np.sin(theta))
+    assert truth.condition("forcing", given, F(0), given.state) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_bad_formula_is_told_from_a_bad_question() -> None:
+    """sqrt(1 + x^2) - cos(x) at 1e-6 loses 12 digits that the question (condition 2) does not: nothing rewrites it."""
+    given = scenario(system("simple-pendulum"))
+    program, names = Program(), input_names(given.system)
+    x = program.input("theta")
+    bad = program.square_root(program.one + x * x) - program.sin_cos_of(x)[1]
+    touchy = program.sin_cos_of(x)[0]
+    found = [Quantity("bad", Code(program, names, (bad,))), Quantity("touchy", Code(program, names, (touchy,)))]
+    truth = Truth(given.system, found)
+    for compiled in (True, False):
+        arithmetic = Arithmetic(given, found, compiled)
+        small = measured(truth, arithmetic, "bad", given, (F(1, 10**6), F(0)))
+        assert small.condition == pytest.approx(2, rel=1e-6)
+        assert small.formula < 5
+        assert small.verdict == "formula"
+        # sin near 710 pi: the argument's rounding is all that is lost
+        far = measured(truth, arithmetic, "touchy", given, (F(223053, 100), F(0)))
+        assert far.condition > 1e3
+        assert far.formula > 15
+        assert far.digits[FLOAT64] < 14
+        assert far.verdict == "ill-conditioned"
+
+
+def test_float32_and_float64_agree_with_balls_where_nothing_is_extreme() -> None:
+    given = scenario(system("satellite"))
+    found = quantities(given.system, ring_of(given.system))
+    truth = Truth(given.system, found)
+    arithmetic = Arithmetic(given, found)
+    for q in found:
+        digits = measured(truth, arithmetic, q.name, given, given.state)
+        assert digits.bits and digits.verdict == "full", q.name
+        assert digits.digits[FLOAT64] > 14
+        assert digits.digits[FLOAT32] > 5.5
+
+
+# --- probes ---
+
+
+@pytest.mark.parametrize(
+    ("name", "subjects"),
+    [
+        ("gravity-gradient", {"theta -> pi/2", "theta -> -pi/2"}),
+        ("heavy-top", {"beta -> pi/2", "beta -> -pi/2"}),
+        ("satellite", {"theta -> pi/2", "theta -> -pi/2", "sigma -> pi/2", "sigma -> -pi/2"}),
+        ("spherical-pendulum", {"theta -> 0", "theta -> pi"}),
+        ("spring-pendulum", {"r -> 0"}),
+        ("double-pendulum", set()),
+    ],
+)
+def test_singularities_of_the_coordinates_are_found(name: str, subjects: set[str]) -> None:
+    given = scenario(system(name))
+    found = quantities(given.system, ring_of(given.system), with_jacobian=False)
+    assert {ladder.subject for ladder in singular(given, Truth(given.system, found))} == subjects
+
+
+def test_scaling_a_parameter_moves_what_depends_on_it() -> None:
+    given = scenario(system("satellite"))
+    there = scaled(given, {}, "R", F(10) ** 6)
+    assert there.parameters["R"] == given.parameters["R"] * 10**6
+    assert there.parameters["nu"] == there.parameters["omega0"] ** 2 * there.parameters["R"] ** 3
+    assert there.state == given.state
+
+
+def test_ratios_leave_out_what_does_not_matter() -> None:
+    given = scenario(system("satellite"))
+    found = quantities(given.system, ring_of(given.system), with_jacobian=False)
+    subjects = {x.subject for x in ladders(given, {}, Truth(given.system, found), found) if x.kind == RATIO}
+    assert subjects == {"R", "omega0", "m", "m0", "l", "r", "Jx", "Jy", "Jz"}  # M2 plays no part: O1 is prescribed
+
+
+# --- borders of stability ---
+
+
+def border(name: str, parameter: str, **values: F) -> list[tuple[float, str]]:
+    """(value, words below/above) of the border of one parameter, and every verdict next to it."""
+    overrides = {key: Number(value) for key, value in values.items()}
+    given = scenario(system(name), overrides)
+    model = LinearModel(Analysis(given.system))
+    found = []
+    for ladder in model.borders(given, dict(overrides)):
+        if ladder.subject.startswith(f"{parameter} -> "):
+            for probe in ladder.probes:
+                judged = model.judged(probe.scenario)
+                found.append((float(probe.scenario.parameters[parameter]), judged.exact.word))
+    return found
+
+
+def test_ziegler_with_vanishing_damping() -> None:
+    """With b1 = b2 = b flutter begins at P l/k = 41/28 + b^2/2 (Kirillov & Verhulst): 1.464 even for b = 1e-8."""
+    small = F(1, 10**8)
+    rows = border("ziegler-damped", "P", b1=small, b2=small)
+    threshold = 41 / 28 + 1e-16 / 2
+    assert rows
+    for value, word in rows:
+        assert word == ("asymptotically stable" if value < threshold else "unstable")
+    assert min(abs(value - threshold) for value, _ in rows) < 1e-13
+
+
+def test_sleeping_top() -> None:
+    """Omega^2 > 4 A m g l/C^2 (Maievskii): gyroscopic stabilisation, lost where two frequencies meet."""
+    rows = border("heavy-top", "Omega")
+    threshold = sqrt(4 * 0.3 * 9.81 * 0.5) / 0.1
+    assert rows
+    for value, word in rows:
+        assert word == ("unstable" if value < threshold else "gyroscopically stabilised only")
+
+
+def test_floats_are_wrong_where_frequencies_meet() -> None:
+    """Next to a double eigenvalue float64 sees growth of 1e-8 where there is none; the exact verdict holds."""
+    given = scenario(system("heavy-top"))
+    model = LinearModel(Analysis(given.system))
+    ladder = next(x for x in model.borders(given, {}) if x.subject.startswith("Omega") and x.subject.endswith("above"))
+    nearest = ladder.probes[-1].scenario
+    judged = model.judged(nearest)
+    assert judged.exact.word == "gyroscopically stabilised only"
+    assert judged.floats[FLOAT64] == UNSTABLE
+    assert judged.wrong(FLOAT64)
+    digits = model.digits(nearest)["eigenvalues"]
+    assert digits.digits[FLOAT64] < 11
+    assert digits.condition > 1e5
+
+
+def constant_system(m: Any, d: Any, g: Any, k: Any) -> LinearSystem:
+    context = fmpq_mpoly_ctx.get(["x"], Ordering.degrevlex)
+    n = len(m)
+    rows = [tuple(tuple(context.constant(rational(e)) for e in row) for row in x) for x in (m, d, g, k)]
+    zero = tuple(tuple(context.constant(0) for _ in range(n)) for _ in range(n))
+    return LinearSystem(*rows, zero, conservative=True)
+
+
+ONE = [[1, 0], [0, 1]]
+NOTHING = [[0, 0], [0, 0]]
+
+
+@pytest.mark.parametrize("exponent", [4, 8, 12, 14, 30])
+def test_krein_collision(exponent: int) -> None:
+    """x'' + g y' - k1 x = 0, y'' - g x' - k2 y = 0 is stable iff g > sqrt k1 + sqrt k2; k = (1, 4), border 3."""
+    for sign, expected in ((1, "gyroscopically stabilised only"), (-1, UNSTABLE)):
+        g = 3 + sign * F(1, 10**exponent)
+        found = verdict_at(constant_system(ONE, NOTHING, [[0, g], [-g, 0]], [[-1, 0], [0, -4]]), {})
+        assert found.verdict.word == expected
+    on_it = verdict_at(constant_system(ONE, NOTHING, [[0, 3], [-3, 0]], [[-1, 0], [0, -4]]), {})
+    assert on_it.verdict.word == UNDECIDED
+    assert on_it.roots.imaginary_multiplicity == 2
+    damped = [[F(1, 1000), 0], [0, F(1, 1000)]]
+    kelvin = verdict_at(constant_system(ONE, damped, [[0, 10], [-10, 0]], [[-1, 0], [0, -4]]), {})
+    assert kelvin.verdict.word == UNSTABLE
+
+
+def test_clohessy_wiltshire() -> None:
+    """x'' - 2 n y' - 3 n^2 x = 0, y'' + 2 n x' = 0, z'' + n^2 z = 0: a double zero root, the drift along the orbit."""
+    n = F(1, 900)
+    system_ = constant_system(
+        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[0] * 3] * 3,
+        [[0, -2 * n, 0], [2 * n, 0, 0], [0, 0, 0]],
+        [[-3 * n * n, 0, 0], [0, 0, 0], [0, 0, n * n]],
+    )
+    found = verdict_at(system_, {})
+    assert found.verdict.word == UNDECIDED
+    assert (found.roots.zero, found.roots.imaginary, found.roots.right) == (2, 4, 0)
+
+
+@pytest.mark.parametrize("case", HARD["routh"], ids=lambda case: case["why"] if "why" in case else str(case["coeffs"]))
+def test_hard_polynomials(case: dict[str, Any]) -> None:
+    found = count_roots(case["coeffs"][::-1])
+    assert (found.right, found.imaginary) == (case["rhp"], case["imag"])
+    if case["coeffs"] == [1, 0, 2, 0, 1]:
+        assert found.imaginary_multiplicity == 2
+
+
+def test_what_counts_as_a_wrong_verdict() -> None:
+    def wrong(exact: str, said: str) -> bool:
+        return Judged(Verdict(exact), {FLOAT64: said}).wrong(FLOAT64)
+
+    assert wrong("unstable", "no growth seen")
+    assert wrong("stable", "unstable")
+    assert wrong("stable", "asymptotically stable")
+    assert not wrong("undecided", "unstable")
+    assert not wrong("unstable", "unstable")
+    assert not wrong("stable", "no growth seen")
+    assert not wrong("asymptotically stable", "no growth seen")
+
+
+# --- the whole ---
+
+
+@pytest.fixture(scope="module")
+def whole() -> Any:
+    given = scenario(system("gravity-gradient"))
+    return extremes(given, ring_of(given.system), {}, budget=120)
+
+
+def test_every_row_is_known_and_bounded(whole: Any) -> None:
+    assert {row.quantity for row in whole.rows} >= {
+        "mass matrix", "forcing", "accelerations", "pivots", "energy", "Jacobian", "M", "G", "K", "eigenvalues",
+    }  # fmt: skip
+    for row in whole.rows:
+        assert row.found.bits, (row.subject, row.quantity)
+        for scalar, full in FULL.items():
+            assert 0 <= row.found.digits[scalar] <= full
+        assert isfinite(row.found.norm)
+
+
+def test_near_the_singular_angle_only_the_question_costs_digits(whole: Any) -> None:
+    """The accelerations grow like 1/distance: condition 1/distance, and float64 keeps 16 - log10(condition) digits."""
+    rows = whole.of(SINGULAR, "theta -> pi/2", "accelerations")
+    assert len(rows) == 13
+    for row in rows:
+        assert 0.1 / row.size < row.found.condition < 100 / row.size
+        assert row.found.formula > 14
+        assert row.found.digits[FLOAT64] > FULL[FLOAT64] - log10(row.found.condition) - 1
+    assert rows[-1].found.digits[FLOAT64] < 4
+    assert rows[-1].found.digits[FLOAT32] == 0
+
+
+def test_borders_of_the_rigid_satellite(whole: Any) -> None:
+    """A = 12, B = 9, C = 15: Lagrange's region C > A > B ends at A = B and at C = A."""
+    found = {row.subject: row.judged.exact.word for row in whole.verdicts if row.kind == BORDER}
+    assert found["A -> 9 from below"] == UNSTABLE
+    assert found["A -> 9 from above"] == "stable"
+    assert found["C -> 12 from below"] == UNSTABLE
+    assert found["C -> 12 from above"] == "stable"
+
+
+def test_sentences_and_tables_follow_the_rows(whole: Any) -> None:
+    text = "\n".join(sentences(whole))
+    assert "theta -> pi/2: the mass matrix is singular" in text
+    assert "A -> 9: a border, unstable below and stable above" in text
+    rows = list(csv.reader(io.StringIO(extremes_csv(whole))))
+    assert tuple(rows[0]) == HEADER
+    assert len(rows) == 1 + len(whole.rows) + len(whole.verdicts)
+    content = json.loads(extremes_json(whole))
+    assert content["sentences"]
+    assert len(content["rows"]) == len(whole.rows)
+    shown = list(tables(whole))
+    assert [columns[0] for columns, _ in shown] == ["extreme", "extreme"]
+
+
+# --- sequences ---
+
+
+def test_angles_of_every_sequence() -> None:
+    source = np.random.default_rng(1)
+    for axes in SEQUENCES:
+        r = orientation(axes, source.uniform(-3, 3, 3))
+        assert abs(np.linalg.det(r) - 1) < 1e-12
+        for other in SEQUENCES:
+            assert np.allclose(orientation(other, angles_of(other, r)), r, atol=1e-12)
+
+
+def test_sequences_are_ranked_by_distance() -> None:
+    given = scenario(system("gravity-gradient"))
+    states = [[1e-3, 1.5, 2e-3, 0, 0, 0]]  # theta near pi/2: the sequence 2, 3, 1 is nearly singular there
+    (ranking,) = rankings(given, states, lambda text: None)
+    by_axes = {a.text: a for a in ranking.alternatives}
+    assert len(by_axes) == 12
+    assert by_axes["231"].own
+    assert by_axes["231"].distance == pytest.approx(cos(1.5), rel=1e-9)
+    best = ranking.alternatives[0]
+    assert best.distance > 0.9
+    assert not best.own
+    assert by_axes["231"].pivot < 0.02 < best.pivot
+    assert "231" in ranking.sentence
+    assert best.text in ranking.sentence
+
+
+# --- the command ---
+
+
+def test_the_command_writes_everything(tmp_path: Path) -> None:
+    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    names = {"extremes.csv", "extremes.json", "extremes.svg", "extremes.png"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    assert "Rates from 1e-8 to 1e8" in done.output
+
+
+def test_missing_values_are_listed(tmp_path: Path) -> None:
+    text = (ROOT / "systems/simple-pendulum.yaml").read_text(encoding="utf-8")
+    bare = tmp_path / "bare.yaml"
+    bare.write_text("".join(x for x in text.splitlines(True) if not x.startswith(("values:", "initial:"))))
+    done = run("extremes", bare, "--out", tmp_path / "out", "--set", "g=9")
+    assert done.exit_code == 2
+    assert "no value for m, l, J, b, theta (its initial position)" in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_wrong_budget_is_refused(tmp_path: Path) -> None:
+    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path, "--budget", "0", "--set", "x=1")
+    assert done.exit_code == 2
+    assert "2 errors" in done.output
+
+
+def test_sequences_on_the_command_line() -> None:
+    done = run("extremes", ROOT / "systems/gravity-gradient.yaml", "--sequences")
+    assert done.exit_code == 0
+    assert "is best" in done.output
+    assert "in the description" in done.output
+    none = run("extremes", ROOT / "systems/double-pendulum.yaml", "--sequences")
+    assert none.exit_code == 0
+    assert "no body" in none.output

@@ -1,0 +1,505 @@
+"""``mbsym simulate``: what is written, what is said, what goes wrong and what is kept then."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isclose, pi, sqrt
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from conftest import SHIPPED, parsed
+
+from mbsym.numerics.choice import choose, rates
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.invariants import CHANGING, CONSERVED, energy_status
+from mbsym.numerics.methods.interface import SINGULAR, Setting
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.scenario import Incomplete, scenario
+from mbsym.numerics.simulate import least_pivot, simulate
+from mbsym.report.figures import figures
+from mbsym.report.trajectory_csv import columns, trajectory_csv
+from mbsym.source import load
+from mbsym_cli import files
+from mbsym_cli.main import main
+
+DOUBLE = SHIPPED / "double-pendulum.yaml"
+SPHERICAL = SHIPPED / "spherical-pendulum.yaml"
+
+PARTICLE = """
+mbsym: 1
+name: Particle
+parameters: {m: positive, k: real}
+bodies:
+  - name: particle
+    attached to: 0
+    connection point: [x, 0, 0]
+    mass: m
+    coordinates: [x]
+loads:
+"""
+
+#: x' = sqrt(2) x**2 from x = 1: at t = 1/sqrt(2) there is no x any more.
+BLOWING_UP = PARTICLE + "  - potential: -x**4\nvalues: {m: 1, k: 0}\ninitial: {x: {position: 1, velocity: sqrt(2)}}\n"
+
+#: Eigenvalues -1e6 and -1e-6, beside a slow oscillation.
+STIFF = """
+mbsym: 1
+name: Two particles, one of them in honey
+parameters: {m: 1, k: 1, c: 1e6}
+bodies:
+  - {name: slow, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: free, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - spring: {coordinate: y, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+initial: {x: 1, y: 1}
+"""
+
+#: The place s = x**3 falls from 1 and passes zero at t = sqrt(2), where M = 9 m x**4 vanishes.
+CUBE = """
+mbsym: 1
+name: Particle measured by a cube root
+parameters: {m: 1, g: 1}
+bodies:
+  - {name: particle, attached to: 0, connection point: [x**3, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - force function: -g*m*x**3
+initial: {x: 1}
+"""
+
+
+def mbsym(*words: object) -> Result:
+    return CliRunner().invoke(main, ["simulate", *(str(word) for word in words)], catch_exceptions=False)
+
+
+def described(folder: Path, text: str) -> Path:
+    path = folder / "system.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def dynamics_of(path: Path, **values: object) -> Dynamics:
+    system, complaints, _ = load(path)
+    assert system is not None, [item.message for item in complaints.items]
+    return Dynamics(scenario(system, {name: parsed(str(value)) for name, value in values.items()}))
+
+
+def table(path: Path) -> dict[str, Any]:
+    """The columns of a table, read without any options."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        names, *rows = csv.reader(stream)
+    return dict(zip(names, np.array(rows, dtype=float).T, strict=True))
+
+
+def summary(folder: Path) -> dict[str, Any]:
+    return json.loads((folder / "simulation.json").read_text(encoding="utf-8"))
+
+
+# --- what is written ---
+
+
+def test_table_figures_and_summary(tmp_path: Path) -> None:
+    done = mbsym(DOUBLE, "--time", 3, "--samples", 301, "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    names = {f"{stem}.{kind}" for stem in ("histories", "phase-planes", "drift") for kind in ("svg", "png")}
+    assert {path.name for path in tmp_path.iterdir()} == {"trajectory.csv", "simulation.json", *names}
+    found = table(tmp_path / "trajectory.csv")
+    assert list(found) == [
+        "t", "theta1", "theta2", "theta1_dot", "theta2_dot", "energy", "relative_drift",
+    ]  # fmt: skip
+    assert len(found["t"]) == 301
+    assert (found["t"][0], found["t"][-1]) == (0.0, 3.0)
+    assert (found["theta1"][0], found["theta2"][0], found["theta1_dot"][0]) == (1.0, 0.5, 0.0)
+    assert np.max(np.abs(found["relative_drift"])) < 1e-9
+    # The energy is the one of two point masses on rods of length 1.
+    a, b = found["theta1"], found["theta1"] + found["theta2"]
+    va, vb = found["theta1_dot"], found["theta1_dot"] + found["theta2_dot"]
+    energy = va**2 + vb**2 / 2 + va * vb * np.cos(a - b) - 9.81 * (2 * np.cos(a) + np.cos(b))
+    assert np.max(np.abs(energy - found["energy"])) < 1e-12 * 30
+    content = summary(tmp_path)
+    assert content["status"] == "whole"
+    assert content["parameters"]["g"] == 9.81
+    assert content["initial"]["theta1"] == 1
+    assert content["energy"]["conserved"] == CONSERVED
+    assert set(content["files"]) == {"trajectory.csv", *names}
+    assert content["estimated_error"]["final"] < 1e-6
+    assert "conserved" in done.stdout
+    assert content["method"]["name"] == "dop853"
+
+
+def test_the_numbers_read_back_exactly() -> None:
+    dynamics = dynamics_of(SPHERICAL)
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-8), np.linspace(0, 1, 7))
+    rows = [line.split(",") for line in trajectory_csv(found, {"double": 2 * found.times}).splitlines()]
+    assert rows[0] == [*columns(dynamics.system), "double"]
+    back = np.array(rows[1:], dtype=float).T
+    assert np.array_equal(back[1:5], found.states)
+    assert np.array_equal(back[0], found.times)
+    assert np.array_equal(back[-1], 2 * found.times)
+
+
+def test_equal_simulations_write_equal_bytes(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        done = mbsym(
+            SHIPPED / "simple-pendulum.yaml", "--time", 2, "--samples", 50, "-f", "csv,svg", "-o", tmp_path / name
+        )
+        assert done.exit_code == 0, done.output
+    written = sorted(path.name for path in (tmp_path / "a").iterdir())
+    assert written == ["drift.svg", "histories.svg", "phase-planes.svg", "simulation.json", "trajectory.csv"]
+    for name in written:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+
+
+def test_values_can_be_replaced(tmp_path: Path) -> None:
+    """With g = 4 pi**2 and l = 1/4 a small swing of a point mass lasts half a second."""
+    words = ["g=4*pi**2", "l1=1/4", "m2=1e-12", "l2=1e-6", "theta1=1e-6", "theta2=0"]
+    settings = [part for word in words for part in ("--set", word)]
+    done = mbsym(DOUBLE, "--time", "1/2", "--samples", 5, *settings, "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+    found = table(tmp_path / "trajectory.csv")["theta1"]
+    assert np.max(np.abs(found - 1e-6 * np.array([1, 0, -1, 0, 1]))) < 1e-11
+
+
+def test_relations_follow_what_is_replaced() -> None:
+    system, _, _ = load(SHIPPED / "satellite.yaml")
+    assert system is not None
+    found = scenario(system, {"R": parsed("100")})
+    assert found.parameters["nu"] == Fraction(250_000)
+    with pytest.raises(Incomplete) as refused:
+        scenario(system, {"nu": parsed("31251")})
+    assert "contradicts its relation" in str(refused.value)
+
+
+def test_every_gives_equal_intervals_and_the_end(tmp_path: Path) -> None:
+    done = mbsym(SPHERICAL, "--time", 1, "--every", 0.3, "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+    assert np.allclose(table(tmp_path / "trajectory.csv")["t"], [0, 0.3, 0.6, 0.9, 1], rtol=0, atol=1e-15)
+
+
+def test_first_integrals_become_columns(tmp_path: Path) -> None:
+    done = mbsym(SPHERICAL, "--time", 5, "--samples", 100, "--invariants", "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+    found = table(tmp_path / "trajectory.csv")
+    momentum = np.sin(found["theta"]) ** 2 * found["psi_dot"]  # m l**2 = 1
+    assert np.allclose(found["momentum_psi"], momentum, rtol=1e-13)
+    assert np.ptp(found["momentum_psi"]) < 1e-8
+    assert "momentum of psi (proved)" in done.stdout
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_shipped_system_runs_as_it_is(path: Path, tmp_path: Path) -> None:
+    done = mbsym(path, "--time", "1/2", "--samples", 3, "-f", "csv", "-o", tmp_path, "--tolerance", "1e-8")
+    assert done.exit_code == 0, done.output
+    assert all(np.all(np.isfinite(column)) for column in table(tmp_path / "trajectory.csv").values())
+    assert summary(tmp_path)["energy"]["conserved"] in (CONSERVED, CHANGING)
+
+
+# --- figures ---
+
+
+def chain(n: int) -> str:
+    rods = "".join(
+        f"  - {{name: rod{i}, attached to: {f'rod{i - 1}' if i else 0}, rotation: {{axes: [3], angles: [q{i}]}}, "
+        f"connection point: [0, {'-l' if i else 0}, 0], mass centre: [0, -l, 0], mass: m}}\n"
+        for i in range(n)
+    )
+    start = ", ".join(f"q{i}: 0.1" for i in range(n))
+    return (
+        f"mbsym: 1\nname: Chain\nparameters: {{m: 1, l: 0.1, g: 9.81}}\nbodies:\n{rods}"
+        f"loads:\n  - uniform gravity: {{vector: [0, -g, 0]}}\ninitial: {{{start}}}\n"
+    )
+
+
+def test_many_coordinates_are_spread_over_pages(tmp_path: Path) -> None:
+    dynamics = dynamics_of(described(tmp_path, chain(6)))
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), np.linspace(0, 0.2, 20))
+    images = figures(found, ["svg"])
+    assert set(images) == {"histories.svg", "histories-2.svg", "phase-planes.svg", "drift.svg"}
+    for image in images.values():
+        assert ElementTree.fromstring(image).tag.endswith("svg")
+        assert b"<dc:date>" not in image
+
+
+def test_pages_are_filled_evenly() -> None:
+    from mbsym.report.figures import _pages
+
+    names = [f"q{i}" for i in range(11)]
+    pages = list(_pages("histories", names, 5))
+    assert [file for file, _, _ in pages] == ["histories", "histories-2", "histories-3"]
+    assert [name for _, part, _ in pages for name in part] == names
+    assert {len(part) for _, part, _ in pages} == {3, 4}
+
+
+def test_a_winding_angle_is_drawn_modulo_a_turn() -> None:
+    """The top spins thirty times a second: its plane is crossed by gaps, not by lines from pi to -pi."""
+    from mbsym.report.figures import _wrapped
+
+    q = np.linspace(-1, 20, 200)
+    wrapped, speeds = _wrapped(q, np.ones(200))
+    shown = wrapped[np.isfinite(wrapped)]
+    assert np.all((shown >= -pi) & (shown < pi))
+    assert np.allclose(np.sin(shown), np.sin(q))
+    assert np.count_nonzero(~np.isfinite(wrapped)) == 3
+    assert len(speeds) == len(wrapped)
+    assert np.nanmax(np.abs(np.diff(wrapped))) < 0.2
+
+
+def test_thinning_keeps_the_extremes() -> None:
+    from mbsym.report.figures import _thinned
+
+    times = np.linspace(0, 1, 100_000)
+    values = np.sin(40_000 * times)
+    values[12_345] = 7.0
+    shown_times, shown = _thinned(times, values)
+    assert len(shown) < 5_000
+    assert shown.max() == 7.0
+    assert shown.min() < -0.999
+    assert np.all(np.diff(shown_times) > 0)
+
+
+# --- what is missing or wrong ---
+
+
+def test_everything_that_is_missing_is_listed_at_once(tmp_path: Path) -> None:
+    text = DOUBLE.read_text(encoding="utf-8")
+    bare = described(tmp_path, text[: text.index("values:")])
+    done = mbsym(bare, "--time", 1, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    for name in ("m1", "m2", "l1", "l2", "g", "theta1", "theta2"):
+        assert name in done.stderr
+    assert "--set m1=" in done.stderr
+    assert "values:" in done.stderr
+    assert "initial:" in done.stderr
+    assert not (tmp_path / "out").exists()
+    given = [part for name in ("m1", "m2", "l1", "l2", "g") for part in ("--set", f"{name}=1")]
+    done = mbsym(
+        bare, "--time", 1, *given, "--set", "theta1=1", "--set", "theta2=0", "-f", "csv", "-o", tmp_path / "out"
+    )
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--time", "nan"], ["--time", "nan"]),
+        (["--time", "-1"], ["positive"]),
+        (["--time", "0"], ["positive"]),
+        (["--time", "1e400"], ["digits"]),
+        (["--time", "theta1"], ["number is wanted"]),
+        (["--time", "1", "--samples", "0"], ["at least 2"]),
+        (["--time", "1", "--samples", "1000000000"], ["too many", "at most"]),
+        (["--time", "1", "--every", "1e-40"], ["too many"]),
+        (["--time", "1", "--every", "1/2", "--samples", "3"], ["exclude"]),
+        (["--time", "1", "--tolerance", "1e-40"], ["between"]),
+        (["--time", "1", "--step", "0.1"], ["rk4"]),
+        (["--time", "1", "--method", "rk4"], ["--step"]),
+        (["--time", "1", "--method", "dop835"], ["did you mean 'dop853'"]),
+        (["--time", "1", "--method", "dop853", "--step", "0.1"], ["--tolerance"]),
+        (["--time", "1", "--method", "radau", "--arithmetic", "extended"], ["dop853"]),
+        (["--time", "1", "--format", "pdf"], ["csv, svg, png"]),
+        (["--time", "1", "--set", "x"], ["name=value"]),
+        (["--time", "1", "--set", 'm1=__import__("os")'], ["__import__"]),
+        (["--time", "1", "--set", "tetha1=1", "--set", "m1=q"], ["did you mean 'theta1'", "unknown name 'q'"]),
+        (["--time", "1", "--set", "m1=2*", "--set", "l1=1/0", "--time", "x"], ["ends too early", "division", "'x'"]),
+        (["--time", "1", "--set", "m1=1", "--set", "m1=2"], ["twice"]),
+        (["--time", "1", "--set", "m1=-1", "--set", "l1=0"], ["m1 = -1", "l1 = 0", "declared positive"]),
+        (["--time", "1", "--set", "m1=exp(1e50)"], ["range"]),
+        (["--time", "1", "--set", "m1=(1e59)**64"], ["range"]),
+        (["--time", "1", "--set", "m1=log(-1)"], ["not real"]),
+        (["--time", "1", "--set", "m1=l1", "--set", "l1=m1"], ["no value for m1, l1"]),
+    ],
+)  # fmt: skip
+def test_wrong_input_is_explained(words: Sequence[str], said: Sequence[str], tmp_path: Path) -> None:
+    done = mbsym(DOUBLE, *words, "--out", tmp_path / "out")
+    assert done.exit_code == 2, done.output
+    for text in said:
+        assert text in done.output
+    assert "Traceback" not in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_found_before_computing(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    done = mbsym(DOUBLE, "--time", "1e50", "--out", tmp_path / "file" / "out")
+    assert done.exit_code == 1
+    assert "no folder" in done.stderr
+
+
+# --- what goes wrong on the way ---
+
+
+@pytest.mark.parametrize("method", [["dop853"], ["lsoda"], ["rk4", "--step", "1e-3"]], ids=lambda words: words[0])
+def test_a_blow_up_keeps_what_there_was(method: list[str], tmp_path: Path) -> None:
+    path = described(tmp_path, BLOWING_UP)
+    kinds = "csv,svg" if method == ["dop853"] else "csv"
+    done = mbsym(path, "--time", 5, "--every", 0.01, "--method", *method, "-f", kinds, "-o", tmp_path / "out")
+    assert done.exit_code == 3, done.output
+    assert "blow-up at t = 0.70" in done.stderr
+    assert "x = " in done.stderr
+    assert "x_dot = " in done.stderr
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert "trajectory-partial.csv" in names
+    assert ("histories-partial.svg" in names) == ("svg" in kinds)
+    assert "trajectory.csv" not in names
+    found = table(tmp_path / "out" / "trajectory-partial.csv")
+    assert found["t"][-1] == pytest.approx(0.70)
+    early = found["t"] < 0.6
+    assert np.allclose(found["x"][early], 1 / (1 - sqrt(2) * found["t"][early]), rtol=1e-7)
+    content = summary(tmp_path / "out")
+    assert (content["status"], content["ended"]["kind"]) == ("partial", "blow-up")
+    assert isclose(content["ended"]["time"], 1 / sqrt(2), abs_tol=0.01)
+
+
+def test_marked_results_replace_whole_ones_and_are_replaced(tmp_path: Path) -> None:
+    """A table beside ``simulation.json`` always belongs to it."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "notes.csv").write_text("mine")
+    path = described(tmp_path, BLOWING_UP)
+    for end, name in (("1/2", "trajectory.csv"), ("1", "trajectory-partial.csv"), ("1/2", "trajectory.csv")):
+        mbsym(path, "--time", end, "-f", "csv", "-o", tmp_path / "out")
+        assert {path.name for path in (tmp_path / "out").iterdir()} == {name, "simulation.json", "notes.csv"}
+
+
+def test_the_pole_is_a_singular_mass_matrix(tmp_path: Path) -> None:
+    done = mbsym(SPHERICAL, "--time", 1, "--set", "theta=0", "-o", tmp_path)
+    assert done.exit_code == 3, done.output
+    assert "singular mass matrix at t = 0" in done.stderr
+    assert "theta = 0" in done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"trajectory-partial.csv", "simulation.json"}
+    assert len(table(tmp_path / "trajectory-partial.csv")["t"]) == 1
+
+
+def test_a_rounded_pole_is_one_too() -> None:
+    """sin(pi) in doubles is 1e-16, not zero."""
+    found = simulate(dynamics_of(SPHERICAL, theta="pi"), METHODS["dop853"], Setting(tolerance=1e-8), [0, 1])
+    assert found.breakdown is not None
+    assert found.breakdown.kind == SINGULAR
+
+
+def test_a_coordinate_that_loses_its_meaning_on_the_way(tmp_path: Path) -> None:
+    done = mbsym(described(tmp_path, CUBE), "--time", 3, "--every", "0.01", "-f", "csv", "-o", tmp_path / "out")
+    assert done.exit_code == 3, done.output
+    assert "singular mass matrix at t = 1.414213" in done.stderr
+    found = table(tmp_path / "out" / "trajectory-partial.csv")
+    assert found["t"][-1] == pytest.approx(1.41)
+    assert np.max(np.abs(found["x"] ** 3 - (1 - found["t"] ** 2 / 2))) < 1e-8
+
+
+def test_a_near_singularity_is_mentioned() -> None:
+    dynamics = dynamics_of(SPHERICAL, psi_dot="1e-6")
+    times = [0.0, *np.linspace(0.5, 0.55, 5_001)]  # a quarter of the swing
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-9), times)
+    assert found.whole
+    ratio, at = least_pivot(dynamics, found)
+    assert ratio < 1e-8
+    assert abs(found.states[1, np.searchsorted(found.times, at)]) < 1e-3
+    assert least_pivot(dynamics_of(DOUBLE), found)[0] > 0
+
+
+def test_a_step_limit_keeps_what_there_was(tmp_path: Path) -> None:
+    done = mbsym(DOUBLE, "--time", 60, "--step-limit", 200, "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 3
+    assert "step limit at t = " in done.stderr
+    assert "--step-limit" in done.stderr
+    assert 1 < table(tmp_path / "trajectory-partial.csv")["t"][-1] < 60
+
+
+def test_an_initial_state_out_of_bounds(tmp_path: Path) -> None:
+    done = mbsym(DOUBLE, "--time", 1, "--set", "theta1=1e50", "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 3
+    assert "beyond" in done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are another matter there")
+def test_an_interrupt_keeps_what_there_was(tmp_path: Path) -> None:
+    """A simulation of years is stopped once it has begun; the progress of the table tells when."""
+    program = (
+        "import sys, mbsym.numerics.simulate as s\n"
+        "run = s.simulate\n"
+        "def announced(*words, **more):\n"
+        "    print('begun', flush=True)\n"
+        "    return run(*words, **more)\n"
+        "s.simulate = announced\n"
+        "from mbsym_cli.main import main\n"
+        "main(sys.argv[1:])\n"
+    )
+    words = ["simulate", str(DOUBLE), "--time", "1e6", "--every", "1", "-f", "csv", "-o", str(tmp_path)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(1)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert "interrupted" in said
+    assert "Traceback" not in said
+    found = table(tmp_path / "trajectory-partial.csv")
+    assert 1 < len(found["t"]) < 1e6
+    assert summary(tmp_path)["ended"]["kind"] == "interrupted"
+    assert summary(tmp_path)["reached"]["samples"] == len(found["t"])
+
+
+def test_a_failed_write_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    done = mbsym(DOUBLE, "--time", 1, "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 1
+    assert "No space left" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+# --- energy, choice of the method ---
+
+
+def test_energy_is_known_to_be_conserved_or_not(tmp_path: Path) -> None:
+    assert energy_status(dynamics_of(SHIPPED / "satellite.yaml")) == CONSERVED
+    assert energy_status(dynamics_of(SHIPPED / "simple-pendulum.yaml")) == CHANGING
+    assert energy_status(dynamics_of(SHIPPED / "ziegler.yaml")) == CHANGING
+    # A weak damper is one: nothing is rounded away.
+    assert energy_status(dynamics_of(SHIPPED / "simple-pendulum.yaml", b="1e-20")) == CHANGING
+    driven = PARTICLE + "  - force function: k*x*sin(t)\nvalues: {m: 1, k: 1}\ninitial: {x: 1}\n"
+    assert energy_status(dynamics_of(described(tmp_path, driven))) == CHANGING
+    assert energy_status(dynamics_of(described(tmp_path, driven), k=0)) == CONSERVED
+
+
+def test_the_jacobian_gives_rates_and_frequencies(tmp_path: Path) -> None:
+    decay, frequency = rates(dynamics_of(described(tmp_path, STIFF)))
+    assert decay == pytest.approx(1e6, rel=1e-6)
+    assert frequency == pytest.approx(1, rel=1e-6)
+
+
+def test_auto_takes_an_explicit_method_where_nothing_is_stiff() -> None:
+    chosen = choose(dynamics_of(DOUBLE), 1e-10, 60)
+    assert chosen.method.traits.name == "dop853"
+    assert "nothing stiff" in chosen.why
+
+
+def test_auto_takes_an_implicit_method_for_a_stiff_system(tmp_path: Path) -> None:
+    """x creeps as exp(-1e-6 t) once its velocity has settled; the other particle swings as cos t."""
+    path = described(tmp_path, STIFF)
+    done = mbsym(path, "--time", 300, "--every", 50, "-f", "csv", "-o", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    content = summary(tmp_path / "out")
+    assert content["method"]["name"] in ("lsoda", "radau", "bdf")
+    assert "stiff" in content["method"]["why"]
+    assert content["work"]["steps"] < 100_000
+    found = table(tmp_path / "out" / "trajectory.csv")
+    assert np.max(np.abs(found["x"] - np.exp(-1e-6 * found["t"]))) < 1e-7
+    assert np.max(np.abs(found["y"] - np.cos(found["t"]))) < 1e-6

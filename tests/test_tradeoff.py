@@ -1,0 +1,251 @@
+"""The measured trade: references of known error, ladders, orders, models, coordinates that rest, and the command."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from fractions import Fraction
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.expressions.tree import number
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.fidelity import measured
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.reduction import PROVED, resting
+from mbsym.numerics.reference import Reference, reference
+from mbsym.numerics.scenario import scenario
+from mbsym.numerics.tradeoff import Tradeoff, advice, tradeoff
+from mbsym_cli.main import main
+
+ROOT = Path(__file__).parent.parent
+SYSTEMS = ROOT / "systems"
+TRUTH = Path(__file__).parent / "references"
+
+PENDULUM = """
+mbsym: 1
+name: Pendulum of the IFToMM library
+parameters: {m: positive, L: positive, g: positive}
+bodies:
+  - name: bob
+    attached to: 0
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: [0, -L, 0]
+    mass: m
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+motion: {theta: 0}
+values: {m: 1, L: 1, g: 9.81}
+initial: {theta: -pi/2}
+"""
+
+
+def dynamics_of(text: str) -> Dynamics:
+    return Dynamics(scenario(mbsym.loads(text).system))
+
+
+def shipped(name: str, **values: int | Fraction) -> Dynamics:
+    overrides = {key: number(value) for key, value in values.items()}
+    return Dynamics(scenario(mbsym.load(SYSTEMS / name).system, overrides))
+
+
+# --- the reference ---
+
+
+def test_reference_agrees_with_the_closed_form_of_the_pendulum_and_knows_its_error() -> None:
+    """sin(theta/2) = k cd(sqrt(g/L) t | 1/2): references/iftomm_a01_pendulum.json, 18 digits."""
+    truth = json.loads((TRUTH / "iftomm_a01_pendulum.json").read_text())["reference"]["xy"]
+    times = [0.0, *map(float, truth)]
+    found = reference(dynamics_of(PENDULUM), times)
+    assert 0 < found.error < 1e-17
+    for place, key in enumerate(truth, 1):
+        x, y = (float(word) for word in truth[key])
+        theta = found.states[0, place]
+        assert abs(np.sin(theta) - x) < 1e-15
+        assert abs(-np.cos(theta) - y) < 1e-15
+
+
+def test_the_estimated_error_of_a_coarse_reference_is_no_smaller_than_its_error() -> None:
+    dynamics = shipped("double-pendulum.yaml")
+    times = np.linspace(0, 5, 3)
+    fine, coarse = reference(dynamics, times), reference(dynamics, times, tolerance=1e-12)
+    size = np.max(np.abs(fine.states), axis=1)[:, np.newaxis]
+    error = np.max(np.abs(fine.states - coarse.states) / size)
+    assert 0 < error <= coarse.error < 1e-4
+
+
+def test_a_solution_that_does_not_exist_breaks_down() -> None:
+    from mbsym.numerics.methods.interface import Breakdown
+
+    text = PENDULUM.replace("uniform gravity: {acceleration: g, direction: [0, -1, 0]}", "force function: theta**4")
+    with pytest.raises(Breakdown):
+        reference(dynamics_of(text), [0.0, 20.0], budget=20.0)
+
+
+# --- the trade ---
+
+
+@pytest.fixture(scope="module")
+def trade() -> Tradeoff:
+    dynamics = shipped("double-pendulum.yaml")
+    chosen = [METHODS[name] for name in ("rk4", "dop853")]
+    return tradeoff(dynamics, chosen, reference(dynamics, np.linspace(0, 4, 5)), budget=4.0)
+
+
+def test_fixed_step_methods_have_their_nominal_order(trade: Tradeoff) -> None:
+    orders = {(item.method, item.scalar): item for item in trade.orders}
+    found = orders["rk4", "float64"]
+    assert found.nominal == 4
+    assert found.pairs >= 3
+    assert abs(found.measured - 4) < 0.3
+
+
+def test_the_front_holds_what_nothing_beats(trade: Tradeoff) -> None:
+    for row in trade.rows:
+        better = [x for x in trade.rows if x.error <= row.error and x.seconds < row.seconds and x is not row]
+        assert row.front == (not better and row.error < inf)
+
+
+def test_tolerances_are_not_mistaken_for_errors(trade: Tradeoff) -> None:
+    """The error grows along a chaotic trajectory: a tolerance of 1e-6 gives a larger one, and a finer one less."""
+    rows = [r for r in trade.rows if r.candidate.method.traits.name == "dop853" and r.candidate.scalar == "float64"]
+    errors = {row.candidate.setting.tolerance: row.error for row in rows}
+    tolerances = sorted((t for t in errors if t is not None), reverse=True)
+    assert len(tolerances) >= 6
+    assert errors[tolerances[0]] > 1e3 * errors[tolerances[5]]
+    assert len({*errors.values()} - {*tolerances}) == len(errors)
+
+
+def test_advice_names_the_cheapest_setting_that_is_good_enough(trade: Tradeoff) -> None:
+    text = advice(trade, 1e-6)
+    best = trade.cheapest(1e-6)
+    assert best is not None
+    assert text.startswith(best.candidate.label)
+    assert "one digit more costs" in text
+    assert "one digit less" in text
+
+
+def test_advice_refuses_targets_that_the_reference_cannot_judge(trade: Tradeoff) -> None:
+    poor = replace(trade, reference=replace(trade.reference, error=1e-10))
+    assert "cannot be judged" in advice(poor, 1e-9)
+    assert "cannot be judged" not in advice(poor, 1e-7)
+
+
+def test_a_wrong_reference_is_noticed_in_every_ladder() -> None:
+    """Negative control: errors stop falling at the size of the planted mistake."""
+    dynamics = shipped("double-pendulum.yaml")
+    truth = reference(dynamics, np.linspace(0, 1, 3))
+    planted: Reference = replace(truth, states=truth.states * (1 + 1e-5))
+    found = tradeoff(dynamics, [METHODS["dop853"]], planted, budget=2.0)
+    assert min(row.error for row in found.rows) > 1e-6
+
+
+# --- models ---
+
+
+def test_models_converge_to_the_exact_field_order_by_order() -> None:
+    """Each order of (size)/R = 1/25 gains more than a factor of 5 here; nothing else differs."""
+    dynamics = shipped("satellite.yaml")
+    rows = {r.variant.label: r for r in measured(dynamics.scenario, METHODS["dop853"], np.linspace(0, 5, 3))}
+    second, third, fourth = (rows[k].error for k in ("as described", "gravity of order 3", "gravity of order 4"))
+    assert rows["exact gravity"].error == 0
+    assert second > 5 * third > 25 * fourth > 1e-8
+    assert rows["linearised"].operations < rows["as described"].operations / 5
+
+
+def test_linearised_equations_err_quadratically_in_the_amplitude() -> None:
+    """A pendulum: the neglected term is theta^3/6, so the relative error falls with the square of the amplitude."""
+    errors = []
+    for amplitude in (Fraction(1, 50), Fraction(1, 100)):
+        numbers = scenario(mbsym.loads(PENDULUM).system, {"theta": number(amplitude)})
+        rows = {r.variant.label: r for r in measured(numbers, METHODS["dop853"], np.linspace(0, 3, 7))}
+        errors.append(rows["linearised"].error)
+    assert abs(errors[0] / errors[1] - 4) < 0.2
+
+
+# --- coordinates that rest ---
+
+PLANE = {name: number(0) for name in ("psi", "phi", "sigma", "psi_dot", "phi_dot", "sigma_dot")}
+
+
+def test_the_satellite_in_the_plane_of_its_orbit_has_two_degrees_of_freedom() -> None:
+    found = resting(scenario(mbsym.load(SYSTEMS / "satellite.yaml").system, PLANE))
+    assert found is not None
+    assert found.how == PROVED
+    assert set(found.values) == {"psi", "phi", "sigma"}
+    assert found.scenario.system.coordinates == ("theta", "delta")
+
+
+def test_the_reduced_system_moves_like_the_whole_one() -> None:
+    whole = scenario(mbsym.load(SYSTEMS / "satellite.yaml").system, PLANE)
+    found = resting(whole)
+    assert found is not None
+    times = [0.0, 7.0]
+    free, _ = found.expanded(whole)
+    both = [reference(Dynamics(item), times, tolerance=1e-16).states[:, -1] for item in (whole, found.scenario)]
+    assert np.max(np.abs(both[0][list(free)] - both[1])) < 1e-13
+    assert np.max(np.abs(np.delete(both[0], list(free)))) == 0
+
+
+@pytest.mark.parametrize("pushed", ["psi", "phi", "sigma"])
+def test_coordinates_that_are_pushed_are_kept(pushed: str) -> None:
+    """Negative control: off the plane, every out-of-plane coordinate is pushed by the others."""
+    found = resting(scenario(mbsym.load(SYSTEMS / "satellite.yaml").system, PLANE | {pushed: number(Fraction(1, 10))}))
+    assert found is None
+
+
+def test_a_moving_coordinate_is_no_candidate() -> None:
+    moving = PLANE | {"sigma_dot": number(1)}
+    assert resting(scenario(mbsym.load(SYSTEMS / "satellite.yaml").system, moving)) is None
+
+
+# --- the command ---
+
+
+def run(*words: Any) -> Any:
+    return CliRunner().invoke(main, ["tradeoff", *map(str, words)])
+
+
+def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path) -> None:
+    found = run(SYSTEMS / "double-pendulum.yaml", "--time", 2, "--target", "1e-6", "--budget", 3, "--out", tmp_path)
+    assert found.exit_code == 0, found.output
+    assert "estimated error" in found.output
+    assert "reaches 1e-06 at the least cost" in found.output
+    rows = list(csv.DictReader((tmp_path / "tradeoff.csv").read_text().splitlines()))
+    assert {"rk4", "dop853"} <= {row["method"] for row in rows}
+    assert any(row["front"] == "yes" for row in rows)
+    assert (tmp_path / "work-precision.png").read_bytes()[:4] == b"\x89PNG"
+    assert "<svg" in (tmp_path / "work-precision.svg").read_text()
+    models = list(csv.DictReader((tmp_path / "fidelity.csv").read_text().splitlines()))
+    assert [row["model"] for row in models] == ["as described", "linearised"]
+
+
+def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:
+    found = run(SYSTEMS / "double-pendulum.yaml", "--time", "soon", "--target", 2, "-s", "l3=1", "-m", "euler")
+    assert found.exit_code == 2
+    for word in ("soon", "--target: 2", "l3", "euler", "nothing was written"):
+        assert word in found.output
+
+
+def test_missing_values_are_listed(tmp_path: Path) -> None:
+    path = tmp_path / "bare.yaml"
+    path.write_text(PENDULUM[: PENDULUM.index("values")])
+    found = run(path, "--time", 1)
+    assert found.exit_code == 2
+    assert "m, L, g, theta (its initial position)" in found.output
+
+
+def test_a_finite_escape_time_is_an_answer(tmp_path: Path) -> None:
+    path = tmp_path / "escape.yaml"
+    text = PENDULUM.replace("uniform gravity: {acceleration: g, direction: [0, -1, 0]}", "force function: theta**4")
+    path.write_text(text)
+    found = run(path, "--time", 20, "--out", tmp_path)
+    assert found.exit_code == 3
+    assert "no reference solution up to t = 20" in found.output
