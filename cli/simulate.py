@@ -127,7 +127,8 @@ def command(
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
     name meaning its initial position and NAME_dot its initial velocity.  Written are trajectory.csv (t, coordinates,
-    velocities, energy, relative drift), time histories, phase planes, drift, and simulation.json.
+    velocities, energy, relative drift), time histories, phase planes, drift, the moving system itself and the paths of
+    its mass centres, and simulation.json.
 
     Coordinates that provably rest (a spatial system that moves in a plane) are not integrated but put back into every
     state, as the summary says; --whole integrates everything.
@@ -515,7 +516,7 @@ def _write(
         from mbsym.report.figures import figures
 
         with _status(request.quiet, "drawing"):
-            images = figures(found, kinds, note(found), conserved)
+            images = figures(found, kinds, note(found), conserved) | _motion(scenario, found, kinds)
     for name, content in images.items():
         stem, _, kind = name.rpartition(".")
         write(f"{stem}{mark}.{kind}", content)
@@ -531,11 +532,23 @@ def _write(
     return written
 
 
+def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str]) -> dict[str, bytes]:
+    """Pictures of the bodies themselves, where there is something to be seen."""
+    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.numerics.positions import positions
+    from mbsym.report.motion_figure import motion_figures
+
+    try:
+        places = positions(scenario, found.times, found.states)
+    except (NoClosedForm, SingularPoint):
+        return {}
+    return motion_figures(places, kinds, note(found)) if places is not None else {}
+
+
 def _ours(name: str) -> bool:
     """Whether a file name is one that this command writes."""
-    return (
-        re.fullmatch(r"(trajectory|(histories|phase-planes)(-\d+)?|drift)(-partial)?\.(csv|svg|png)", name) is not None
-    )
+    drawn = r"(trajectory|(histories|phase-planes|mass-centres)(-\d+)?|drift|motion)(-partial)?\.(csv|svg|png)"
+    return re.fullmatch(drawn, name) is not None
 
 
 @contextmanager

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.fidelity import ModelError
     from mbsym.numerics.methods.interface import Method
     from mbsym.numerics.scenario import Scenario
-    from mbsym.numerics.tradeoff import Tradeoff
+    from mbsym.numerics.tradeoff import Measured, Tradeoff
 
 FORMATS = ("csv", "svg", "png")
 
@@ -146,7 +146,7 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
     from mbsym.numerics.reference import reference
     from mbsym.numerics.tradeoff import tradeoff
 
-    times = np.linspace(0.0, request.end, SAMPLES)
+    times = [float(t) for t in np.linspace(0.0, request.end, SAMPLES)]
     with _status(request.quiet) as say:
         try:
             dynamics = Dynamics(found)
@@ -233,9 +233,8 @@ def _print(
     out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), ": ", ", ".join(p.name for p in paths)))
 
 
-def _near(row: object, target: float) -> bool:
-    error = row.error  # type: ignore[attr-defined]
-    return bool(target / 10 < error < target * 10)
+def _near(row: Measured, target: float) -> bool:
+    return target / 10 < row.error < target * 10
 
 
 def _print_models(lines: list[tuple[str, ...]]) -> None:

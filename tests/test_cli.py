@@ -28,7 +28,7 @@ def test_run_writes_all_reports(tmp_path: Path) -> None:
     done = mbsym("run", PENDULUM, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"report.tex", "report.wl", "model.py", "results.json"}
+    assert names == {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json"}
     assert "self-check" in done.stdout
     assert "exact" in done.stdout
 

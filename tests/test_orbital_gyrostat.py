@@ -18,6 +18,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
+from mbsym.problems.equilibria import equilibria
 from mbsym.problems.stability_theory import GYROSCOPIC, STABLE, UNSTABLE
 
 FILE = SHIPPED / "orbital-gyrostat.yaml"
@@ -208,3 +209,18 @@ def test_gyroscopic_stabilisation_is_no_stability(moments: tuple[int, int, int],
     assert a.stability.numerical.word == word
     roots = sympy.Poly(COUPLED.subs(values), SYMBOLS["s"]).nroots()
     assert all(abs(sympy.re(x)) < 1e-12 for x in roots) == (word == GYROSCOPIC)
+
+
+@pytest.mark.parametrize(
+    "count", [x for x in REFERENCE["equilibria_counts_multistart"] if x["hbar"][0] == x["hbar"][2] == 0]
+)
+def test_the_number_of_equilibria_with_the_rotor_along_a_principal_axis(count: dict[str, Any]) -> None:
+    """24 for a slow rotor and 8 for a fast one (found by many searches in the reference, exactly here)."""
+    h = Fraction(str(count["hbar"][1]))
+    a = mbsym.load(FILE)
+    values = {p.name: Fraction(str(Lowering(Rationals({}, {}), {})(p.value))) for p in a.system.parameters if p.value}
+    values |= dict(zip("ABC", map(Fraction, count["I"]), strict=True)) | {"h": h, "h2": h}
+    found = equilibria(a.system, values)
+    assert found.complete
+    assert len(found.equilibria) == count["isolated_equilibria_found"]
+    assert not found.families

@@ -110,11 +110,13 @@ def summary(folder: Path) -> dict[str, Any]:
 
 # --- what is written ---
 
+FIGURES = ("histories", "phase-planes", "drift", "motion", "mass-centres")
+
 
 def test_table_figures_and_summary(tmp_path: Path) -> None:
     done = mbsym(DOUBLE, "--time", 3, "--samples", 301, "--out", tmp_path)
     assert done.exit_code == 0, done.output
-    names = {f"{stem}.{kind}" for stem in ("histories", "phase-planes", "drift") for kind in ("svg", "png")}
+    names = {f"{stem}.{kind}" for stem in FIGURES for kind in ("svg", "png")}
     assert {path.name for path in tmp_path.iterdir()} == {"trajectory.csv", "simulation.json", *names}
     found = table(tmp_path / "trajectory.csv")
     assert list(found) == [
@@ -158,7 +160,7 @@ def test_equal_simulations_write_equal_bytes(tmp_path: Path) -> None:
         )
         assert done.exit_code == 0, done.output
     written = sorted(path.name for path in (tmp_path / "a").iterdir())
-    assert written == ["drift.svg", "histories.svg", "phase-planes.svg", "simulation.json", "trajectory.csv"]
+    assert written == [*sorted(f"{stem}.svg" for stem in FIGURES), "simulation.json", "trajectory.csv"]
     for name in written:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
 

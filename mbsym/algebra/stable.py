@@ -86,6 +86,7 @@ class _Rewriting:
             )
         } - {node.number for node in outputs}
         self.image: dict[int, Node] = {}
+        self.known: dict[int, tuple[Fraction, Key]] = {}
 
     def images(self, outputs: Sequence[Node]) -> list[Node]:
         for number in self.live:
@@ -142,6 +143,8 @@ class _Rewriting:
                 pending += [(second, operands[1]), (sign, operands[0])]
         if len(summands) > MOST_SUMMANDS:
             return self._plain([(sign, self.image[k]) for sign, k in summands])
+        if len(summands) == 2 and self._ordinary([self.image[k] for _, k in summands]):
+            return self._plain([(sign, self.image[k]) for sign, k in summands])
         whole = _Sum()
         for sign, k in summands:
             self._note(whole, sign, self.image[k])
@@ -150,6 +153,14 @@ class _Rewriting:
         if whole.coefficients == before and len(before) == len(summands):
             return self._plain([(sign, self.image[k]) for sign, k in summands])
         return self._emitted(whole)
+
+    def _ordinary(self, nodes: Sequence[Node]) -> bool:
+        """Whether no rule can apply to a sum of two terms: unlike keys, not one a part of the other."""
+        first, second = (self._term(node)[1] for node in nodes)
+        if first == second or abs(len(first) - len(second)) > 2:
+            return first != second
+        shared = sum((Counter(first) & Counter(second)).values())
+        return max(len(first), len(second)) - shared > 2
 
     def _plain(self, summands: Sequence[tuple[int, Node]]) -> Node:
         total = self.program.zero
@@ -163,6 +174,12 @@ class _Rewriting:
 
     def _term(self, node: Node) -> tuple[Fraction, Key]:
         """node = coefficient * product of the key's factors."""
+        found = self.known.get(node.number)
+        if found is None:
+            found = self.known[node.number] = self._taken_apart(node)
+        return found
+
+    def _taken_apart(self, node: Node) -> tuple[Fraction, Key]:
         coefficient, factors = Fraction(1), []
         pending = [(node.number, False)]
         while pending:

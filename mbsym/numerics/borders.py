@@ -3,7 +3,7 @@
 Verdicts come from exact arithmetic (problem 6 at exact parameter values): they are right or "undecided".  Beside them
 stands what float64 eigenvalues would say,
 
-    unstable if max Re lambda > 1e-10 max |lambda|,  asymptotically stable if < -1e-10 max |lambda|,  no growth seen else,
+    unstable if max Re lambda > 1e-10 max |lambda|, asymptotically stable if < -1e-10 max |lambda|, else no growth seen,
 
 which near a border, where eigenvalues coincide and are known to half the digits only, is often wrong.
 """

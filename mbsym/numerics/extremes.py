@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from math import isfinite
 
 from mbsym.algebra.base import NoClosedForm, SingularPoint
@@ -184,8 +185,10 @@ def _linear(given: Scenario, left_out: list[str]) -> LinearModel | None:
 
 @dataclass(frozen=True)
 class Falling:
-    """Digits of the forcing in the given state, in float64: with gravity and the frame's acceleration taken separately
-    (``apart``) and joined (``joined``); ``frames`` are the frames that fall."""
+    """Digits of the forcing in float64, the bodies at rest in the given positions and the frames some way along.
+
+    ``apart``: with gravity and the acceleration of the ``frames`` taken separately; ``joined``: as it is done here.
+    """
 
     frames: tuple[str, ...]
     apart: float
@@ -202,8 +205,11 @@ def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth
     scene = coasting_scene(given.system, ring, program, program_environment(given.system, program))
     nodes = tuple(-x for x in residuals(scene).values())
     apart = Quantity("forcing", Code(program, usual.code.inputs, nodes))
+    rates = [rate for _, rate in given.prescribed.values() if rate]
+    time_ = 1 / rates[0] if rates else Fraction(1)
+    state = (*given.positions, *(Fraction(0) for _ in given.velocities))
     digits = [
-        measured(truth, Arithmetic(given, [q], compiled=False), "forcing", given, given.state) for q in (apart, usual)
+        measured(truth, Arithmetic(given, [q], compiled=False), "forcing", given, state, time_) for q in (apart, usual)
     ]
     if not digits[0].bits:
         return None
@@ -218,8 +224,8 @@ def sentences(found: Extremes) -> Iterator[str]:
     if found.falling is not None:
         yield (
             f"Gravity and the acceleration of {', '.join(found.falling.frames)} are joined before numbers are put in: "
-            f"float64 keeps {found.falling.joined:.1f} digits of the forcing in the given state, where term by term it "
-            f"would keep {found.falling.apart:.1f}."
+            f"with the bodies at rest float64 keeps {found.falling.joined:.1f} digits of the forcing, "
+            f"where term by term it would keep {found.falling.apart:.1f}."
         )
     for kind, subject in found.ladders:
         if kind == SINGULAR:

@@ -7,9 +7,11 @@ the right-hand side by differentiating the program.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import fill
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.derivative import jacobian
@@ -46,7 +48,7 @@ _WORDS = """
 """
 RESERVED = frozenset(_WORDS.split())
 
-#: A Jacobian of more operations than this is left out.
+#: A Jacobian that takes about more operations than this is left out.
 LARGEST_JACOBIAN = 100_000
 
 
@@ -81,9 +83,11 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
     n = len(system.coordinates)
     members = injective(system.parameter_names, proposed, taken=RESERVED)
     writer = Functions(system, DIALECT, RESERVED, proposed, "3.14159265358979323846")
-    solved, no_solution = _forward(analysis) if code else (None, "")
     upper = [(i, j) for i in range(n) for j in range(i, n)]
-    slopes, no_slopes = _slopes(analysis, solved) if solved else (None, "")
+    if analysis not in _KNOWN:
+        _KNOWN[analysis] = _solved(analysis) if code else _Solved(None, "", None, "")
+    known = _KNOWN[analysis]
+    solved, slopes = known.forward, known.slopes
     functions: dict[str, Function | None] = dict.fromkeys(("mass", "forcing", "energy", "accelerations", "jacobian"))
     entries: list[tuple[int, int]] = []
     if bodies and code:
@@ -110,8 +114,8 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=comment(no_code),
-        no_solution=comment(no_solution),
-        no_slopes=comment(no_slopes),
+        no_solution=comment(known.no_forward),
+        no_slopes=comment(known.no_slopes),
         has={"code": code is not None, "solved": solved is not None, "slopes": slopes is not None},
         functions=functions,
         upper=upper,
@@ -132,22 +136,36 @@ def comment(words: str) -> str:
     return " ".join(words.replace("\\", "/").replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").split())
 
 
-def _forward(analysis: Analysis) -> tuple[ForwardDynamics | None, str]:
+@dataclass(frozen=True)
+class _Solved:
+    """Accelerations and their derivatives, or the reasons why there are none."""
+
+    forward: ForwardDynamics | None
+    no_forward: str
+    slopes: tuple[tuple[Node, ...], ...] | None
+    no_slopes: str
+
+
+#: Source and header are written one after the other, from the same program.
+_KNOWN: WeakKeyDictionary[Analysis, _Solved] = WeakKeyDictionary()
+
+
+def _solved(analysis: Analysis) -> _Solved:
     try:
-        return forward_dynamics(analysis.system, analysis.ring), ""
+        forward = forward_dynamics(analysis.system, analysis.ring)
     except (SingularPoint, NoClosedForm) as reason:
-        return None, str(reason)
+        return _Solved(None, str(reason), None, "")
+    return _Solved(forward, "", *_slopes(analysis, forward))
 
 
 def _slopes(analysis: Analysis, solved: ForwardDynamics) -> tuple[tuple[tuple[Node, ...], ...] | None, str]:
     """d q'' / d (q, q'), n rows; or why it is left out."""
     system = analysis.system
     names_ = [*system.coordinates, *(velocity_name(name) for name in system.coordinates)]
-    rows = jacobian(solved.program, solved.accelerations, [solved.environment[name] for name in names_])
-    operations = solved.program.operations([node for row in rows for node in row])
-    if operations > LARGEST_JACOBIAN:
-        return None, f"the Jacobian takes {operations} operations; it is left out"
-    return rows, ""
+    estimate = solved.program.operations(solved.accelerations) * len(names_)
+    if estimate > LARGEST_JACOBIAN:
+        return None, f"it would take some {estimate} operations"
+    return jacobian(solved.program, solved.accelerations, [solved.environment[name] for name in names_]), ""
 
 
 def _zero(solved: ForwardDynamics, node: Node) -> bool:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from io import BytesIO
+from typing import Any
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-FORMATS = ("svg", "png")
-
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 10,
     "mathtext.fontset": "dejavusans",
@@ -25,6 +25,7 @@ STYLE = {
     "axes.axisbelow": True,
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.useoffset": False,
+    "axes.formatter.use_mathtext": True,
     "lines.linewidth": 1.2,
     "lines.solid_joinstyle": "round",
     "agg.path.chunksize": 20_000,
@@ -36,18 +37,33 @@ STYLE = {
 BLUE, RED, GREY = "#1f5fa8", "#b3372f", "#888888"
 
 
-def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
-    """Every figure in every format, by file name; equal figures give equal bytes (with one version of matplotlib)."""
+@contextmanager
+def styled() -> Iterator[None]:
+    """Drawn inside, figures have our style, whatever the user's is."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
-        return {f"{name}.{kind}": saved(draw(), kind) for name, draw in drawings.items() for kind in formats}
+        yield
 
 
-def saved(figure: Figure, kind: str) -> bytes:
-    """The bytes of a figure."""
+def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
+    """Every figure in every format, by file name; equal figures give equal bytes (with one version of matplotlib)."""
+    with styled():
+        return {
+            name: content for stem, draw in drawings.items() for name, content in saved(stem, draw(), formats).items()
+        }
+
+
+def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]:
+    """The bytes of a figure in every format, by file name."""
     FigureCanvasAgg(figure)
-    stream = BytesIO()
-    metadata = {"Date": None, "Creator": "mbsym"} if kind == "svg" else {"Software": "mbsym"}
-    figure.savefig(stream, format=kind, metadata=metadata)
-    return stream.getvalue()
+    # Arranging takes longer than drawing: once for all formats.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    found = {}
+    for kind in formats:
+        stream = BytesIO()
+        metadata = {"Date": None, "Creator": "mbsym"} if kind == "svg" else {"Software": "mbsym"}
+        figure.savefig(stream, format=kind, metadata=metadata)
+        found[f"{stem}.{kind}"] = stream.getvalue()
+    return found

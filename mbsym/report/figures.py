@@ -7,13 +7,10 @@ Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from io import BytesIO
 from itertools import pairwise
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
@@ -21,33 +18,7 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.system import System
 from mbsym.numerics.simulate import Trajectory
-
-FORMATS = ("svg", "png")
-
-STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 10,
-    "mathtext.fontset": "dejavusans",
-    "axes.titlesize": 11,
-    "axes.labelsize": 11,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "axes.formatter.limits": (-3, 4),
-    "axes.formatter.useoffset": False,
-    "axes.formatter.use_mathtext": True,
-    "lines.linewidth": 1.2,
-    "lines.solid_joinstyle": "round",
-    "agg.path.chunksize": 20_000,
-    "svg.hashsalt": "mbsym",
-    "svg.fonttype": "path",
-    "savefig.dpi": 150,
-}
-
-BLUE, RED, GREY = "#1f5fa8", "#b3372f", "#888888"
+from mbsym.report.drawing import BLUE, GREY, RED, saved, styled
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
 HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
@@ -67,29 +38,13 @@ def figures(found: Trajectory, formats: Sequence[str], note: str = "", conserved
     """
     if len(found.times) < 2:
         return {}
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
+    with styled():
         pages = [*_histories(found, note), *_planes(found, note), ("drift", _drift(found, note, conserved))]
-        images: dict[str, bytes] = {}
-        for name, figure in pages:
-            # Arranging takes longer than drawing: once for all formats.
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")
-            images |= {f"{name}.{kind}": _saved(figure, kind) for kind in formats}
-        return images
-
-
-def _saved(figure: Figure, kind: str) -> bytes:
-    stream = BytesIO()
-    metadata = {"Date": None, "Creator": "mbsym"} if kind == "svg" else {"Software": "mbsym"}
-    figure.savefig(stream, format=kind, metadata=metadata)
-    return stream.getvalue()
+        return {name: content for stem, figure in pages for name, content in saved(stem, figure, formats).items()}
 
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
     return figure
 

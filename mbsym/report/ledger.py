@@ -19,7 +19,7 @@ MOST_NAMES = 8
 
 @dataclass(frozen=True)
 class LedgerLine:
-    """One saving as text: ``what`` was left out, ``why`` that is safe (and how it is known), ``saved`` measure by measure."""
+    """One saving as text: what was left out, why that is safe (and how it is known), what it saved."""
 
     kind: str
     what: str

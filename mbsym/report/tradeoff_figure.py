@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import isfinite
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
@@ -82,8 +83,8 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
     finest = min((row.error for row in found.rows), default=1.0)
     if found.smallest_judged > finest / 100:
         _line(axes, found.smallest_judged, GREY, "limit of the reference")
-    for row in _drawable(models):
-        _line(axes, row.error, OLIVE, f"model {row.variant.label}")
+    for model in _drawable(models):
+        _line(axes, model.error, OLIVE, f"model {model.variant.label}")
     figure.legend(loc="outside right upper", frameon=False, fontsize=9)
     return figure
 
@@ -92,9 +93,9 @@ def _drawable(models: Sequence[ModelError]) -> Iterable[ModelError]:
     return (row for row in models if RESOLVED < row.error < WORST)
 
 
-def _line(axes: object, error: float, colour: str, text: str) -> None:
-    axes.axvline(error, color=colour, linewidth=1, linestyle="-.", zorder=0)  # type: ignore[attr-defined]
-    axes.text(  # type: ignore[attr-defined]
+def _line(axes: Axes, error: float, colour: str, text: str) -> None:
+    axes.axvline(error, color=colour, linewidth=1, linestyle="-.", zorder=0)
+    axes.text(
         error,
         0.99,
         text,
@@ -104,5 +105,5 @@ def _line(axes: object, error: float, colour: str, text: str) -> None:
         va="top",
         ha="center",
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-        transform=axes.get_xaxis_transform(),  # type: ignore[attr-defined]
+        transform=axes.get_xaxis_transform(),
     )

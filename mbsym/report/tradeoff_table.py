@@ -62,7 +62,7 @@ def _number(value: float) -> str:
 
 def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, ...]]:
     """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, front."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for row in rows:
         name = row.candidate.method.traits.name
         error = "fails" if row.trouble else _error(row.error, smallest_judged)
@@ -88,7 +88,7 @@ def _error(error: float, smallest_judged: float) -> str:
 
 def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:
     """Cells for the terminal: model, what it neglects, error, operations, time."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for row in rows:
         error = row.trouble if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
         lines.append((row.variant.label, row.variant.neglected, error, str(row.operations), duration(row.seconds)))

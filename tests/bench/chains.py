@@ -74,7 +74,8 @@ def description(links: list[Link]) -> str:
             f"    inertia: [{', '.join(_vector(row) for row in link.inertia)}]",
         ]
     lines += ["loads:", f"  - uniform gravity: {{vector: {_vector(GRAVITY)}}}", "initial:"]
-    lines += [f"  q{k}: {{position: {float(a)}, velocity: {float(b)}}}" for k, (a, b) in enumerate(zip(q, qd), 1)]
+    for k, (position, velocity) in enumerate(zip(q, qd, strict=True), 1):
+        lines.append(f"  q{k}: {{position: {float(position)}, velocity: {float(velocity)}}}")
     return "\n".join(lines) + "\n"
 
 

@@ -229,9 +229,7 @@ def sympy_function(links: list[chains.Link]) -> tuple[Callable[[Any, Any], Any],
     right = sp.Matrix(
         n,
         1,
-        lambda i, _: (
-            sp.diff(kinetic - potential, q[i]) - sum(sp.diff(momenta[i], q[j]) * v[j] for j in range(n))
-        ),
+        lambda i, _: sp.diff(kinetic - potential, q[i]) - sum(sp.diff(momenta[i], q[j]) * v[j] for j in range(n)),
     )
     function = sp.lambdify([q, v], [matrix, right], cse=True)
     return function, time.perf_counter() - started
@@ -382,7 +380,9 @@ def show_simulation(results: list[Record], table: Callable[..., None]) -> None:
     targets = {"rk4 at 1 ms": ">= 20", "SciPy on lambdify": ">= 10"}
     for result in results:
         ways = result["ways"]
-        fastest = min((w["seconds"] for k, w in ways.items() if k in ("dop853", "taylor") and "seconds" in w), default=math.inf)
+        fastest = min(
+            (w["seconds"] for k, w in ways.items() if k in ("dop853", "taylor") and "seconds" in w), default=math.inf
+        )
         for name, way in ways.items():
             if "complaint" in way:
                 rows.append([result["title"], name, way["complaint"], "", "", ""])
@@ -410,24 +410,22 @@ def show_simulation(results: list[Record], table: Callable[..., None]) -> None:
 
 def growth(options: argparse.Namespace) -> list[Record]:
     """Seconds and operations from 2 to 200 joints, by both routes of forward dynamics."""
+    import mbsym
+    from mbsym.mechanics.forward_dynamics import forward_dynamics
+    from mbsym.mechanics.variables import ring_of
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.kernels.llvm import SCALARS, function_text
+    from mbsym.numerics.scenario import scenario
+
     results = []
     for joints in (2, 5, 10, 20, 50, 100, 200):
         print(f"  growth, {joints} joints", file=sys.stderr)
-        import mbsym
-        from mbsym.mechanics.forward_dynamics import forward_dynamics
-        from mbsym.numerics.kernels.interface import Code
-        from mbsym.numerics.kernels.llvm import SCALARS, function_text
-        from mbsym.numerics.scenario import scenario
-
         system = mbsym.loads(chains.description(chains.chain(joints, False))).system
-        from mbsym.mechanics.variables import ring_of
-        from mbsym.numerics.dynamics import Dynamics
-
         ring = ring_of(system)
         started = time.perf_counter()
         found = forward_dynamics(system, ring)
         emitted = time.perf_counter() - started
-        code: Code = Dynamics(scenario(system), ring).right_hand_side
+        code = Dynamics(scenario(system), ring).right_hand_side
         started = time.perf_counter()
         text = function_text("f", code, SCALARS["float64"])
         written = time.perf_counter() - started
@@ -453,7 +451,15 @@ def show_growth(results: list[Record], table: Callable[..., None]) -> None:
                 counted,
             ]
         )
-    headings = ["joints", "emitting, s", "ms/joint", "LLVM text, s", "operations", "per joint", "counted for each route"]
+    headings = [
+        "joints",
+        "emitting, s",
+        "ms/joint",
+        "LLVM text, s",
+        "operations",
+        "per joint",
+        "counted for each route",
+    ]
     table("Forward dynamics: growth with the number of joints", headings, rows)
 
 

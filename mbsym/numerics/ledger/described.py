@@ -74,11 +74,10 @@ def unused_axes(work: Work) -> Iterator[Saving]:
     def turned(body: Body) -> Body:
         if body.name not in found:
             return body
-        axes, angles = map(list, (body.rotation.axes, body.rotation.angles))
-        used = [(axis, angle) for axis, angle in zip(axes, angles, strict=True) if axis]
-        while len(used) < 3:
-            used.append((used[-1][0] % 3 + 1 if used else 1, symbols("x")))
-        return replace(body, rotation=Rotation(tuple(a for a, _ in used), tuple(x for _, x in used)))
+        turns = list(body.rotation.turns())
+        while len(turns) < 3:
+            turns.append((turns[-1][0] % 3 + 1 if turns else 1, symbols("x")))
+        return replace(body, rotation=Rotation(tuple(x for x, _ in turns), tuple(x for _, x in turns)))
 
     other = changed_bodies(work.system, turned, symbols)
     why = "structural: a turn that is not there is the identity matrix, and is never multiplied"

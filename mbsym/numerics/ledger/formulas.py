@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
-from mbsym.algebra.characteristic import LONGEST, TooLargeError, characteristic_polynomial
+from mbsym.algebra.characteristic import BUDGET as DETERMINANT
+from mbsym.algebra.characteristic import TooLargeError, characteristic_polynomial
 from mbsym.analysis import PROBLEMS
 from mbsym.formulas.formula import Matrix
-from mbsym.numerics.ledger.entry import COUNT, PROVED, SECONDS, TERMS, Measure, Saving
+from mbsym.numerics.ledger.entry import COUNT, PROVED, Measure, Saving
 from mbsym.numerics.ledger.work import REFUSALS, Counted, Work
 from mbsym.problems.linearisation import Linearisation, components
 
@@ -20,20 +21,32 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
     left = [n for n in PROBLEMS if n not in analysis.problems and PROBLEMS[n].attribute not in analysis.derived]
     for number in left:
         work.require(0.0)
-        problem, other = PROBLEMS[number], work.bounded
-        stage = other.stage(number)
-        if stage.failure is not None:
-            if other.ring.work <= other.ring.work_budget and "budget" not in stage.failure.reason:
-                continue
-            terms = Measure("terms", TERMS, analysis.terms, 0, True)
+        problem, stage = PROBLEMS[number], work.bounded.stage(number)
+        if stage.failure is None:
+            found = Counted(_TERMS[number](stage.value), 0, stage.seconds)
+        elif _unfinished(stage.failure.reason):
+            found = _given_up(work, number)
         else:
-            terms = Measure("terms", TERMS, _TERMS[number](stage.value), 0)
+            continue  # there is no such result, so nothing was saved
         why = "liveness: nobody asked for it, and nothing that was asked for needs it"
         if number == 3 and "linearisation" in analysis.derived:
             why += "; the linearisation is that of the quadratised Lagrangian"
-        seconds = Measure("seconds of deriving it", SECONDS, stage.seconds, 0.0, terms.at_least)
         what = f"problem {number}, {problem.title}"
-        yield Saving("outputs nobody asked for", (what,), why, PROVED, (terms, seconds))
+        measures = found.measures(Counted(0, 0, 0.0), "it")
+        yield Saving("outputs nobody asked for", (what,), why, PROVED, measures)
+
+
+def _given_up(work: Work, number: int) -> Counted:
+    """What a problem costs by itself until the budgets end it."""
+    alone = work.fresh(work.system)
+    started = time.perf_counter()
+    alone.stage(number)
+    return Counted(None, alone.ring.work, time.perf_counter() - started)
+
+
+def _unfinished(reason: str) -> bool:
+    """Whether a result was given up because it is too large, and not because there is none."""
+    return any(word in reason for word in ("budget", "steps of polynomial", "beyond the"))
 
 
 def _total(formulas: Iterable[Any]) -> int:
@@ -81,17 +94,14 @@ def subsystems(work: Work) -> Iterator[Saving]:
     if found is None or len(parts) < 2 or 6 not in work.analysis.problems:
         return
     work.require(1.0)
-    divided = [_characteristic(found, part) for part in parts]
-    if any(item.at_least for item in divided):
+    divided = [_characteristic(work, found, part) for part in parts]
+    if any(item.terms is None for item in divided):
         return
-    here = Counted(sum(x.size for x in divided), sum(x.seconds for x in divided))
-    there = _characteristic(found, range(len(found.coordinates)))
+    here = Counted(sum(x.terms or 0 for x in divided), sum(x.steps for x in divided), sum(x.seconds for x in divided))
+    there = _characteristic(work, found, range(len(found.coordinates)))
     names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
     why = "identities of the ring: no matrix couples them, so the determinant is the product of theirs"
-    measures = (
-        Measure("terms of det(M s^2 + (D + G) s + K + N)", TERMS, there.size, here.size, there.at_least),
-        Measure("seconds of the determinants", SECONDS, there.seconds, here.seconds, there.at_least),
-    )
+    measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
     yield Saving("subsystems", tuple(names), why, PROVED, measures)
 
 
@@ -102,16 +112,19 @@ def _linearisation(work: Work) -> Linearisation | None:
     return found
 
 
-def _characteristic(found: Linearisation, part: Sequence[int]) -> Counted:
-    """Size of the characteristic polynomial of some coordinates in the declared parameters, within its budget."""
+def _characteristic(work: Work, found: Linearisation, part: Sequence[int]) -> Counted:
+    """The characteristic polynomial of some coordinates in the declared parameters, within its budget of products."""
+    ring = found.M[0, 0].ring
 
     def cut(*matrices: Matrix) -> list[list[Any]]:
-        ring = found.M[0, 0].ring
         return [[ring.reduce(sum((m[i, j].polynomial for m in matrices), ring.zero)) for j in part] for i in part]
 
-    started = time.perf_counter()
-    try:
-        polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
-    except (TooLargeError, *REFUSALS):
-        return Counted(LONGEST, time.perf_counter() - started, True)
-    return Counted(sum(len(x) for x in polynomial), time.perf_counter() - started)
+    def size() -> int | None:
+        try:
+            polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
+        except (TooLargeError, *REFUSALS):
+            return None
+        return sum(len(x) for x in polynomial)
+
+    terms, seconds = work.timed(size)
+    return Counted(terms, DETERMINANT if terms is None else 0, seconds)

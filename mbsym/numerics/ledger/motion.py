@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 
 from flint import arb, ctx
@@ -18,6 +17,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERMS, VERIFIED, Measure, Saving
 from mbsym.numerics.ledger.work import REFUSALS, Work, holds
 from mbsym.numerics.reduced import reduced
+from mbsym.numerics.scenario import Scenario
 from mbsym.problems.energy import Energy
 
 #: Random states, and bits, at which a parameter is given two values; and instructions that this may cost in all.
@@ -29,19 +29,16 @@ ONE_POWER = "identity of the ring: in every row of M q'' = f it stands to one po
 
 def resting_coordinates(work: Work) -> Iterator[Saving]:
     """Coordinates that rest in this scene, against integrating all of them."""
-    if work.scenario is None:
+    scenario = work.scenario
+    if scenario is None:
         return
-    started = time.perf_counter()
-    whole = Dynamics(work.scenario)
-    before = whole.right_hand_side.operations
-    seconds = time.perf_counter() - started
+    whole, seconds = work.timed(lambda: _written(scenario))
     work.require(seconds)
     found = reduced(whole)
     if found is None:
         return
-    started = time.perf_counter()
-    after = found.dynamics.right_hand_side.operations
-    spent = time.perf_counter() - started
+    _, spent = work.timed(lambda: _written(found.reduction.scenario))
+    before, after = found.operations
     normal = _plane(found.dynamics.system)
     plane = f"; what is left moves in the plane normal to inertial axis {normal}" if normal else ""
     why = f"from this initial state, with q_S held, f_S and M_SF vanish for all other q, q', t: q_S'' = 0{plane}"
@@ -53,6 +50,13 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
     )
     kind = "plane motion" if normal else "coordinates that rest"
     yield Saving(kind, found.names, why, found.reduction.how, measures)
+
+
+def _written(scenario: Scenario) -> Dynamics:
+    """The dynamics of a scenario with its right-hand side."""
+    found = Dynamics(scenario)
+    assert found.right_hand_side.outputs
+    return found
 
 
 def _plane(system: System) -> int | None:

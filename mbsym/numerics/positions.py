@@ -1,0 +1,264 @@
+"""Where everything is: connection points and mass centres along a trajectory, in a frame in which they stay close.
+
+    r_O = r^j_O turned back body by body into the axes of the frame F,   r_C = r_O + r^k_C,      from the origin of F
+
+F is the inertial frame, or one that it carries without a coordinate's doing (an orbit): what moves by metres is not
+drawn thousands of kilometres away.  A body without extent, all of whose points coincide, shows its turning by the
+tips of its three axes instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.base import Vector
+from mbsym.algebra.program import Program
+from mbsym.algebra.ring import Ring
+from mbsym.expressions.tree import ZERO, names
+from mbsym.mechanics.frames import axis_vector
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.programs import coasting_scene
+from mbsym.mechanics.variables import expressions, program_environment, ring_of
+from mbsym.model.system import (
+    INERTIAL,
+    Body,
+    CoordinateDamper,
+    CoordinateSpring,
+    NewtonianGravity,
+    System,
+    UniformGravity,
+)
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import bound, substituted
+
+#: A frame further out is taken as long as the system, its origin included, looks at most so much larger in it.
+COMPACT = 2.0
+
+#: What moves less than this part of the whole does not move.
+STILL = 1e-9
+
+#: A picture shows so much motion that the longest path is so many times as long as the picture's diagonal; more would
+#: fill it.  Of the axes of one body the slowest counts.
+PLANAR, SPATIAL, TURNING = 5.0, 10.0, 15.0
+
+ORIGIN, JOINT, MASS_CENTRE, AXIS = "origin", "joint", "mass centre", "axis"
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point that is drawn: the origin of the frame; of ``body``, its joint, mass centre, or tip of an ``axis``."""
+
+    body: str
+    kind: str
+    axis: int = 0
+
+
+@dataclass(frozen=True)
+class Positions:
+    """``places`` has shape (points, 3, times): in the description's unit of length, in the axes of ``frame``.
+
+    ``links`` join points by number within bodies, ``slides`` along springs and joints that change their length.
+    ``centres`` are the mass centres by body.  ``up`` is the direction away from gravity in the frame's axes, None where
+    there is none.  Where no body extends the points of kind AXIS are the tips of unit vectors.
+    """
+
+    system: System
+    frame: str
+    points: tuple[Point, ...]
+    links: tuple[tuple[int, int], ...]
+    slides: tuple[tuple[int, int], ...]
+    centres: Mapping[str, int]
+    times: Any
+    places: Any
+    up: tuple[float, float, float] | None
+
+    @property
+    def size(self) -> float:
+        """The diagonal of the box about all points at all times."""
+        return float(np.linalg.norm(np.ptp(self.places, axis=(0, 2))))
+
+    @property
+    def plane(self) -> int | None:
+        """The axis 1, 2 or 3 of the frame along which nothing extends and nothing moves; None in space."""
+        spread = np.ptp(self.places, axis=(0, 2))
+        flat = [axis for axis in (3, 2, 1) if spread[axis - 1] <= STILL * self.size]
+        return flat[0] if flat else None
+
+    @property
+    def tips(self) -> tuple[int, ...]:
+        """The points that are tips of axes."""
+        return tuple(i for i, point in enumerate(self.points) if point.kind == AXIS)
+
+    def moving(self, numbers: Iterable[int]) -> list[int]:
+        """Those of the points that change their place."""
+        spread = np.max(np.ptp(self.places, axis=2), axis=1)
+        return [i for i in numbers if spread[i] > STILL * max(self.size, float(np.max(np.abs(self.places))))]
+
+    def until(self, end: int) -> Positions:
+        """The first ``end`` times."""
+        return replace(self, times=self.times[:end], places=self.places[:, :, :end])
+
+    def readable(self) -> Positions:
+        """The first part, in which paths do not fill the picture."""
+        paths = np.concatenate(
+            (np.zeros((len(self.points), 1)), np.cumsum(np.linalg.norm(np.diff(self.places, axis=2), axis=1), axis=1)),
+            axis=1,
+        )
+        moving = self.moving(range(len(self.points)))
+        if not moving:
+            return self
+        if self.tips:
+            length, most = np.min(paths[[i for i in self.tips if i in moving]], axis=0, initial=np.inf), TURNING
+        else:
+            length, most = np.max(paths[moving], axis=0), SPATIAL if self.plane is None else PLANAR
+        end = int(np.searchsorted(length, most * self.size, side="right"))
+        return self.until(max(end, 2))
+
+
+def positions(scenario: Scenario, times: Any, states: Any, ring: Ring | None = None) -> Positions | None:
+    """Points along a trajectory (``states`` of shape (2n, m)); None where there is nothing to draw."""
+    system = scenario.system
+    program = Program()
+    environment = program_environment(system, program)
+    scene = coasting_scene(system, ring if ring is not None else ring_of(system), program, environment)
+    fresh = bound(scenario)
+    inputs = ("t", *system.coordinates, *system.velocities)
+    frames = _frames(system)
+    codes = {}
+    for number, frame in enumerate(frames):
+        vectors = [*(_place(scene, frame, point) for point in _points(system, frame)), *_upward(scene, frame)]
+        nodes = substituted(program, [x for vector in vectors for x in vector], fresh)
+        codes[f"frame{number}"] = Code(fresh, inputs, tuple(nodes))
+    compiled = kernels(codes)
+    moments = np.vstack([times, np.asarray(states, dtype=float)])
+    found = [_positions(system, frame, compiled[f"frame{i}"](moments), moments[0]) for i, frame in enumerate(frames)]
+    least = min(map(_extent, found))
+    chosen = next(item for item in found if _extent(item) <= COMPACT * least)
+    return chosen if chosen.size > 0 and np.all(np.isfinite(chosen.places)) else None
+
+
+def _frames(system: System) -> list[str]:
+    """The inertial frame, and further in those that carry everything and that no coordinate moves."""
+    moving = {*system.coordinates, *system.velocities}
+    frames = [INERTIAL]
+    while True:
+        carried = [body for body in system.bodies if body.attached_to == frames[-1]]
+        if len(carried) != 1 or carried[0].mass != ZERO or carried[0].inertia is not None:
+            return frames
+        (body,) = carried
+        alone = not any(other.attached_to == body.name for other in system.bodies)
+        if alone or any(moving & names(x) for x in expressions((body.rotation, body.connection_point))):
+            return frames
+        frames.append(body.name)
+
+
+def _points(system: System, frame: str) -> list[Point]:
+    """The origin, joints, mass centres that are not there, and tips of axes of bodies with inertia."""
+    found = [Point(frame, ORIGIN)]
+    for body in system.bodies:
+        if frame not in system.path(body.name)[:-1] and frame != INERTIAL:
+            continue
+        found.append(Point(body.name, JOINT))
+        if body.mass != ZERO and any(x != ZERO for x in body.mass_centre):
+            found.append(Point(body.name, MASS_CENTRE))
+        if body.inertia is not None:
+            found += [Point(body.name, AXIS, axis) for axis in (1, 2, 3)]
+    return found
+
+
+def _place(scene: Scene, frame: str, point: Point) -> Vector:
+    """r of a point; the tip of an axis as a unit vector."""
+    algebra = scene.algebra
+    here = algebra.zero_vector
+    if point.kind == ORIGIN:
+        return here
+    if point.kind == AXIS:
+        return scene.to_axes(axis_vector(algebra, point.axis, algebra.one), point.body, frame)
+    own = scene.motions[point.body].mass_centre if point.kind == MASS_CENTRE else here
+    return scene.position(point.body, own, frame)
+
+
+def _upward(scene: Scene, frame: str) -> Iterator[Vector]:
+    """Against gravity, in the axes of the frame: away from the centre, or opposite to uniform gravity."""
+    algebra = scene.algebra
+    for load in scene.system.loads:
+        if isinstance(load, UniformGravity):
+            falling = scene.lower.vector(load.acceleration)
+            yield scene.to_axes(algebra.subtract(algebra.zero_vector, falling), INERTIAL, frame)
+            return
+        if isinstance(load, NewtonianGravity) and load.about == frame and load.centre == INERTIAL != frame:
+            yield scene.to_axes(scene.position(frame, algebra.zero_vector, INERTIAL), INERTIAL, frame)
+            return
+
+
+def _positions(system: System, frame: str, values: Any, times: Any) -> Positions:
+    points = _points(system, frame)
+    places = np.array(values[: 3 * len(points)], dtype=float).reshape(len(points), 3, -1)
+    upward = np.asarray(values[3 * len(points) :, 0], dtype=float)
+    length = float(np.linalg.norm(upward)) if len(upward) else 0.0
+    up = (float(upward[0] / length), float(upward[1] / length), float(upward[2] / length)) if length > 0 else None
+    joints = {point.body: i for i, point in enumerate(points) if point.kind == JOINT}
+    own = [i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE)]
+    extent = float(np.max(np.linalg.norm(np.ptp(places[own], axis=0), axis=0)))
+    travelled = float(np.linalg.norm(np.ptp(places[own], axis=(0, 2))))
+    scale = float(np.max(np.abs(places[own])))
+    point_like = extent <= STILL * scale
+    for i, point in enumerate(points):
+        if point.kind == AXIS:
+            places[i] = places[joints[point.body]] + (0.1 * travelled if travelled > STILL * scale else 1.0) * places[i]
+    kept = [
+        i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE) or (point.kind == AXIS and point_like)
+    ]
+    if any(_held(system, frame, points[i]) for i in kept):
+        kept.insert(0, 0)
+    shown = tuple(points[i] for i in kept)
+    links, slides = _lines(system, frame, shown)
+    centres = {body.name: _centre(shown, body) for body in system.bodies if body.mass != ZERO and body.name in joints}
+    return Positions(system, frame, shown, links, slides, centres, times, places[kept], up)
+
+
+def _centre(points: Sequence[Point], body: Body) -> int:
+    own = [i for i, point in enumerate(points) if point.body == body.name and point.kind in (JOINT, MASS_CENTRE)]
+    return own[-1]
+
+
+def _held(system: System, frame: str, point: Point) -> bool:
+    """Whether a joint hangs on the origin of the frame by a spring or a damper."""
+    if point.kind != JOINT or system.body(point.body).attached_to != frame:
+        return False
+    held = {load.coordinate for load in system.loads if isinstance(load, CoordinateSpring | CoordinateDamper)}
+    return any(held & names(x) for x in system.body(point.body).connection_point)
+
+
+def _lines(
+    system: System, frame: str, points: Sequence[Point]
+) -> tuple[tuple[tuple[int, int], ...], tuple[tuple[int, int], ...]]:
+    """Links and slides; no line leads from the frame to a body that floats or rolls freely."""
+    number = {(point.body, point.kind): i for i, point in enumerate(points)}
+    moving = {*system.coordinates, *system.velocities}
+    links, slides = [], []
+    for i, point in enumerate(points):
+        if point.kind in (MASS_CENTRE, AXIS):
+            links.append((number[point.body, JOINT], i))
+        elif point.kind == JOINT:
+            body = system.body(point.body)
+            parent = number.get((body.attached_to, JOINT))
+            if _held(system, frame, point):
+                parent = number[frame, ORIGIN]
+            if parent is not None:
+                moves = any(moving & names(x) for x in body.connection_point)
+                (slides if moves else links).append((parent, i))
+    return tuple(links), tuple(slides)
+
+
+def _extent(found: Positions) -> float:
+    """How large the system looks, the origin of the frame included."""
+    low = np.minimum(np.min(found.places, axis=(0, 2)), 0.0)
+    high = np.maximum(np.max(found.places, axis=(0, 2)), 0.0)
+    return float(np.linalg.norm(high - low))
