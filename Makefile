@@ -1,6 +1,8 @@
 # make          lint, types and tests: the same as CI
 # make demo     sets up an environment and runs the satellite of the paper
 # make test     sets up and runs the tests
+# make systems  every description that comes with it, in one line each
+# make gallery  draws systems/figures again
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
 
 PYTHON ?= python3
@@ -8,7 +10,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo bench clean
+.PHONY: all lint types test demo systems gallery bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -33,6 +35,28 @@ test: $(READY)
 
 demo: $(READY)
 	$(BIN)/mbsym run systems/satellite.yaml
+
+systems: $(READY)
+	$(BIN)/mbsym run systems --brief
+
+# The system, how long it moves, which of its figures, further options.
+define figure
+$(BIN)/mbsym simulate systems/$(1).yaml --time $(2) --format png --out reports/gallery/$(1) --no-estimate --quiet $(4)
+cp reports/gallery/$(1)/$(3).png systems/figures/$(1).png
+
+endef
+
+gallery: $(READY)
+	@mkdir -p systems/figures
+	$(call figure,tethered-satellites,60,motion)
+	$(call figure,satellite-with-damper,120,histories,--set p2=1/2)
+	$(call figure,gyrostat,0.1,motion)
+	$(call figure,orbital-gyrostat,12,motion)
+	$(call figure,clebsch,8,motion)
+	$(call figure,gravity-gradient,20000,motion,--set psi=0.5 --set theta=0.4 --set phi=0.3)
+	$(call figure,dumbbell,6000,motion,--set alpha=0.8 --set beta=0.4)
+	$(call figure,satellite,20,motion)
+	$(call figure,double-pendulum,6,motion)
 
 bench: $(READY)
 	$(BIN)/python tests/bench/run.py

@@ -34,6 +34,8 @@ class Options:
     quiet: bool
     strict_claims: bool = False
     ledger: bool = False
+    brief: bool = False
+    width: int = 0
 
 
 def _problems(context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, ...]:
@@ -62,6 +64,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default=60_000, show_default=True, help="Budget of terms for one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
+@click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
@@ -71,6 +74,7 @@ def command(
     out: Path | None,
     terms: int,
     strict_claims: bool,
+    brief: bool,
     ledger: bool,
     quiet: bool,
 ) -> None:
@@ -89,12 +93,14 @@ def command(
     Examples:
       mbsym run systems/satellite.yaml
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
+      mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
     """
-    options = Options(problems, formats, terms, quiet, strict_claims, ledger)
     paths = list(_descriptions(files))
     if not paths:
         raise click.UsageError(f"no descriptions ({', '.join(SUFFIXES)}) in {', '.join(map(str, files))}")
+    width = max(len(path.name) for path in paths)
+    options = Options(problems, formats, terms, quiet, strict_claims, ledger, brief, width)
     worst = OK
     for path, folder in zip(paths, _folders(paths, out), strict=True):
         worst = max(worst, _run_one(path, folder, options))
@@ -174,7 +180,9 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
         write_whole(file, text)
     for line in missing:
         print(line, file=sys.stderr)
-    if not options.quiet:
+    if options.brief and not options.quiet:
+        _print_brief(analysis, path, options.width, time.perf_counter() - started)
+    elif not options.quiet:
         _print_summary(analysis, path, list(texts), time.perf_counter() - started)
         if options.ledger:
             _print_ledger(found)
@@ -209,6 +217,13 @@ def _progress(quiet: bool) -> Iterator:
         return
     with console(stderr=True).status("") as status:
         yield lambda text: status.update(text)
+
+
+def _print_brief(analysis: Analysis, path: Path, width: int, seconds: float) -> None:
+    from mbsym.report.brief import brief
+    from mbsym_cli.show import show_brief
+
+    show_brief(brief(analysis, seconds), path.name, width)
 
 
 def _print_summary(analysis: Analysis, path: Path, files: list[Path], seconds: float) -> None:

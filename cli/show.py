@@ -12,6 +12,7 @@ from mbsym_cli.console import console
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
+    from mbsym.report.brief import Brief
     from mbsym.report.claims import ClaimLine
     from mbsym.report.summary import Line, Summary
 
@@ -30,6 +31,20 @@ def show(found: Summary, path: Path, seconds: float) -> None:
     if found.files:
         names = ", ".join(path.name for path in found.files)
         out.print(Text.assemble("  files in ", (str(found.files[0].parent), "bold"), f": {names}"))
+
+
+def show_brief(found: Brief, name: str, width: int) -> None:
+    """A run in one line; columns are as wide as they mostly are."""
+    colour = next((colour for word, colour in reversed(_COLOURS.items()) if word in found.self_check), "")
+    text = Text.assemble(
+        (f"{name:<{width}}", "bold"),
+        f"  {found.problems:<8}",
+        (f"  {found.self_check:<32}", colour),
+        f"  {found.claims:<30}",
+        (f"{found.seconds:7.2f} s", "dim"),
+        (f"  {found.missing}" if found.missing else "", "yellow"),
+    )
+    console().print(text)
 
 
 def _problem(line: Line) -> None:

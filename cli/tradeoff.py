@@ -74,8 +74,9 @@ def command(
     reference solution of another method in 160 bits, whose own error is printed.  Simpler models (gravity of lower
     order, linearised equations, coordinates that rest taken out) are compared with the most faithful one.
 
-    Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png.  Exit codes: 0 done, 1 files could not be
-    written, 2 something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
+    Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
+    ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or wrong, 3 there is no
+    solution up to T, 130 interrupted.
 
     \b
     Example:
@@ -159,7 +160,7 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
             )
             trade = tradeoff(dynamics, methods, truth, request.budget, lambda label: say(f"{file.name}: {label}"))
             models: tuple[ModelError, ...] = ()
-            if request.fidelity:
+            if request.fidelity and not trade.interrupted:
                 models = fidelity.measured(found, METHODS["dop853"], times, lambda label: say(f"{file.name}: {label}"))
         except Breakdown as error:
             print(f"{file}: there is no reference solution up to t = {request.end:g}: {error}", file=sys.stderr)
@@ -168,8 +169,13 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
             print(f"{file}: the equations have no program: {error}", file=sys.stderr)
             return BROKEN_DOWN
         say(f"{file.name}: drawing")
-        paths = _write(folder, found.system, trade, models, request)
-    _print(file, found.system, trade, models, request, paths)
+        paths = [] if not trade.rows else _write(folder, found.system, trade, models, request)
+    if trade.rows:
+        _print(file, found.system, trade, models, request, paths)
+    if trade.interrupted:
+        kept = f"; what was measured is kept in {paths[0].parent}" if trade.rows else ""
+        print(f"{file}: interrupted{kept}", file=sys.stderr)
+        return INTERRUPTED
     return OK
 
 
@@ -179,11 +185,13 @@ def _write(
     from mbsym.report.tradeoff_figure import work_precision
     from mbsym.report.tradeoff_table import fidelity_csv, tradeoff_csv
 
-    texts: dict[str, str | bytes] = {"tradeoff.csv": tradeoff_csv(trade)}
+    mark = "-partial" if trade.interrupted else ""
+    texts: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade)}
     if models:
         texts["fidelity.csv"] = fidelity_csv(models)
     title = f"{system.name}, t = 0 to {request.end:g}"
-    texts |= work_precision(trade, request.target, title, models, ("svg", "png"))
+    pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
+    texts |= {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
     for name, text in texts.items():
         write_whole(folder / name, text)
     return [folder / name for name in texts]

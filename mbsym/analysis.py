@@ -87,10 +87,11 @@ CLAIMS_SHARE, CLAIM_SHARE = 4, 16
 
 @dataclass(frozen=True)
 class NoResult:
-    """Why a stage has no result, and what to try next; a value, not a crash."""
+    """Why a stage has no result, in a sentence and in a word or two, and what to try next; a value, not a crash."""
 
     reason: str
     hint: str = ""
+    short: str = "no closed form"
 
 
 class Unavailable(Exception):
@@ -145,7 +146,7 @@ class Analysis:
                 hint = "the straight-line program is available; raise --terms for more"
                 failure = NoResult(str(reason), hint if "budget" in str(reason) else "")
             except SingularPoint as reason:
-                failure = NoResult(f"singular: {reason}", "choose another motion or other coordinates")
+                failure = NoResult(f"singular: {reason}", "choose another motion or other coordinates", "singular")
             whole = time.perf_counter() - started
             self._stages[name] = Stage(name, value, failure, whole - self._nested)
             self._nested = outer + whole
@@ -215,7 +216,7 @@ class Analysis:
     def _expanded(self) -> Scene:
         if not self.system.motion:
             hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in self.system.coordinates) + "}"
-            raise Unavailable("motion", NoResult("the description gives no unperturbed motion", hint))
+            raise Unavailable("motion", NoResult("the description gives no unperturbed motion", hint, "no motion"))
         return linearisation.quadratised(self.parameters_scene)
 
     # --- the numbered problems ---
@@ -255,16 +256,18 @@ class Analysis:
     def _linearisation(self) -> Linearisation:
         if self.equilibrium.impossible:
             never = ", ".join(f"{item} = 0" for item in self.equilibrium.impossible)
-            raise Unavailable("motion", NoResult(f"the given motion does not exist: {never} is impossible"))
+            raise Unavailable(
+                "motion", NoResult(f"the given motion does not exist: {never} is impossible", "", "no such motion")
+            )
         if self.equilibrium.unsteady:
             varying = ", ".join(self.equilibrium.unsteady)
             reason = f"on the given motion the equations still vary with {varying}"
             hint = self._steady_order() or "it is no steady motion in these coordinates"
-            raise Unavailable("motion", NoResult(reason, hint))
+            raise Unavailable("motion", NoResult(reason, hint, "not steady"))
         try:
             return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
         except linearisation.TimePeriodic as reason:
-            raise Unavailable("linearisation", NoResult(str(reason), self._steady_order())) from None
+            raise Unavailable("linearisation", NoResult(str(reason), self._steady_order(), "time-periodic")) from None
 
     def _steady_order(self) -> str:
         """A hint at the rotation sequence in which the first approximation is steady; "" where none is known."""
@@ -310,7 +313,7 @@ class Analysis:
         missing = missing_values(self.system, values)
         if missing:
             hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
-            raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint))
+            raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values"))
         return equilibria.equilibria(self.system, values)
 
     # --- claims ---
@@ -323,15 +326,19 @@ class Analysis:
     def _claims(self) -> tuple[ClaimResult, ...]:
         if not self.system.claims:
             return ()
-        arguments = list(claims.Symbols(self.system).arguments())
+        symbols = claims.Symbols(self.system)
+        own = angle_denominators(self.system)
+        arguments = {id(claim): list(symbols.arguments(claim)) for claim in self.system.claims}
+        # Sines that only claims hold: those claims are judged in a ring of their own, and cost the others nothing.
+        further = {key: some for key, some in arguments.items() if angle_denominators(self.system, some) != own}
         source = self
-        if angle_denominators(self.system, arguments) != self.ring.angles:  # sines that only the claims hold
+        if further:
             source = Analysis(self.system, self.problems, self.terms)
-            source.ring = ring_of(self.system, self.terms, arguments)
-        allowance = source.ring.work_budget // CLAIMS_SHARE
+            source.ring = ring_of(self.system, self.terms, [one for some in further.values() for one in some])
+        allowance = self.ring.work_budget // CLAIMS_SHARE
         found = []
         for claim in self.system.claims:
-            result, spent = self._claim(source, claim, allowance)
+            result, spent = self._claim(source if id(claim) in further else self, claim, allowance)
             allowance -= spent
             found.append(result)
         return tuple(found)

@@ -7,6 +7,7 @@ import csv
 import json
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,11 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from conftest import OWN, SHIPPED
+from conftest import SHIPPED
 from flint import fmpq
 
 import mbsym
+from mbsym.algebra.base import SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.analysis import ALL_PROBLEMS, Analysis
 from mbsym.expressions.tree import Name, names
@@ -74,6 +76,13 @@ def satellite_in_plane(psi: str = "0") -> str:
     return before + PLANE["initial"].replace("psi: 0", f"psi: {psi}") + "# " + rest.partition("abbreviations:")[0]
 
 
+@cache
+def shipped(name: str, problems: tuple[int, ...] = ALL_PROBLEMS) -> tuple[Analysis, dict[str, list[Saving]]]:
+    """The analysis and the ledger of a shipped system, made once."""
+    analysis = mbsym.load(SHIPPED / f"{name}.yaml", problems)
+    return analysis, savings(analysis)
+
+
 def savings(analysis: Analysis) -> dict[str, list[Saving]]:
     """The ledger by kind, after a run over the problems asked for."""
     for number in analysis.problems:
@@ -96,14 +105,9 @@ def test_where_nothing_can_be_saved_nothing_is_claimed() -> None:
     assert savings(mbsym.loads(GENERIC)).keys() <= ALWAYS
 
 
-@pytest.mark.parametrize(
-    "path",
-    [SHIPPED / name for name in ("satellite.yaml", "heavy-top.yaml", "cart-pendulum.yaml")]
-    + [OWN / "disc-on-incline.yaml"],
-    ids=lambda path: path.stem,
-)
-def test_every_row_saves_something_and_says_why(path: Path) -> None:
-    for items in savings(mbsym.load(path)).values():
+@pytest.mark.parametrize("name", ["satellite", "heavy-top", "cart-pendulum", "dumbbell"])
+def test_every_row_saves_something_and_says_why(name: str) -> None:
+    for items in shipped(name)[1].values():
         for item in items:
             assert item.what
             assert item.why
@@ -153,7 +157,7 @@ def moving_states(system: System) -> list[State]:
     for state in rational_states(system, ring, 6):
         try:
             moving.append(accelerated(system, state, found))
-        except ZeroDivisionError:
+        except (SingularPoint, ZeroDivisionError):
             continue
     assert len(moving) >= 3
     return moving[:3]
@@ -174,11 +178,17 @@ def holds_with_another_value(system: System, name: str) -> bool:
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [("satellite", {"M2"}), ("clebsch", {"M", "R"}), ("spherical-pendulum", {"m"}), ("double-pendulum", set())],
+    [
+        ("satellite", {"M2"}),
+        ("clebsch", {"M", "R"}),
+        ("spherical-pendulum", {"m"}),
+        ("double-pendulum", set()),
+        ("dumbbell", {"m1", "m2", "l"}),
+    ],
 )
 def test_dropped_parameters_are_those_that_make_no_difference(name: str, expected: set[str]) -> None:
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
-    rows = savings(analysis).get("parameters that drop out", [])
+    analysis, found = shipped(name)
+    rows = found.get("parameters that drop out", [])
     assert {parameter for item in rows for parameter in item.what} == expected
     assert all(item.how == PROVED for item in rows)
     system = analysis.system
@@ -194,8 +204,8 @@ def test_a_dropped_parameter_that_no_closed_form_proves_is_only_verified(monkeyp
 
 
 def test_cyclic_coordinates_lower_the_order_by_two_each() -> None:
-    analysis = mbsym.load(SHIPPED / "heavy-top.yaml")
-    (item,) = savings(analysis)["cyclic coordinates"]
+    analysis, found = shipped("heavy-top")
+    (item,) = found["cyclic coordinates"]
     assert item.what == ("phi",)
     assert (item.measures[0].without, item.measures[0].taken) == (6, 4)
     assert {name for name in ("alpha", "beta", "phi") if turned_alike(analysis.system, name)} == {"phi"}
@@ -226,13 +236,13 @@ def test_a_driven_coordinate_is_not_cyclic() -> None:
 
 def test_point_masses_of_the_double_pendulum_save_four_terms() -> None:
     """J3 theta1'^2/2 for the first rod, J3 (theta1' + theta2')^2/2 for the second: 1 + 3 terms."""
-    (item,) = savings(mbsym.load(SHIPPED / "double-pendulum.yaml", (2,)))["point masses"]
+    (item,) = shipped("double-pendulum")[1]["point masses"]
     assert item.what == ("first rod", "second rod")
     assert measure(item, "terms of T").saved == 4
 
 
 def test_a_massless_frame_and_unused_axes() -> None:
-    found = savings(mbsym.load(SHIPPED / "satellite.yaml"))
+    _, found = shipped("satellite")
     assert found["massless bodies"][0].what == ("orbital frame",)
     # m R^2 omega0^2/2 is all that a mass of the orbital frame adds to T.
     assert measure(found["massless bodies"][0], "terms of T").saved == 1
@@ -256,8 +266,7 @@ def test_constant_rotations_cost_nothing() -> None:
 
 
 def test_subsystems_and_vanishing_entries_of_the_satellite() -> None:
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
-    found = savings(analysis)
+    analysis, found = shipped("satellite")
     (item,) = found["subsystems"]
     assert item.what == ("{psi, phi, sigma}", "{theta, delta}")
     assert measure(item, "terms of det").saved > 0
@@ -268,7 +277,7 @@ def test_subsystems_and_vanishing_entries_of_the_satellite() -> None:
 
 
 def test_coupled_coordinates_are_no_subsystems() -> None:
-    assert "subsystems" not in savings(mbsym.load(SHIPPED / "double-pendulum.yaml"))
+    assert "subsystems" not in shipped("double-pendulum")[1]
 
 
 def test_outputs_nobody_asked_for_are_those_that_were_not_derived() -> None:
@@ -285,8 +294,7 @@ def test_outputs_nobody_asked_for_are_those_that_were_not_derived() -> None:
 
 
 def test_all_problems_asked_leave_nothing_unasked() -> None:
-    analysis = mbsym.load(SHIPPED / "double-pendulum.yaml", ALL_PROBLEMS)
-    assert "outputs nobody asked for" not in savings(analysis)
+    assert "outputs nobody asked for" not in shipped("double-pendulum")[1]
 
 
 # --- programs ---
@@ -332,7 +340,7 @@ def test_zero_values_take_their_terms_with_them() -> None:
 
 
 def test_what_depends_on_parameters_only_is_counted_once() -> None:
-    (item,) = savings(mbsym.load(SHIPPED / "double-pendulum.yaml", (2,)))["parameters only"]
+    (item,) = shipped("double-pendulum")[1]["parameters only"]
     assert item.measures[0].unit == OPERATIONS
     assert item.measures[0].saved > 0
 

@@ -147,6 +147,21 @@ def test_a_wrong_reference_is_noticed_in_every_ladder() -> None:
     assert min(row.error for row in found.rows) > 1e-6
 
 
+def test_an_interrupt_keeps_the_rows_there_are() -> None:
+    dynamics = shipped("double-pendulum.yaml")
+    truth = reference(dynamics, [0.0, 1.0])
+    labels: list[str] = []
+
+    def stop_later(label: str) -> None:
+        labels.append(label)
+        if len(labels) == 4:
+            raise KeyboardInterrupt
+
+    found = tradeoff(dynamics, [METHODS["dop853"]], truth, 2.0, stop_later)
+    assert found.interrupted
+    assert len(found.rows) == 3
+
+
 # --- models ---
 
 

@@ -201,9 +201,9 @@ class Lowering:
         return self.algebra.sin_cos_of(self(expression)) if form is None else self.algebra.sin_cos(form)
 
     def _angle_form(self, expression: Expression) -> LinearForm | None:
-        """None for an angle of its own: a number that is no multiple of pi, a velocity, anything not linear."""
+        """None for an angle of its own: a number that is no multiple of pi, a rate, anything not linear."""
         form = linear_form(expression)
-        if form is None or form.constant or any(name.endswith("_dot") for name, _ in form.coefficients):
+        if form is None or form.constant or any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients):
             return None
         return form
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq_mat
 
+from mbsym.algebra.base import SingularPoint
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -93,12 +94,15 @@ def _lagrangian_gradient(found: Programs, names: Sequence[str]) -> tuple[Node, .
 def accelerated(system: System, state: State, found: Programs) -> State:
     """The state with the accelerations M^-1 f that the equations of motion give there.
 
-    Raises SingularPoint or ZeroDivisionError where M is singular, NotRational where a value is irrational.
+    Raises SingularPoint where M is singular, or cannot be told from it; NotRational where a value is irrational.
     """
     n = len(system.coordinates)
     nodes = [node for row in found.mass_matrix for node in row] + [*found.forcing]
     values = found.program.evaluate(nodes, state.values, state.numbers)
     matrix: Any = arb_mat if any(isinstance(value, arb) for value in values) else fmpq_mat
-    solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
+    try:
+        solved = matrix(n, n, values[: n * n]).solve(matrix(n, 1, values[n * n :]))
+    except ZeroDivisionError:
+        raise SingularPoint("the mass matrix is singular there") from None
     accelerations = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
     return State(state.numbers, {**state.values, **accelerations})

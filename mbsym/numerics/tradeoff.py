@@ -83,12 +83,13 @@ class Order:
 
 @dataclass(frozen=True)
 class Tradeoff:
-    """All rows, in the order measured; ``unusable`` methods with the reason."""
+    """All rows, in the order measured; ``unusable`` methods with the reason; ``interrupted``: not all are there."""
 
     rows: tuple[Measured, ...]
     reference: Reference
     orders: tuple[Order, ...]
     unusable: tuple[tuple[str, str], ...]
+    interrupted: bool = False
 
     def cheapest(self, target: float) -> Measured | None:
         """The least expensive row whose error is at most ``target``."""
@@ -112,11 +113,13 @@ def tradeoff(
 
     The budget is one of integration (compiling comes on top, once a method) and is shared evenly between the ladders;
     a ladder stops where its next rung would cost too much, or where a finer setting no longer gives a smaller error.
+    Ctrl-C ends the measuring and keeps the rows that there are.
     """
     judge = _Judge(dynamics, reference)
     rows: list[Measured] = []
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
+    interrupted = False
     for place, (method, scalar) in enumerate(pairs):
         share = (budget - judge.spent) / (len(pairs) - place)
         try:
@@ -124,7 +127,11 @@ def tradeoff(
                 rows.append(row)
         except Unusable as reason:
             unusable.append((method.traits.name, str(reason)))
-    return Tradeoff(_with_front(rows), reference, tuple(_orders(rows)), tuple(dict.fromkeys(unusable)))
+        except KeyboardInterrupt:
+            interrupted = True
+            break
+    orders = tuple(_orders(rows))
+    return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted)
 
 
 class _Judge:
@@ -140,6 +147,10 @@ class _Judge:
 
     def measure(self, candidate: Candidate) -> Measured:
         """Error, drift and median seconds of a candidate; a breakdown is a result too."""
+        with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
+            return self._measure(candidate)
+
+    def _measure(self, candidate: Candidate) -> Measured:
         times = self.reference.times
         seconds: list[float] = []
         while not seconds or (sum(seconds) < SHORT and len(seconds) < REPEATS):

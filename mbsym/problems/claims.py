@@ -72,8 +72,11 @@ NUMERICAL = "verified numerically"
 UNDECIDED = "undecided"
 DIFFERS = "differs"
 
-#: Working precision of balls, in bits.
+#: Working precision of balls, in bits; numbers whose digits cancel are tried again with more of them.
 PRECISION = 256
+FINER = (PRECISION, 1024, 4096)
+#: What is left of a number that is known so well, relatively, is rounding.
+ROUNDING = arb(2) ** -60
 #: Differences of more products of velocities than this are not taken apart.
 MOST_PARTS = 60
 #: Digits of a derived number that are shown.
@@ -248,18 +251,14 @@ class Symbols:
                 return Operation(operator, self.opened(left), self.opened(right))
         return expression
 
-    def arguments(self) -> Iterator[Expression]:
-        """Every angle under sin, cos and tan in the claims and abbreviations."""
-        for expression in self._all():
+    def arguments(self, claim: Claim) -> Iterator[Expression]:
+        """Every angle under sin, cos and tan in a claim and in the abbreviations that it is written in."""
+        parts = [part for part in (claim.equals, claim.right, claim.of_expression, claim.at) if part is not None]
+        parts += [self.values[name] for name in sorted(self.occurring(parts)) if name in self.values]
+        for expression in parts:
             for node in walk(self.opened(expression)):
                 if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
                     yield node.argument
-
-    def _all(self) -> Iterator[Expression]:
-        yield from self.values.values()
-        for claim in self.system.claims:
-            parts = (claim.equals, claim.right, claim.of_expression, claim.at)
-            yield from (part for part in parts if part is not None)
 
     def occurring(self, expressions: Iterable[Expression]) -> set[str]:
         """The names that occur, those in abbreviations included."""
@@ -485,8 +484,8 @@ def _moving(derived: Derived, x: Polynomial) -> bool:
     degrees = x.degrees()
     if any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind in _MOTION):
         return True
-    varying = [*derived.system.coordinates, *(item.name for item in derived.system.prescribed), "t"]
-    return bool(ring.dependencies(x, varying))
+    prescribed = (item.name for item in derived.system.prescribed)
+    return bool(ring.dependencies(x, [*derived.system.coordinates, *derived.system.velocities, *prescribed, "t"]))
 
 
 def _factor(derived: Derived, claimed: Polynomial, truth: Polynomial, any_factor: bool) -> Formula | None:
@@ -648,7 +647,7 @@ def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynom
     """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
     scene, ring, equations = derived.scene, derived.ring, derived.equations
     shown = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
-    if not any(claimed.degrees()[ring.index("velocity", name)] > 0 for name in derived.system.coordinates):
+    if not ring.dependencies(claimed, derived.system.velocities):
         return replace(shown, outcome=DIFFERS, remark="it does not hold any velocity")
     outcome = EXACT
     for outcome in (EXACT, RELATIONS):
@@ -803,34 +802,51 @@ def _same_condition(signs: Signs, first: Polynomial, second: Polynomial, unequal
 
 
 def _at_state(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """The derived value as a ball against the number that was printed, to its digits."""
-    keep, ctx.prec = ctx.prec, PRECISION
+    """The derived value as a ball against the number that was printed, to its digits.
+
+    A ball too wide to tell is computed again in more bits; where the most of them do not tell, nothing is decided.
+    """
+    keep = ctx.prec
     try:
-        state = _state(derived.system, claim)
-        symbols = Symbols(derived.system)
-        try:
-            printed = _number(symbols, state, claim.equals)
-            if claim.of_expression is not None:
-                value = _value(derived, symbols, state, claim.of_expression)
-            else:
-                value = Carrier(derived.ring, state.numbers, state.values)(_quantity(derived, claim))
-        except KeyError as missing:
-            raise NotRational(f"no number is given for {missing.args[0]}") from None
-        result = ClaimResult(claim, about, DIGITS, value=_shown(value))
-        if not value.is_finite():
-            return replace(result, outcome=UNDECIDED, remark="the value is not finite")
-        error = abs(printed - value)
-        if not claim.printed:
-            holds = error.contains(0) and error.rad() < (1 + abs(value)) * arb(2) ** -60
-            return replace(result, outcome=NUMERICAL if holds else DIFFERS)
-        digits, unit = _printed(claim.printed)
-        tolerance = arb(unit) / 2
-        result = replace(result, printed_digits=digits, digits=digits)
-        if error < tolerance or (error - tolerance).contains(0):
-            return result
-        return replace(result, outcome=DIFFERS, digits=_agreeing(error, value, digits))
+        for ctx.prec in FINER:
+            result = _at_precision(derived, claim, about, last=ctx.prec == FINER[-1])
+            if result is not None:
+                return result
     finally:
         ctx.prec = keep
+    return ClaimResult(claim, about, UNDECIDED, remark=f"too many digits cancel, even of {FINER[-1]} bits")
+
+
+def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> ClaimResult | None:
+    """The verdict in the working precision, None where balls are too wide for one."""
+    state = _state(derived.system, claim)
+    symbols = Symbols(derived.system)
+    try:
+        printed = _number(symbols, state, claim.equals)
+        if claim.of_expression is not None:
+            value = _value(derived, symbols, state, claim.of_expression)
+        else:
+            value = Carrier(derived.ring, state.numbers, state.values)(_quantity(derived, claim))
+    except KeyError as missing:
+        raise NotRational(f"no number is given for {missing.args[0]}") from None
+    for what, number in (("the value", value), ("the claimed value", printed)):
+        if not number.is_finite():
+            return ClaimResult(claim, about, UNDECIDED, remark=f"{what} is not finite") if last else None
+    result = ClaimResult(claim, about, DIGITS, value=_shown(value))
+    error = abs(printed - value)
+    if not claim.printed:
+        if not error.contains(0):
+            return replace(result, outcome=DIFFERS)
+        # Where the value itself cannot be told from zero, there is nothing that it could be compared with.
+        size = 1 + abs(value) if last else value.abs_lower()
+        return replace(result, outcome=NUMERICAL) if error.rad() <= ROUNDING * size else None
+    digits, unit = _printed(claim.printed)
+    tolerance = arb(unit) / 2
+    if error < tolerance or ((error - tolerance).contains(0) and error.rad() < ROUNDING * tolerance):
+        return replace(result, printed_digits=digits, digits=digits)
+    if not error > tolerance:
+        return None
+    return replace(result, outcome=DIFFERS, printed_digits=digits, digits=_agreeing(error, value, digits))
 
 
 def _state(system: System, claim: Claim) -> State:
@@ -903,7 +919,7 @@ def _agreeing(error: Any, value: Any, digits: int) -> int:
 
 def _shown(value: Any) -> str:
     """A dozen digits, zero where nothing but rounding is left."""
-    if value.is_finite() and abs(value) < arb(2) ** -120:
+    if value.contains(0):
         return "0"
     written = str(value.mid().str(DIGITS_SHOWN, radius=False))
     mantissa, mark, exponent = written.partition("e")

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
-from flint import acb_mat, arb, arb_mat, ctx
+from flint import acb_mat, arb, arb_mat, ctx, fmpq_mpoly_ctx
 
+from mbsym.algebra.ring import Polynomial
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
     CRITICAL,
@@ -26,7 +27,10 @@ from mbsym.problems.stability_theory import (
     STABLE,
     UNDECIDED,
     UNSTABLE,
+    LinearSystem,
     Verdict,
+    drifting,
+    ignoring_cyclic,
 )
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
@@ -45,6 +49,55 @@ def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 2
         return _verdict(m, d, g, k, n, conservative)
     finally:
         ctx.prec = keep
+
+
+def enclosed_verdict_with_cyclic(
+    parts: Sequence[Rows], conservative: bool, cyclic: tuple[int, ...], bits: int = 200
+) -> Verdict:
+    """By enclosures, cyclic coordinates ignored after Routh where their momenta are constant."""
+    plain = enclosed_verdict(parts, conservative, bits)
+    if not cyclic or plain.word == UNSTABLE or plain.explanation == MASS_SINGULAR:
+        return plain
+    symbols: list[Any] = []
+
+    def symbol(x: Any) -> int:
+        symbols.append(x)
+        return len(symbols) - 1
+
+    size = len(parts[0])
+    places = [
+        {(i, j): symbol(rows_[i][j]) for i in range(size) for j in range(size) if not bool(rows_[i][j] == 0)}
+        for rows_ in parts
+    ]
+    names = [f"e{k}" for k in range(max(1, len(symbols)))]
+    where = fmpq_mpoly_ctx.get(names)
+    gens, zero = where.gens(), where.constant(0)
+    made = [
+        tuple(tuple(gens[at[i, j]] if (i, j) in at else zero for j in range(size)) for i in range(size))
+        for at in places
+    ]
+    try:
+        system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic)
+        reduced = ignoring_cyclic(system)
+    except ValueError:
+        return Verdict(UNDECIDED, "", "Cyclic coordinates give zero roots, and no theorem decides about the rest.")
+
+    def value(x: Polynomial) -> Any:
+        total = arb(0)
+        for monomial, coefficient in x.terms():
+            term = arb(coefficient)
+            for k, e in enumerate(monomial):
+                for _ in range(int(e)):
+                    term = term * symbols[k]
+            total = total + term
+        return total
+
+    keep, ctx.prec = ctx.prec, bits
+    try:
+        smaller = [[[value(x) for x in row] for row in rows_] for rows_ in reduced.matrices]
+    finally:
+        ctx.prec = keep
+    return drifting(enclosed_verdict(smaller, conservative, bits))
 
 
 def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) -> Verdict:

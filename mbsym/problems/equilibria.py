@@ -45,7 +45,7 @@ from mbsym.mechanics.charts import Chart, charts, moments, rows
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems import energy as energies
-from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict
+from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability import conserves_energy
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
@@ -59,8 +59,6 @@ from mbsym.problems.stability_theory import (
     LinearSystem,
     Verdict,
     combine,
-    drifting,
-    ignoring_cyclic,
     verdict_at,
 )
 
@@ -918,7 +916,7 @@ class _Linear:
                 verdicts.append(_rational_verdict(parts, self.conservative, cyclic))
             else:
                 parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
-                verdicts.append(_enclosed_verdict(parts, self.conservative, cyclic))
+                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
         # Singular coordinates make every other part of the linear equations meaningless.
         return next((v for v in verdicts if v.explanation == MASS_SINGULAR), None) or combine(verdicts)
 
@@ -963,50 +961,3 @@ def _rational_verdict(
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
     found = verdict_at(LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic), {}).verdict
     return replace(found, explanation=MASS_SINGULAR) if found.explanation == "The mass matrix is singular." else found
-
-
-def _enclosed_verdict(parts: Sequence[Sequence[Sequence[Any]]], conservative: bool, cyclic: tuple[int, ...]) -> Verdict:
-    """By enclosures, cyclic coordinates ignored after Routh where their momenta are constant."""
-    plain = enclosed_verdict(parts, conservative, PRECISION)
-    if not cyclic or plain.word == UNSTABLE or plain.explanation == MASS_SINGULAR:
-        return plain
-    symbols: list[Any] = []
-
-    def symbol(x: Any) -> int:
-        symbols.append(x)
-        return len(symbols) - 1
-
-    size = len(parts[0])
-    places = [
-        {(i, j): symbol(rows_[i][j]) for i in range(size) for j in range(size) if not bool(rows_[i][j] == 0)}
-        for rows_ in parts
-    ]
-    names = [f"e{k}" for k in range(max(1, len(symbols)))]
-    where = fmpq_mpoly_ctx.get(names)
-    gens, zero = where.gens(), where.constant(0)
-    made = [
-        tuple(tuple(gens[at[i, j]] if (i, j) in at else zero for j in range(size)) for i in range(size))
-        for at in places
-    ]
-    try:
-        system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic)
-        reduced = ignoring_cyclic(system)
-    except ValueError:
-        return Verdict(UNDECIDED, "", "Cyclic coordinates give zero roots, and no theorem decides about the rest.")
-
-    def value(x: Polynomial) -> Any:
-        total = arb(0)
-        for monomial, coefficient in x.terms():
-            term = arb(coefficient)
-            for k, e in enumerate(monomial):
-                for _ in range(int(e)):
-                    term = term * symbols[k]
-            total = total + term
-        return total
-
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
-        smaller = [[[value(x) for x in row] for row in rows_] for rows_ in reduced.matrices]
-    finally:
-        ctx.prec = keep
-    return drifting(enclosed_verdict(smaller, conservative, PRECISION))

@@ -11,7 +11,7 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
 gyroscopically stabilised only; stable in first approximation only, critical; unstable; undecided.  With symbolic
-parameters it comes as cases, and at numerical values it is decided exactly.
+parameters it comes as cases, and at numerical values it is decided exactly (irrational ones by enclosures).
 
 Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
 
@@ -29,7 +29,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from flint import fmpq
+from flint import ctx, fmpq
 
 from mbsym.algebra.base import NotRational, SingularPoint
 from mbsym.algebra.elimination import Elimination, eliminate
@@ -45,12 +45,16 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
+from mbsym.problems.enclosed_stability import enclosed_verdict_with_cyclic
 from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
 from mbsym.problems.stability_theory import Stability as Theory
+
+#: Working precision where numbers are irrational, in bits.
+PRECISION = 256
 
 _DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
 
@@ -156,9 +160,43 @@ def stability(
         for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
     )
     numerical = _motion_at(scene, equilibrium, values)
-    if numerical is None and all(part.theory.at_point is not None for part in judged):
-        numerical = combine(part.theory.at_point.verdict for part in judged if part.theory.at_point is not None)
+    if numerical is None and values is not None:
+        numerical = combine(
+            _enclosed(scene, linear, part.coordinates, values, energy_conserved, cyclic)
+            if part.theory.at_point is None
+            else part.theory.at_point.verdict
+            for part in judged
+        )
     return Stability(judged, combine(part.theory.verdict for part in judged), numerical)
+
+
+def _enclosed(
+    scene: Scene,
+    linear: Linearisation,
+    coordinates: Sequence[str],
+    values: Mapping[str, Fraction],
+    energy_conserved: bool,
+    cyclic: Sequence[str],
+) -> Verdict:
+    """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
+    ring = scene.ring
+    at = [linear.coordinates.index(name) for name in coordinates]
+    numbers = dict.fromkeys(ring.names(), fmpq(0))
+    numbers |= {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        parts = [
+            [[ring.evaluate(matrix.polynomials[i][j], numbers) for j in at] for i in at] for matrix in linear.matrices
+        ]
+    finally:
+        ctx.prec = keep
+    idle = tuple(
+        at.index(i)
+        for i in at
+        if linear.coordinates[i] in cyclic
+        and all(x.is_zero() for matrix in (linear.K, linear.N) for x in matrix.polynomials[i])
+    )
+    return enclosed_verdict_with_cyclic(parts, energy_conserved, idle, PRECISION)
 
 
 def _judge(

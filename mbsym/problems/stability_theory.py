@@ -774,13 +774,21 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
         return PointVerdict(verdict, characteristic, roots)
     if roots.left + len(system.cyclic) == 2 * system.size:
         return PointVerdict(drifting(_asymptotic()), characteristic, roots)
-    if _only_momenta(system):
+    there = _with_numbers(system, (m, d, g, k, n))  # a damper of coefficient 0 changes no momentum
+    if _only_momenta(there):
         return PointVerdict(_coasting(), characteristic, roots)
-    if _momenta_are_constant(system):
-        reduced = verdict_at(ignoring_cyclic(system), point)
+    if _momenta_are_constant(there):
+        reduced = verdict_at(ignoring_cyclic(there), point)
         return PointVerdict(drifting(reduced.verdict), characteristic, roots)
     why = "Cyclic coordinates give zero roots, and no theorem decides about the rest."
     return PointVerdict(Verdict(UNDECIDED, "", why), characteristic, roots)
+
+
+def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSystem:
+    """The system with ``numbers`` for its matrices M, D, G, K, N."""
+    context, size = system.M[0][0].context(), range(system.size)
+    m, d, g, k, n = (tuple(tuple(context.constant(matrix[i, j]) for j in size) for i in size) for matrix in numbers)
+    return replace(system, M=m, D=d, G=g, K=k, N=n)
 
 
 def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> Verdict:

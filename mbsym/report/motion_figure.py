@@ -107,7 +107,8 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
-    shown = _snapshots(found.times)
+    step = _step(found.times)
+    shown = _snapshots(found.times, step)
     time = Normalize(float(found.times[0]), float(found.times[-1]))
     if found.tips:
         _tips(axis, found, view, flat, shown, time)
@@ -122,7 +123,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     bar.outline.set_visible(False)  # type: ignore[operator]
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        columns = max(1, int(9.5 * figure.get_figwidth() / (max(map(len, labels)) + 8)))
+        columns = max(1, int(12 * figure.get_figwidth() / (max(map(len, labels)) + 8)))
         figure.legend(
             handles,
             labels,
@@ -133,7 +134,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
             title=None if found.tips else "paths of the mass centres",
             title_fontsize=9,
         )
-    lines = [_title(found), *_caption(found, shown, end), note]
+    lines = [_title(found), *_caption(found, step, end), note]
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure
 
@@ -143,11 +144,11 @@ def _title(found: Positions) -> str:
     return name if len(name) <= 70 else name[:67] + "..."
 
 
-def _caption(found: Positions, shown: Sequence[int], end: float) -> list[str]:
+def _caption(found: Positions, step: float, end: float) -> list[str]:
     last = float(found.times[-1])
     said = f"t = 0 to {_rounded(last)}" + ("" if last == end else f" (of {_rounded(end)})")
-    if len(shown) > 2 and not found.tips:
-        said += f", a snapshot every {_rounded(float(found.times[shown[1]] - found.times[shown[0]]))}"
+    if not found.tips:
+        said += f", a snapshot every {_rounded(step)}"
     return [said] if found.frame == "0" else [said, f"seen in the frame '{found.frame}'"]
 
 
@@ -162,15 +163,17 @@ def _paper(spread: Any) -> tuple[float, float]:
     return max(wide, 3.6), min(max(wide * ratio, 1.6), 6.5)
 
 
-def _snapshots(times: Any) -> list[int]:
-    """The samples nearest to equally spaced times with a round distance, about SNAPSHOTS of them."""
-    span = float(times[-1] - times[0])
-    wanted = span / SNAPSHOTS
+def _step(times: Any) -> float:
+    """A round distance of about SNAPSHOTS snapshots."""
+    wanted = float(times[-1] - times[0]) / SNAPSHOTS
     power = 10.0 ** floor(log10(wanted))
-    step = min((factor * power for factor in (1, 2, 2.5, 5, 10)), key=lambda x: abs(log10(x / wanted)))
-    marks = (float(times[0]) + k * step for k in range(int(span / step * (1 + 1e-9)) + 1))
-    places = [int(np.argmin(np.abs(times - mark))) for mark in marks]
-    return sorted(set(places))
+    return min((factor * power for factor in (1, 2, 2.5, 5, 10)), key=lambda x: abs(log10(x / wanted)))
+
+
+def _snapshots(times: Any, step: float) -> list[int]:
+    """The samples nearest to multiples of ``step``."""
+    count = int(float(times[-1] - times[0]) / step * (1 + 1e-9)) + 1
+    return sorted({int(np.argmin(np.abs(times - (times[0] + k * step)))) for k in range(count)})
 
 
 def _paths(axis: Any, found: Positions, view: _View, flat: Any) -> None:

@@ -22,7 +22,7 @@ from mbsym.model.claims import (
 from mbsym.model.system import INERTIAL
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
-from mbsym.source.placed import Node, Scalar
+from mbsym.source.placed import Mapping, Node, Scalar
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER, Allowed, did_you_mean
 from mbsym.source.settings import read_comparisons
@@ -226,9 +226,10 @@ class _Reader:
 
     def product(self) -> Expression:
         """A product of powers of velocities (in an equation of motion: of accelerations, too)."""
+        errors = self.reading.errors
         value = self.fields.required_expression("at", Allowed("a product of velocities", ("velocity", "acceleration")))
         node = self.fields.get("at")
-        if node is not None and value != ZERO and not _is_product(value):
+        if node is not None and self.reading.errors == errors and not _is_product(value):
             hint = "write for example x_dot*phi_dot or phi_dot**2"
             self.reading.error("bad-entry", "a coefficient belongs to a product of velocities", node.span, hint)
         return value
@@ -249,6 +250,9 @@ class _Reader:
         if isinstance(node, Scalar):
             self.reading.shape_error(node, "'state'", "'initial' or a mapping", "write state: {theta: pi/6}")
             return ()
+        if isinstance(node, Mapping) and not node.entries:
+            hint = "write state: initial, or state: {theta: 0}"
+            self.reading.error("missing-value", "this state holds no number", node.span, hint)
         for entry in self.reading.entries(node, "'state'"):
             value = self.reading.expression(entry.value, NUMBER)
             if self.reading.scope.check_name(entry.key.text, entry.key.span, _STATE):

@@ -264,6 +264,9 @@ ATTRIBUTES = (
     "attributes #0 = { nounwind }\n"
     "attributes #1 = { nounwind willreturn memory(none) }\n"
     "attributes #2 = { noinline nounwind }\n"
+    "attributes #3 = { nounwind willreturn memory(none) }\n"
+    "attributes #4 = { cold noinline nounwind willreturn memory(none) }\n"
+    '!0 = !{!"branch_weights", i32 1, i32 100000}\n'
 )
 
 

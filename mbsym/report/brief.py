@@ -1,0 +1,69 @@
+"""A whole run in one line: problems done, self-check, claims, seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check
+from mbsym.report.claims import HELD, OPEN, REFUTED, claim_line
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+@dataclass(frozen=True)
+class Brief:
+    """``problems``: ``1-7``, or ``1-3, 7`` with ``missing`` ``4-6: no motion``; the others are words and numbers."""
+
+    problems: str
+    missing: str
+    self_check: str
+    claims: str
+    seconds: float
+
+
+def brief(analysis: Analysis, seconds: float) -> Brief:
+    """One line on everything that was asked for."""
+    stages = {number: analysis.stage(number) for number in analysis.problems}
+    failures = [(number, stage.failure.short) for number, stage in stages.items() if stage.failure is not None]
+    return Brief(
+        problems=ranges(number for number, stage in stages.items() if stage.failure is None) or "none",
+        missing="; ".join(
+            f"{ranges(number for number, _ in group)}: {reason}"
+            for reason, group in groupby(failures, key=lambda item: item[1])
+        ),
+        self_check=_self_check(analysis.checks),
+        claims=_claims([claim_line(result).word for result in analysis.claims]),
+        seconds=seconds,
+    )
+
+
+def ranges(numbers: Iterable[int]) -> str:
+    """``1-3, 5`` for 1, 2, 3, 5."""
+    found: list[list[int]] = []
+    for number in sorted(numbers):
+        if found and found[-1][-1] == number - 1:
+            found[-1].append(number)
+        else:
+            found.append([number])
+    return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in found)
+
+
+def _self_check(checks: Sequence[Check]) -> str:
+    """``all exact``, or how many are not; what failed by name."""
+    outcomes = [check.outcome for check in checks]
+    if not outcomes:
+        return "nothing to check"
+    if FAILED in outcomes:
+        return "FAILED: " + ", ".join(check.name for check in checks if check.failed)
+    if set(outcomes) == {EXACT}:
+        return "all exact"
+    words = (EXACT, NUMERICAL, UNDECIDED)
+    return ", ".join(f"{outcomes.count(word)} {word}" for word in words if word in outcomes)
+
+
+def _claims(words: Sequence[str]) -> str:
+    return ", ".join(f"{words.count(word)} {word}" for word in (HELD, REFUTED, OPEN) if word in words) or "no claims"
