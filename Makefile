@@ -49,7 +49,7 @@ endef
 gallery: $(READY)
 	@mkdir -p systems/figures
 	$(call figure,tethered-satellites,60,motion)
-	$(call figure,satellite-with-damper,120,histories,--set p2=1/2)
+	$(call figure,satellite-with-damper,120,drift,--set p2=1/2)
 	$(call figure,gyrostat,0.1,motion)
 	$(call figure,orbital-gyrostat,12,motion)
 	$(call figure,clebsch,8,motion)

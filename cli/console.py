@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +30,16 @@ def console(stderr: bool = False) -> Console:
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
     return Console(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
+
+
+@contextmanager
+def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
+    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    with console(stderr=True).status(text) as spinner:
+        yield lambda text: spinner.update(text)
 
 
 def read_description(path: Path) -> System | None:

@@ -179,7 +179,7 @@ def _cell(one: RelativeEquilibrium, name: str) -> str:
 
 
 def _text(item: CoordinateValue) -> str:
-    return item.text if item.exact else f"{item.value:.8g}"
+    return item.text if item.exact or item.text == "0" else f"{item.value:.8g}"
 
 
 def _show_family(number: int, family: EquilibriumFamily) -> None:

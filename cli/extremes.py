@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from mbsym_cli.assignments import assignments, number
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, counted, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, counted, read_description, status
 from mbsym_cli.files import write_whole
 from mbsym_cli.lacking import lacking
 
@@ -92,7 +91,7 @@ def _measure(
     from mbsym.report.extremes_figure import extremes_figure
     from mbsym.report.extremes_tables import extremes_csv, extremes_json
 
-    with _status(quiet) as say:
+    with status(quiet) as say:
         found = extremes(given, ring_of(given.system), overrides, seconds, lambda text: say(f"{file.name}: {text}"))
         say(f"{file.name}: drawing")
         texts: dict[str, str | bytes] = {"extremes.csv": extremes_csv(found), "extremes.json": extremes_json(found)}
@@ -139,7 +138,7 @@ def _rank(file: Path, given: Scenario, quiet: bool) -> int:
     moving = motion_state(given)
     if moving is not None:
         states.append([float(x) for x in moving])
-    with _status(quiet) as say:
+    with status(quiet) as say:
         found = list(rankings(given, states, lambda text: say(f"{file.name}: {text}")))
     if not found:
         print(f"{file}: no body is oriented by three turns.")
@@ -162,13 +161,3 @@ def _print_ranking(ranking: Ranking, quiet: bool) -> None:
             table.add_row(a.text, f"{a.distance:.4f}", f"{a.pivot:.2e}", str(a.operations), str(a.equations), own)
         out.print(table)
     out.print(Text(ranking.sentence, style="bold"))
-
-
-@contextmanager
-def _status(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda text: None
-        return
-    with console(stderr=True).status("") as status:
-        yield lambda text: status.update(text)

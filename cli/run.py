@@ -5,14 +5,13 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, console, numbers, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, numbers, read_description, status
 from mbsym_cli.files import write_whole
 
 if TYPE_CHECKING:
@@ -157,7 +156,7 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
 
     started = time.perf_counter()
     analysis = Analysis(system, options.problems, options.terms)
-    with _progress(options.quiet) as say:
+    with status(options.quiet) as say:
         for number in analysis.problems:
             say(f"{path.name}: problem {number}, {PROBLEMS[number].title}")
             analysis.stage(number)
@@ -207,16 +206,6 @@ def _ledger(analysis: Analysis, folder: Path, texts: dict[Path, str]) -> Ledger:
         texts[results] = with_ledger(texts[results], found)
     texts[folder / "ledger.csv"] = ledger_csv(found)
     return found
-
-
-@contextmanager
-def _progress(quiet: bool) -> Iterator:
-    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda text: None
-        return
-    with console(stderr=True).status("") as status:
-        yield lambda text: status.update(text)
 
 
 def _print_brief(analysis: Analysis, path: Path, width: int, seconds: float) -> None:

@@ -25,6 +25,7 @@ from mbsym_cli.console import (
     console,
     counted,
     read_description,
+    status,
 )
 from mbsym_cli.files import write_whole
 from mbsym_cli.lacking import lacking
@@ -281,7 +282,7 @@ def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, 
         print(lacking(file, error.lack), file=sys.stderr)
         return BAD_INPUT
     try:
-        with _status(request.quiet, f"{file.name}: compiling"):
+        with status(request.quiet, f"{file.name}: compiling"):
             further = _integrals(system, request)
             dynamics = Dynamics(numbers, further[1]) if further else Dynamics(numbers)
             chosen = _chosen(dynamics, request, None if request.whole else reduced(dynamics))
@@ -401,19 +402,19 @@ def _integrate(
             found = simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
     except Unusable as error:
         raise Refused(f"this method cannot be used here: {error}") from None
-    status = energy_status(dynamics)
+    conserved = energy_status(dynamics)
     further, drifts = _further(dynamics, found, integrals)
     estimated = None
     if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
-        with _status(request.quiet, f"{file.name}: the same more finely, to see how good it is"):
+        with status(request.quiet, f"{file.name}: the same more finely, to see how good it is"):
             estimated = _estimated(dynamics, found, chosen, request)
     summary = {
-        "energy": {"conserved": status, "largest_relative_drift": _largest(found.drift)},
+        "energy": {"conserved": conserved, "largest_relative_drift": _largest(found.drift)},
         "invariants": drifts,
         "estimated_error": estimated,
         "resting": _resting(chosen.resting),
     }
-    paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, status == CONSERVED)
+    paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, conserved == CONSERVED)
     if not request.quiet:
         print_summary(file, dynamics, found, chosen, request, summary, paths)
     if found.breakdown is not None:
@@ -515,7 +516,7 @@ def _write(
     if kinds:
         from mbsym.report.figures import figures
 
-        with _status(request.quiet, "drawing"):
+        with status(request.quiet, "drawing"):
             images = figures(found, kinds, note(found), conserved) | _motion(scenario, found, kinds)
     for name, content in images.items():
         stem, _, kind = name.rpartition(".")
@@ -549,16 +550,6 @@ def _ours(name: str) -> bool:
     """Whether a file name is one that this command writes."""
     drawn = r"(trajectory|(histories|phase-planes|mass-centres)(-\d+)?|drift|motion)(-partial)?\.(csv|svg|png)"
     return re.fullmatch(drawn, name) is not None
-
-
-@contextmanager
-def _status(quiet: bool, text: str) -> Iterator[None]:
-    """A spinner on standard error; nothing where that is no terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield
-        return
-    with console(stderr=True).status(text):
-        yield
 
 
 @contextmanager

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,17 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.assignments import assignments, number
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, console, counted, read_description
+from mbsym_cli.console import (
+    BAD_INPUT,
+    BROKEN_DOWN,
+    FAILED,
+    INTERRUPTED,
+    OK,
+    console,
+    counted,
+    read_description,
+    status,
+)
 from mbsym_cli.files import write_whole
 from mbsym_cli.lacking import lacking
 
@@ -148,7 +157,7 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
     from mbsym.numerics.tradeoff import tradeoff
 
     times = [float(t) for t in np.linspace(0.0, request.end, SAMPLES)]
-    with _status(request.quiet) as say:
+    with status(request.quiet) as say:
         try:
             dynamics = Dynamics(found)
             say(f"{file.name}: reference solution")
@@ -260,13 +269,3 @@ def _print_models(lines: list[tuple[str, ...]]) -> None:
     for line in lines:
         table.add_row(*line)
     console().print(table)
-
-
-@contextmanager
-def _status(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """A spinner on standard error that says what is being done; nothing where it is no terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda text: None
-        return
-    with console(stderr=True).status("") as status:
-        yield lambda text: status.update(text)

@@ -137,10 +137,12 @@ def positions(scenario: Scenario, times: Any, states: Any, ring: Ring | None = N
         codes[f"frame{number}"] = Code(fresh, inputs, tuple(nodes))
     compiled = kernels(codes)
     moments = np.vstack([times, np.asarray(states, dtype=float)])
-    found = [_positions(system, frame, compiled[f"frame{i}"](moments), moments[0]) for i, frame in enumerate(frames)]
-    least = min(map(_extent, found))
-    chosen = next(item for item in found if _extent(item) <= COMPACT * least)
-    return chosen if chosen.size > 0 and np.all(np.isfinite(chosen.places)) else None
+    with np.errstate(all="ignore"):
+        places = [compiled[f"frame{i}"](moments) for i in range(len(frames))]
+        found = [_positions(system, frame, rows, moments[0]) for frame, rows in zip(frames, places, strict=True)]
+        found = [item for item in found if 0 < item.size < np.inf]
+        least = min(map(_extent, found), default=0.0)
+    return next((item for item in found if _extent(item) <= COMPACT * least), None)
 
 
 def _frames(system: System) -> list[str]:
@@ -242,7 +244,8 @@ def _lines(
     """Links and slides; no line leads from the frame to a body that floats or rolls freely."""
     number = {(point.body, point.kind): i for i, point in enumerate(points)}
     moving = {*system.coordinates, *system.velocities}
-    links, slides = [], []
+    links: list[tuple[int, int]] = []
+    slides: list[tuple[int, int]] = []
     for i, point in enumerate(points):
         if point.kind in (MASS_CENTRE, AXIS):
             links.append((number[point.body, JOINT], i))

@@ -41,6 +41,7 @@ from mbsym.algebra.polynomial_systems import (
     solve,
 )
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.python import python_text
 from mbsym.mechanics.charts import Chart, charts, moments, rows
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
@@ -463,7 +464,8 @@ class _ChartSearch:
 
     def _add_family(self, table: _Variables, family: Family) -> None:
         place = self._place(table, family.sample)
-        names = [self.ring.generators[table.indices[k]].name for k in family.free]
+        free = [self.ring.generators[table.indices[k]] for k in family.free]
+        names = [g.name if g.argument is None else table.names[k] for k, g in zip(family.free, free, strict=True)]
         texts = tuple(table.text(x) for x in family.equations if not table.is_relation(x))
         self.family_equations.append([table.back(x) for x in family.equations])
         self.families.append(
@@ -726,7 +728,11 @@ class _Variables:
         for k in self.indices:
             g = ring.generators[k]
             name = f"{g.name}/{g.denominator}" if g.denominator != 1 else g.name
-            self.names.append(f"{letters[g.kind]}({name})" if g.kind in letters else name)
+            if g.argument is not None:
+                written = python_text(ring, ring.context.gen(k))
+                self.names.append(written if g.kind == "root" else f"({written})")
+            else:
+                self.names.append(f"{letters[g.kind]}({name})" if g.kind in letters else name)
         self.context = context([f"x{k}" for k in range(len(self.indices))])
 
     def holds(self, x: Polynomial) -> bool:

@@ -385,10 +385,10 @@ def combine(verdicts: Iterable[Verdict]) -> Verdict:
     if words <= {ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC}:
         return Verdict(ASYMPTOTIC_BUT_CYCLIC, theorems, "A part of the coordinates is cyclic.")
     if not dissipating and GYROSCOPIC in words:
-        return replace(next(v for v in parts if v.word == GYROSCOPIC), theorem=theorems)
+        return next(v for v in parts if v.word == GYROSCOPIC)  # the theorems of the other parts do not carry it
     if not dissipating:
         return Verdict(STABLE_BUT_CYCLIC, theorems, "A part of the coordinates is cyclic.")
-    return Verdict(CRITICAL, theorems, "Some parts are asymptotically stable, others not; no theorem covers both.")
+    return Verdict(CRITICAL, "", "Some parts are asymptotically stable, others not; no theorem covers both.")
 
 
 _ASYMPTOTIC = {ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED}

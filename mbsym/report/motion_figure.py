@@ -120,7 +120,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
 
     bar = figure.colorbar(ScalarMappable(time, _TIME), ax=axis, shrink=0.75, pad=0.02, aspect=28)
     bar.set_label("$t$", rotation=0, fontsize=13, labelpad=8)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     handles, labels = axis.get_legend_handles_labels()
     if handles:
         columns = max(1, int(12 * figure.get_figwidth() / (max(map(len, labels)) + 8)))

@@ -130,7 +130,8 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
     if presumed:
         yield f"all this {presumed}"
     if found.numerical is not None:
-        yield f"at the given values: {_verdict(found.numerical)}"
+        why = found.numerical.explanation if found.numerical.word == UNDECIDED else ""
+        yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
 
 
 def _depends(part: SubsystemStability) -> bool:
@@ -150,6 +151,12 @@ def _condition(item: Statement) -> str:
 
 def _verdict(verdict: Any) -> str:
     return verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+
+
+def _clause(sentence: str) -> str:
+    """A sentence as the end of another one; the name of a matrix keeps its capital."""
+    first = sentence.split(" ")[0]
+    return (sentence if len(first) == 1 and first != "A" else sentence[:1].lower() + sentence[1:]).rstrip(".")
 
 
 def _integrals(found: tuple[Integral, ...]) -> Iterator[str]:

@@ -2,9 +2,12 @@
 
     void name(ptr in, ptr out)                 one state
     void name.many(ptr in, ptr out, i64 m)     m states; arrays of shape (inputs, m) and (outputs, m), row by row
+    void name.wide(ptr in, ptr out, i64 m)     the same, as many states at once as a vector register holds
 
 ``in`` and ``out`` hold float64, float32 or x86 extended numbers.  Constants are rounded once, from exact fractions.
-Multiplications and additions may be contracted (a*b + c with one rounding), nothing else is reordered.
+Multiplications and additions may be contracted (a*b + c with one rounding), nothing else is reordered.  Sines and
+cosines are computed several at once, whether of several angles of one state or of one angle of several states; results
+of ``wide`` may differ in the last bits by what is contracted, and do not depend on the states beside.
 """
 
 from __future__ import annotations
@@ -13,17 +16,19 @@ import ctypes
 import ctypes.util
 import platform
 import struct
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import llvmlite.binding as llvm
 import numpy as np
 
 from mbsym.algebra.base import NoClosedForm
+from mbsym.numerics.kernels import sine_cosine
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
+from mbsym.numerics.kernels.sine_cosine import splat, vector
 
 
 @dataclass(frozen=True)
@@ -108,99 +113,290 @@ def available(scalar: str) -> bool:
 #: are not searched for operations that could be done side by side, which takes longest and gains some percent.
 LONG, PART = 4_000, 500
 
+#: An angle's number with those of its sine and its cosine, where they are wanted.
+Angle = tuple[int, int | None, int | None]
+#: One instruction, or angles of which none depends on sine or cosine of another.
+Step = int | tuple[Angle, ...]
+
 
 def function_text(name: str, code: Code, scalar: Scalar) -> str:
     """The LLVM text of ``name`` (one state), without the declarations of library functions."""
     live = code.program.live(code.outputs)
     head = f"define void @{name}(ptr noalias readonly %in, ptr noalias %out) #0 {{"
+    form = _Form(code, scalar, 1)
     if len(live) <= LONG:
-        lines, values = _body(code, live, scalar, {}, {})
-        return "\n".join([head, *lines, *_stores(code, scalar, values), "  ret void", "}", ""])
-    return _split(name, head, code, live, scalar)
+        return "\n".join([head, *form.body(_steps(code, live, scalar)), *form.stores(), "  ret void", "}", ""])
+    parts, calls = _split(name, code, live, scalar, 1)
+    return parts + "\n".join([head, *calls, "  ret void", "}", ""])
 
 
-def _split(name: str, head: str, code: Code, live: list[int], scalar: Scalar) -> str:
-    """Parts one after the other; what a later part needs goes through memory."""
-    kind, instructions = scalar.type, code.program.instructions
-    parts = [live[start : start + PART] for start in range(0, len(live), PART)]
-    home = {number: place for place, part in enumerate(parts) for number in part}
-    kept: dict[int, int] = {}
+def wide_text(name: str, code: Code, scalar: Scalar, lanes: int) -> str:
+    """The LLVM text of ``name.wide``: ``lanes`` states at once; the last ones overlap those before, m >= lanes."""
+    live = code.program.live(code.outputs)
+    kind, parts, form = scalar.type, "", _Form(code, scalar, lanes)
+    if len(live) <= LONG:
+        room, body = [], [*form.body(_steps(code, live, scalar)), *form.stores()]
+    else:
+        parts, (room, *body) = _split(f"{name}.wide", code, live, scalar, lanes)
+        room = [room]
+    lines = [
+        f"define void @{name}.wide(ptr noalias readonly %states, ptr noalias %results, i64 %m) #0 {{",
+        "entry:",
+        *room,
+        f"  %last = sub i64 %m, {lanes}",
+        "  br label %loop",
+        "loop:",
+        "  %k = phi i64 [0, %entry], [%next, %loop]",
+        f"  %in = getelementptr {kind}, ptr %states, i64 %k",
+        f"  %out = getelementptr {kind}, ptr %results, i64 %k",
+        *body,
+        f"  %due = add i64 %k, {lanes}",
+        "  %over = icmp sgt i64 %due, %last",
+        "  %next = select i1 %over, i64 %last, i64 %due",
+        "  %more = icmp slt i64 %k, %last",
+        "  br i1 %more, label %loop, label %done",
+        "done:",
+        "  ret void",
+        "}",
+        "",
+    ]
+    return parts + "\n".join(lines)
+
+
+def _steps(code: Code, live: Sequence[int], scalar: Scalar) -> list[Step]:
+    """The instructions in an order in which sines and cosines of several angles can be computed together.
+
+    The order is that of the program, but where the first sine or cosine comes, all angles that do not depend on its
+    like are computed; the same where the first sine or cosine of something that does comes, and so on.
+    """
+    if scalar.name == EXTENDED:
+        return list(live)
+    instructions = code.program.instructions
+    level: dict[int, int] = {}
+    wanted: dict[int, dict[int, list[int | None]]] = {}
     for number in live:
-        for operand in instructions[number].operands:
-            if home[operand] != home[number] and instructions[operand].operation != "constant":
-                kept.setdefault(operand, len(kept))
-    last = len(parts) - 1
-    for node in code.outputs:
-        if home[node.number] != last and instructions[node.number].operation != "constant":
-            kept.setdefault(node.number, len(kept))
-    texts, main = [], [head, f"  %w = alloca [{max(len(kept), 1)} x {kind}]"]
+        operation, operands, _ = instructions[number]
+        level[number] = max((level[operand] for operand in operands), default=0)
+        if operation in ("sin", "cos"):
+            found = wanted.setdefault(level[number], {}).setdefault(operands[0], [None, None])
+            found[operation == "cos"] = number
+            level[number] += 1
+    steps: list[Step] = []
+    done: set[int] = set()
+    for number in live:
+        if number in done:
+            continue
+        if instructions[number].operation not in ("sin", "cos"):
+            steps.append(number)
+            done.add(number)
+            continue
+        angles = wanted.pop(level[number] - 1)
+        needed, reached = [angle for angle in angles if angle not in done], set()
+        while needed:
+            one = needed.pop()
+            if one not in reached:
+                reached.add(one)
+                needed += [operand for operand in instructions[one].operands if operand not in done]
+        steps += sorted(reached)
+        steps.append(tuple((angle, sine, cosine) for angle, (sine, cosine) in angles.items()))
+        done |= reached | {one for pair in angles.values() for one in pair if one is not None}
+    return steps
+
+
+def _results(step: Step) -> list[int]:
+    """What a step computes."""
+    if isinstance(step, int):
+        return [step]
+    return [one for _, sine, cosine in step for one in (sine, cosine) if one is not None]
+
+
+def _split(name: str, code: Code, live: Sequence[int], scalar: Scalar, lanes: int) -> tuple[str, list[str]]:
+    """Parts to be called one after the other, and the calls; what a later part needs goes through memory, %w."""
+    instructions = code.program.instructions
+    steps = _steps(code, live, scalar)
+    parts = [steps[start : start + PART] for start in range(0, len(steps), PART)]
+    home = {number: place for place, part in enumerate(parts) for step in part for number in _results(step)}
+    needed: list[set[int]] = [set() for _ in parts]
     for place, part in enumerate(parts):
-        arguments = "ptr noalias readonly %in, ptr noalias %w" + (", ptr noalias %out" if place == last else "")
-        needed = {operand for number in part for operand in instructions[number].operands if home[operand] != place}
-        if place == last:
-            needed |= {node.number for node in code.outputs if home[node.number] != last}
-        lines, values = _body(code, part, scalar, {number: kept.get(number, -1) for number in sorted(needed)}, kept)
-        if place == last:
-            lines += _stores(code, scalar, values)
+        for step in part:
+            used = instructions[step].operands if isinstance(step, int) else [angle for angle, *_ in step]
+            needed[place].update(number for number in used if home[number] != place)
+    needed[-1].update(node.number for node in code.outputs if home[node.number] != len(parts) - 1)
+    kept: dict[int, int] = {}
+    for number in sorted(set().union(*needed)):
+        if instructions[number].operation != "constant":
+            kept[number] = len(kept)
+    texts, calls = [], [f"  %w = alloca [{max(len(kept), 1)} x {vector(lanes, scalar.type)}]"]
+    for place, part in enumerate(parts):
+        form = _Form(code, scalar, lanes, kept)
+        lines = [*form.given(sorted(needed[place])), *form.body(part)]
+        if place == len(parts) - 1:
+            lines += form.stores()
+        arguments = "ptr noalias readonly %in, ptr noalias %w, ptr noalias %out, i64 %m"
         texts.append(
             "\n".join([f"define internal void @{name}.{place}({arguments}) #2 {{", *lines, "  ret void", "}", ""])
         )
-        given = "ptr %in, ptr %w" + (", ptr %out" if place == last else "")
-        main.append(f"  call void @{name}.{place}({given})")
-    return "".join(texts) + "\n".join([*main, "  ret void", "}", ""])
+        m = "%m" if lanes > 1 else "1"
+        calls.append(f"  call void @{name}.{place}(ptr %in, ptr %w, ptr %out, i64 {m})")
+    return "".join(texts), calls
 
 
-def _body(
-    code: Code, numbers: Iterable[int], scalar: Scalar, given: Mapping[int, int], kept: Mapping[int, int]
-) -> tuple[list[str], dict[int, str]]:
-    """Lines for the instructions, and where their values are.
+class _Form:
+    """Instructions as lines, for one state or for ``lanes`` of them side by side (rows of inputs are %m apart).
 
-    ``given`` values of other parts come from their places in %w (those without a place are constants); values in
-    ``kept`` go to theirs.
+    ``kept`` values have places in %w, for other parts.
     """
-    kind, instructions = scalar.type, code.program.instructions
-    lines: list[str] = []
-    slots = {input_: place for place, input_ in enumerate(code.inputs)}
-    values: dict[int, str] = {}
-    for number, place in given.items():
-        payload = instructions[number].payload
-        if isinstance(payload, Fraction):
-            values[number] = scalar.constant(payload)
-            continue
-        lines.append(f"  %w{number} = getelementptr {kind}, ptr %w, i64 {place}")
-        lines.append(f"  %v{number} = load {kind}, ptr %w{number}")
-        values[number] = f"%v{number}"
-    for number in numbers:
-        instruction = instructions[number]
-        if instruction.operation == "constant":
-            assert isinstance(instruction.payload, Fraction)
-            values[number] = scalar.constant(instruction.payload)
-            continue
-        local = values[number] = f"%v{number}"
-        operands = [values[operand] for operand in instruction.operands]
-        match instruction.operation, operands:
-            case "input", _:
-                place = slots[str(instruction.payload)]
-                lines.append(f"  %p{number} = getelementptr {kind}, ptr %in, i64 {place}")
-                lines.append(f"  {local} = load {kind}, ptr %p{number}")
-            case "negative", [a]:
-                lines.append(f"  {local} = fneg {kind} {a}")
-            case ("add" | "subtract" | "multiply" | "divide") as operation, [a, b]:
-                lines.append(f"  {local} = {_ARITHMETIC[operation]} contract {kind} {a}, {b}")
-            case function, [a]:
-                lines.append(f"  {local} = call {kind} @{function}{scalar.suffix}({kind} {a}) #1")
-        if number in kept:
-            lines.append(f"  %k{number} = getelementptr {kind}, ptr %w, i64 {kept[number]}")
-            lines.append(f"  store {kind} {local}, ptr %k{number}")
-    return lines, values
+
+    def __init__(self, code: Code, scalar: Scalar, lanes: int, kept: Mapping[int, int] | None = None) -> None:
+        self.code, self.scalar, self.lanes, self.kept = code, scalar, lanes, kept or {}
+        self.kind = vector(lanes, scalar.type)
+        self.values: dict[int, str] = {}
+        self.slots = {input_: place for place, input_ in enumerate(code.inputs)}
+        self._groups = 0
+
+    def given(self, numbers: Iterable[int]) -> Iterator[str]:
+        """Values of other parts."""
+        for number in numbers:
+            payload = self.code.program.instructions[number].payload
+            if isinstance(payload, Fraction):
+                self._constant(number, payload)
+                continue
+            yield f"  %w{number} = getelementptr {self.kind}, ptr %w, i64 {self.kept[number]}"
+            yield f"  %v{number} = load {self.kind}, ptr %w{number}"
+            self.values[number] = f"%v{number}"
+
+    def body(self, steps: Iterable[Step]) -> Iterator[str]:
+        for step in steps:
+            yield from self._instruction(step) if isinstance(step, int) else self._angles(step)
+            for number in _results(step):
+                if number in self.kept and self.code.program.instructions[number].operation != "constant":
+                    yield f"  %k{number} = getelementptr {self.kind}, ptr %w, i64 {self.kept[number]}"
+                    yield f"  store {self.kind} {self.values[number]}, ptr %k{number}"
+
+    def stores(self) -> Iterator[str]:
+        for place, node in enumerate(self.code.outputs):
+            yield from self._address(f"%o{place}", "%out", place)
+            yield f"  store {self.kind} {self.values[node.number]}, ptr %o{place}{self._align}"
+
+    @property
+    def _align(self) -> str:
+        return f", align {self.scalar.dtype().itemsize}" if self.lanes > 1 else ""
+
+    def _address(self, local: str, base: str, row: int) -> Iterator[str]:
+        if self.lanes == 1:
+            yield f"  {local} = getelementptr {self.kind}, ptr {base}, i64 {row}"
+        else:
+            yield f"  {local}.at = mul i64 %m, {row}"
+            yield f"  {local} = getelementptr {self.scalar.type}, ptr {base}, i64 {local}.at"
+
+    def _constant(self, number: int, payload: Fraction) -> None:
+        self.values[number] = splat(self.lanes, self.scalar.type, self.scalar.constant(payload))
+
+    def _instruction(self, number: int) -> Iterator[str]:
+        operation, used, payload = self.code.program.instructions[number]
+        if operation == "constant":
+            assert isinstance(payload, Fraction)
+            self._constant(number, payload)
+            return
+        kind, local = self.kind, f"%v{number}"
+        operands = [self.values[operand] for operand in used]
+        match operands:
+            case []:
+                yield from self._address(f"%p{number}", "%in", self.slots[str(payload)])
+                yield f"  {local} = load {kind}, ptr %p{number}{self._align}"
+            case [a] if operation == "negative":
+                yield f"  {local} = fneg {kind} {a}"
+            case [a] if operation == "sqrt" and self.lanes > 1:
+                suffix = f"v{self.lanes}{'f32' if self.scalar.name == FLOAT32 else 'f64'}"
+                yield f"  {local} = call {kind} @llvm.sqrt.{suffix}({kind} {a})"
+            case [a]:
+                yield from self._function(f"{operation}{self.scalar.suffix}", local, a)
+            case [a, b]:
+                yield f"  {local} = {_ARITHMETIC[operation]} contract {kind} {a}, {b}"
+        self.values[number] = local
+
+    def _function(self, function: str, local: str, argument: str) -> Iterator[str]:
+        """A call of the C library, or one for every lane."""
+        one, kind = self.scalar.type, self.kind
+        if self.lanes == 1:
+            yield f"  {local} = call {one} @{function}({one} {argument}) #1"
+            return
+        before = "poison"
+        for lane in range(self.lanes):
+            yield f"  {local}.x{lane} = extractelement {kind} {argument}, i32 {lane}"
+            yield f"  {local}.y{lane} = call {one} @{function}({one} {local}.x{lane}) #1"
+            after = local if lane == self.lanes - 1 else f"{local}.z{lane}"
+            yield f"  {after} = insertelement {kind} {before}, {one} {local}.y{lane}, i32 {lane}"
+            before = after
+
+    def _angles(self, step: tuple[Angle, ...]) -> Iterator[str]:
+        """One state: angles packed into vectors.  Several states: a vector for each angle."""
+        if self.lanes > 1:
+            for angle, sine, cosine in step:
+                local = f"%g{self._group()}"
+                yield from self._pair(local, self.values[angle], self.lanes)
+                for number, letter in ((sine, "s"), (cosine, "c")):
+                    if number is not None:
+                        self.values[number] = f"{local}.{letter}"
+            return
+        for start in range(0, len(step), MOST_ANGLES):
+            chunk = step[start : start + MOST_ANGLES]
+            lanes = packed(len(chunk))
+            local, kind, one = f"%g{self._group()}", vector(lanes, self.scalar.type), self.scalar.type
+            argument = self.values[chunk[0][0]]
+            if lanes > 1:
+                argument = "poison"
+                for lane in range(lanes):  # what is left over repeats the last one
+                    value = self.values[chunk[min(lane, len(chunk) - 1)][0]]
+                    yield f"  {local}.x{lane} = insertelement {kind} {argument}, {one} {value}, i32 {lane}"
+                    argument = f"{local}.x{lane}"
+            yield from self._pair(local, argument, lanes)
+            for lane, (_, sine, cosine) in enumerate(chunk):
+                for number, letter in ((sine, "s"), (cosine, "c")):
+                    if number is None:
+                        continue
+                    self.values[number] = f"{local}.{letter}" if lanes == 1 else f"%v{number}"
+                    if lanes > 1:
+                        yield f"  %v{number} = extractelement {kind} {local}.{letter}, i32 {lane}"
+
+    def _group(self) -> int:
+        self._groups += 1
+        return self._groups
+
+    def _pair(self, local: str, argument: str, lanes: int) -> Iterator[str]:
+        """local.s and local.c: sine and cosine, computed in float64."""
+        double, kind = vector(lanes, "double"), vector(lanes, self.scalar.type)
+        narrow = self.scalar.name == FLOAT32
+        if narrow:
+            yield f"  {local}.d = fpext {kind} {argument} to {double}"
+            argument = f"{local}.d"
+        pair = f"{{ {double}, {double} }}"
+        yield f"  {local} = call {pair} @{sine_cosine.name(lanes)}({double} {argument})"
+        for place, letter in enumerate("sc"):
+            wide = f"{local}.{letter}" + (".d" if narrow else "")
+            yield f"  {wide} = extractvalue {pair} {local}, {place}"
+            if narrow:
+                yield f"  {local}.{letter} = fptrunc {double} {wide} to {kind}"
 
 
-def _stores(code: Code, scalar: Scalar, values: Mapping[int, str]) -> list[str]:
-    lines = []
-    for place, node in enumerate(code.outputs):
-        lines.append(f"  %o{place} = getelementptr {scalar.type}, ptr %out, i64 {place}")
-        lines.append(f"  store {scalar.type} {values[node.number]}, ptr %o{place}")
-    return lines
+#: From so many states in one call on, code for several at once is compiled.
+WIDE = 1_000
+
+#: Angles of one state that are computed together.
+MOST_ANGLES = 4
+
+
+def packed(angles: int) -> int:
+    """Lanes for so many angles: 1, 2 or 4."""
+    return 4 if angles > 2 else angles
+
+
+@cache
+def lanes_of(scalar: str) -> int:
+    """States side by side: as many as fill a vector register; 1 where there are none for this arithmetic."""
+    if scalar == EXTENDED:
+        return 1
+    return (32 if llvm.get_host_cpu_features().get("avx2") else 16) // SCALARS[scalar].dtype().itemsize
 
 
 def many_text(name: str, code: Code, scalar: Scalar) -> str:
@@ -225,7 +421,7 @@ def many_text(name: str, code: Code, scalar: Scalar) -> str:
             f"  %ie{i} = getelementptr {kind}, ptr %x, i64 {i}",
             f"  store {kind} %id{i}, ptr %ie{i}",
         ]
-    lines.append(f"  call void @{name}(ptr %x, ptr %y)")
+    lines.append(f"  call void @{name}(ptr %x, ptr %y) #2")
     for i in range(outputs):
         lines += [
             f"  %oa{i} = getelementptr {kind}, ptr %y, i64 {i}",
@@ -247,16 +443,30 @@ def many_text(name: str, code: Code, scalar: Scalar) -> str:
     return "\n".join(lines)
 
 
-def declarations(codes: Iterable[Code], scalar: Scalar) -> str:
-    """Declarations of the library functions that the codes call."""
-    called = set()
+def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
+    """What the codes call, for one state or several: declarations of library functions, sine and cosine."""
+    called, counts = set(), set()
     for code in codes:
-        for number in code.program.live(code.outputs):
+        live = code.program.live(code.outputs)
+        for number in live:
             instruction = code.program.instructions[number]
             if len(instruction.operands) == 1 and instruction.operation != "negative":
                 called.add(instruction.operation)
-    kind = scalar.type
-    return "".join(f"declare {kind} @{name}{scalar.suffix}({kind}) #1\n" for name in sorted(called))
+        for step in _steps(code, live, scalar):
+            if not isinstance(step, int):
+                whole, rest = divmod(len(step), MOST_ANGLES)
+                counts |= {lanes} if lanes > 1 else {packed(rest)} - {0} | ({MOST_ANGLES} if whole else set())
+    kind, lines = scalar.type, []
+    if counts:
+        called -= {"sin", "cos"}
+        lines.append("declare double @sin(double) #1\ndeclare double @cos(double) #1\n")
+        lines += [sine_cosine.declarations(count) + sine_cosine.text(count) for count in sorted(counts)]
+    if lanes > 1 and "sqrt" in called:
+        called.remove("sqrt")
+        suffix = f"v{lanes}{'f32' if scalar.name == FLOAT32 else 'f64'}"
+        lines.append(f"declare {vector(lanes, kind)} @llvm.sqrt.{suffix}({vector(lanes, kind)})\n")
+    lines += [f"declare {kind} @{name}{scalar.suffix}({kind}) #1\n" for name in sorted(called)]
+    return "".join(lines)
 
 
 #: No errno, no traps: sin and cos of one argument may be computed together.
@@ -327,14 +537,28 @@ def kernels(codes: Mapping[str, Code], scalar: str = FLOAT64) -> dict[str, Kerne
     return {name: _Called(library, name, code, SCALARS[scalar]) for name, code in codes.items()}
 
 
+def compiled_wide(name: str, code: Code, scalar: str) -> Library:
+    """A library with ``name.wide``."""
+    chosen, lanes = SCALARS[scalar], lanes_of(scalar)
+    parts = [declarations([code], chosen, lanes), wide_text(name, code, chosen, lanes), ATTRIBUTES]
+    return Library("\n".join(parts), thorough=False)
+
+
 class _Called:
-    """A compiled code as a function of arrays."""
+    """A compiled code as a function of arrays; the code for several states at once is compiled when it is needed."""
 
     def __init__(self, library: Library, name: str, code: Code, scalar: Scalar) -> None:
-        self.library, self.code, self.dtype = library, code, scalar.dtype
+        self.library, self.name, self.code, self.scalar, self.dtype = library, name, code, scalar, scalar.dtype
         pointer = ctypes.c_void_p
         self._one = library.function(name, pointer, pointer)
         self._many = library.function(f"{name}.many", pointer, pointer, ctypes.c_int64)
+        self._lanes = lanes_of(scalar.name)
+
+    @cached_property
+    def _wide(self) -> tuple[Library, Callable[..., Any]]:
+        library = compiled_wide(self.name, self.code, self.scalar.name)
+        pointer = ctypes.c_void_p
+        return library, library.function(f"{self.name}.wide", pointer, pointer, ctypes.c_int64)
 
     def __call__(self, values: Any) -> Any:
         values = np.ascontiguousarray(values, dtype=self.dtype)
@@ -343,6 +567,8 @@ class _Called:
         out = np.empty((len(self.code.outputs), *values.shape[1:]), dtype=self.dtype)
         if values.ndim == 1:
             self._one(values.ctypes.data, out.ctypes.data)
+        elif self._lanes > 1 and values.shape[1] >= max(WIDE, self._lanes):
+            self._wide[1](values.ctypes.data, out.ctypes.data, values.shape[1])
         else:
             self._many(values.ctypes.data, out.ctypes.data, values.shape[1])
         return out
