@@ -11,7 +11,7 @@ import click
 
 from mbsym_cli.assignments import assignments, number
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, counted, read_description, status
-from mbsym_cli.files import write_whole
+from mbsym_cli.files import obstacle, write_whole
 from mbsym_cli.lacking import lacking
 
 if TYPE_CHECKING:
@@ -68,6 +68,10 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
         print("\n".join(complaints), file=sys.stderr)
         print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return BAD_INPUT
+    reason = "" if sequences else obstacle(folder)
+    if reason:
+        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
+        return FAILED
     try:
         given = scenario(system, overrides)
         if sequences:

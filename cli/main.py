@@ -7,10 +7,15 @@ from __future__ import annotations
 
 import gc
 import importlib
+import sys
+from typing import Any
 
 import click
 
 import mbsym
+
+#: As shells count the signal of Ctrl-C.
+INTERRUPTED = 130
 
 #: name -> module of this package that defines ``command``.
 COMMANDS = {
@@ -39,6 +44,14 @@ class LazyGroup(click.Group):
         gc.set_threshold(200_000, 20, 20)
         command: click.Command = importlib.import_module(COMMANDS[name]).command
         return command
+
+    def invoke(self, context: click.Context) -> Any:
+        """Ctrl-C, wherever it comes, ends with the code that shells count the signal as."""
+        try:
+            return super().invoke(context)
+        except KeyboardInterrupt:
+            print("interrupted; what has been written is whole", file=sys.stderr)
+            sys.exit(INTERRUPTED)
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 import time
@@ -27,7 +26,7 @@ from mbsym_cli.console import (
     read_description,
     status,
 )
-from mbsym_cli.files import write_whole
+from mbsym_cli.files import alone, obstacle, write_whole
 from mbsym_cli.lacking import lacking
 from mbsym_cli.simulation_summary import broken, note, print_summary
 
@@ -191,9 +190,9 @@ def _command(
         print("\n".join(complaints), file=sys.stderr)
         print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return BAD_INPUT
-    obstacle = _obstacle(folder)
-    if obstacle:
-        print(f"{file}: the results cannot be written: {obstacle}", file=sys.stderr)
+    reason = obstacle(folder)
+    if reason:
+        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
         return FAILED
     try:
         return _simulate(file, system, folder, overrides, request)
@@ -209,16 +208,6 @@ def _command(
     except Exception as error:
         print(f"{file}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
     return FAILED
-
-
-def _obstacle(folder: Path) -> str:
-    """Why a folder cannot be written to, known before hours of computing; empty if nothing speaks against it."""
-    for place in (folder, *folder.absolute().parents):
-        if place.exists():
-            if not place.is_dir():
-                return f"{place} is no folder"
-            return "" if os.access(place, os.W_OK) else f"{place} is not writable"
-    return ""
 
 
 def _read(
@@ -414,7 +403,8 @@ def _integrate(
         "estimated_error": estimated,
         "resting": _resting(chosen.resting),
     }
-    paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, conserved == CONSERVED)
+    with alone(folder):
+        paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, conserved == CONSERVED)
     if not request.quiet:
         print_summary(file, dynamics, found, chosen, request, summary, paths)
     if found.breakdown is not None:
@@ -535,13 +525,14 @@ def _write(
 
 def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str]) -> dict[str, bytes]:
     """Pictures of the bodies themselves, where there is something to be seen."""
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
     from mbsym.numerics.positions import positions
     from mbsym.report.motion_figure import motion_figures
 
+    every = -(-len(found.times) // MOST_SAMPLES)  # a picture of a million samples would only be slow
     try:
-        places = positions(scenario, found.times, found.states)
-    except (NoClosedForm, SingularPoint):
+        places = positions(scenario, found.times[::every], found.states[:, ::every])
+    except (NoClosedForm, NotRational, SingularPoint):
         return {}
     return motion_figures(places, kinds, note(found)) if places is not None else {}
 

@@ -22,7 +22,7 @@ from mbsym_cli.console import (
     read_description,
     status,
 )
-from mbsym_cli.files import write_whole
+from mbsym_cli.files import obstacle, write_whole
 from mbsym_cli.lacking import lacking
 
 if TYPE_CHECKING:
@@ -124,6 +124,10 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: dict[str,
         return BAD_INPUT
     read = (numbers["--time"] or 0.0, target or 0.0, numbers["--budget"] or 0.0)
     request = Request(*read, request.methods, request.fidelity, request.every_row, request.quiet)
+    reason = obstacle(folder)
+    if reason:
+        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
+        return FAILED
     try:
         return _measure(file, folder, scenario(system, overrides), chosen, request)
     except Incomplete as error:

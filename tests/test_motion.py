@@ -201,6 +201,14 @@ def test_pictures_of_planar_spatial_and_turning_motion(name: str, files: set[str
     assert images["motion.svg"] != motion_figures(drawn, ["svg"])["motion.svg"]
 
 
+def test_a_title_is_not_read_as_a_formula(tmp_path: Path) -> None:
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").replace("Double pendulum", "A $x^$ pendulum")
+    (tmp_path / "odd.yaml").write_text(text, encoding="utf-8")
+    drawn = along(scenario_of(tmp_path / "odd.yaml"), np.linspace(0, 1, 11), theta1=np.linspace(0, 1, 11))
+    assert drawn.system.name == "A $x^$ pendulum"
+    assert set(motion_figures(drawn, ["png"])) == {"motion.png", "mass-centres.png"}
+
+
 def test_a_single_state_gives_no_picture() -> None:
     found = scenario_of(SHIPPED / "double-pendulum.yaml")
     assert motion_figures(along(found, [0.0]), ["png"]) == {}

@@ -16,7 +16,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.equilibria import CoordinateValue, equilibria
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
@@ -94,6 +94,18 @@ motion: {x: 0, y: 0}
 values: {m: 1, l: 67, g: 9.81, Omega: OMEGA, lam: 0.8526}
 """
 
+SPRING = """
+mbsym: 1
+name: Two masses on a spring
+parameters: {m: positive, k: positive, l: positive}
+bodies:
+  - {name: A, attached to: 0, connection point: [x1, y1, 0], mass: m, coordinates: [x1, y1]}
+  - {name: B, attached to: 0, connection point: [x2, y2, 0], mass: m, coordinates: [x2, y2]}
+loads:
+  - spring: {between: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}], stiffness: k, length: l}
+values: {m: 1, k: 3, l: 1}
+"""
+
 
 def analysed(tmp_path: Path, text: str, **numbers: str) -> Analysis:
     for name, number in numbers.items():
@@ -153,3 +165,20 @@ def test_an_undecided_verdict_says_why(tmp_path: Path) -> None:
     assert any(
         text.startswith("at the given values: undecided: the motion does not exist there") for text in line.lines
     )
+
+
+def test_families_are_written_without_inner_names(tmp_path: Path) -> None:
+    """Two masses on a spring at its length: the root of the distance is an unknown of its own while it is solved."""
+    a = analysed(tmp_path, SPRING)
+    found = equilibria(a.system, given_values(a.system, {}))
+    assert found.families
+    written = [text for family in found.families for text in (*family.equations, *family.free)]
+    assert any("sqrt(" in text for text in written)
+    assert not any("#" in text for text in written)
+
+
+def test_what_is_zero_but_for_rounding_is_shown_as_zero() -> None:
+    from mbsym_cli.equilibria import _text
+
+    assert _text(CoordinateValue("x", "0", -1.2e-292, False, False)) == "0"
+    assert _text(CoordinateValue("x", "0.123456789012", 0.123456789012, False, False)) == "0.12345679"

@@ -264,3 +264,44 @@ def test_a_finite_escape_time_is_an_answer(tmp_path: Path) -> None:
     found = run(path, "--time", 20, "--out", tmp_path)
     assert found.exit_code == 3
     assert "no reference solution up to t = 20" in found.output
+
+
+def gravity_models(text: str, tmp_path: Path) -> dict[str, str]:
+    path = tmp_path / "system.yaml"
+    path.write_text(text)
+    words = (path, "--time", 1000, "--target", "1e-6", "--budget", 0.2, "--methods", "dop853", "--out", tmp_path)
+    found = run(*words)
+    assert found.exit_code == 0, found.output
+    models = csv.DictReader((tmp_path / "fidelity.csv").read_text().splitlines())
+    return {row["model"]: row["error"] for row in models}
+
+
+def test_exact_gravity_is_the_most_faithful_model_where_it_is_described(tmp_path: Path) -> None:
+    """A dumbbell of 2000 km at R = 7000 km: the terms above order 4 are (l/R)^3 of those of order 2, not nothing."""
+    text = (SYSTEMS / "dumbbell.yaml").read_text()
+    long = text.replace("l: 30}", "l: 2000000}")
+    exact = gravity_models(long.replace("order: 2", "order: exact"), tmp_path)
+    errors = {model: float(error) for model, error in exact.items()}
+    assert errors["as described"] == 0
+    assert errors["gravity of order 2"] > errors["gravity of order 3"] > errors["gravity of order 4"] > 1e-4
+    expanded = gravity_models(long, tmp_path)
+    assert float(expanded["exact gravity"]) == 0
+    assert float(expanded["as described"]) == pytest.approx(errors["gravity of order 2"], rel=1e-3)
+
+
+def test_fields_about_their_own_centre_are_not_expanded(tmp_path: Path) -> None:
+    """Kepler's problem with the centre as O1 (R = 0): there is no expansion in size/R."""
+    assert set(gravity_models(KEPLER, tmp_path)) == {"as described"}
+
+
+KEPLER = """
+mbsym: 1
+name: Kepler
+parameters: {mu: positive}
+bodies:
+  - {name: planet, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - newtonian gravity: {constant: mu, centre: 0, about: 0, order: exact}
+values: {mu: 1e6}
+initial: {x: 100, y: {position: 0, velocity: 90}}
+"""

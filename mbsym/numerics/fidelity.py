@@ -2,7 +2,7 @@
 
 ``variants`` lists the models that a description allows:
 
-* Newtonian gravity of order 2, 3, 4 and exact;
+* Newtonian gravity of order 2, 3, 4 (where such an expansion converges) and exact;
 * the equations linearised about the unperturbed motion,  x' = x0' + J(t, x0) (x - x0)  with J = d rhs/dx;
 * coordinates that rest taken out (a plane motion of a spatial system), which changes nothing but the cost.
 
@@ -28,6 +28,7 @@ from mbsym.mechanics.motion import motion_values
 from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.reduction import Reduction, resting
 from mbsym.numerics.scenario import Scenario
@@ -124,10 +125,11 @@ class _Placed(Specialised):
 def variants(scenario: Scenario) -> Iterator[Variant]:
     """Every model of the scenario, the given one first; those that cannot be derived are left out."""
     system = scenario.system
-    yield Variant("as described", "nothing that the description has", Dynamics(scenario), 0)
     fields = [load for load in system.loads if isinstance(load, NewtonianGravity)]
+    faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
+    yield Variant("as described", "nothing that the description has", Dynamics(scenario), faithful)
     for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
-        if all(load.order == order for load in fields):
+        if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
             continue
         loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in system.loads)
         dropped = "nothing of the field" if order == EXACT else f"terms of the field above order {order} in size/R"
@@ -139,6 +141,13 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     found = resting(scenario)
     if found is not None:
         yield _reduced(scenario, found)
+
+
+def _expandable(scenario: Scenario, fields: Sequence[NewtonianGravity]) -> bool:
+    """Whether fields that the description has exactly can be expanded at all: the bodies are nearer to O1 than it is
+    to the centre."""
+    sizes = [relative_size(scenario, load) for load in fields if load.order == EXACT]
+    return all(size is not None and size < 1 for size in sizes)
 
 
 def _reduced(scenario: Scenario, found: Reduction) -> Variant:

@@ -212,8 +212,8 @@ def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> boo
     Exact at rational states; where roots or exponentials make the values irrational, balls that contain zero and are
     narrow.
     """
-    ring, names = scene.ring, scene.system.coordinates
-    if not any(formula.degrees()[ring.index("velocity", name)] > 0 for name in names):
+    ring = scene.ring
+    if not ring.dependencies(formula, scene.system.velocities):
         return False
     rate = total_rate(scene, formula)
     try:

@@ -264,7 +264,8 @@ class ExactVerdicts:
         equilibrium: Equilibrium,
         signs: Signs,
     ) -> None:
-        self.scene, self.equilibrium = scene, equilibrium
+        self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
+        self.energy_conserved, self.cyclic = energy_conserved, cyclic
         elimination, spin = _elimination(scene), free_spin(scene.system)
         self._parts = [
             _prepared(scene, part, elimination, signs, energy_conserved, cyclic, turned)
@@ -286,11 +287,13 @@ class ExactVerdicts:
         if elsewhere is not None:
             return elsewhere
         found = []
-        for part in self._parts:
+        for part, subsystem in zip(self._parts, self.linear.subsystems, strict=True):
             point = _point(self.scene, part.ring, part.system.matrices, values)
-            if point is None:
-                return Verdict("undecided", "", "A number there is irrational.")
-            found.append(verdict_at(part.system, point).verdict)
+            if point is None:  # a number there is irrational
+                names = subsystem.coordinates
+                found.append(_enclosed(self.scene, self.linear, names, values, self.energy_conserved, self.cyclic))
+            else:
+                found.append(verdict_at(part.system, point).verdict)
         return combine(found)
 
 

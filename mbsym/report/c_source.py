@@ -44,7 +44,9 @@ _WORDS = """
     logb ilogb modf pow sqrt cbrt hypot fabs abs ceil floor fmod round trunc rint remainder gamma lgamma tgamma erf erfc
     fma fmin fmax fdim nan nextafter copysign scalb scalbn drem significand isnan isinf isfinite isnormal signbit
     j0 j1 jn y0 y1 yn main
-    t q qd qdd x xd p M f J
+    math_errhandling MATH_ERRNO MATH_ERREXCEPT FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FLT_EVAL_METHOD
+    SNAN SNANF SNANL FP_LLOGB0 FP_LLOGBNAN X_TLOSS
+    t q qd qdd x xd p M f J MODEL_H
 """
 RESERVED = frozenset(_WORDS.split())
 

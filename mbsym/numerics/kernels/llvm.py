@@ -5,9 +5,9 @@
     void name.wide(ptr in, ptr out, i64 m)     the same, as many states at once as a vector register holds
 
 ``in`` and ``out`` hold float64, float32 or x86 extended numbers.  Constants are rounded once, from exact fractions.
-Multiplications and additions may be contracted (a*b + c with one rounding), nothing else is reordered.  Sines and
-cosines are computed several at once, whether of several angles of one state or of one angle of several states; results
-of ``wide`` may differ in the last bits by what is contracted, and do not depend on the states beside.
+A product that occurs only in one sum is not rounded before the addition where the machine can do so (fmuladd); nothing
+else is contracted or reordered.  Sines and cosines are computed several at once, whether of several angles of one
+state or of one angle of several states.  All three functions give the same numbers, to the last bit.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ import ctypes
 import ctypes.util
 import platform
 import struct
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -113,10 +114,23 @@ def available(scalar: str) -> bool:
 #: are not searched for operations that could be done side by side, which takes longest and gains some percent.
 LONG, PART = 4_000, 500
 
+
+@dataclass(frozen=True)
+class Fused:
+    """number = +-(a b) +- c with one rounding where the machine can: a product that is used once, in this sum."""
+
+    number: int
+    product: int
+    factors: tuple[int, int]
+    other: int
+    minus_product: bool
+    minus_other: bool
+
+
 #: An angle's number with those of its sine and its cosine, where they are wanted.
 Angle = tuple[int, int | None, int | None]
-#: One instruction, or angles of which none depends on sine or cosine of another.
-Step = int | tuple[Angle, ...]
+#: One instruction, two of them in one, or angles of which none depends on sine or cosine of another.
+Step = int | Fused | tuple[Angle, ...]
 
 
 def function_text(name: str, code: Code, scalar: Scalar) -> str:
@@ -134,11 +148,12 @@ def wide_text(name: str, code: Code, scalar: Scalar, lanes: int) -> str:
     """The LLVM text of ``name.wide``: ``lanes`` states at once; the last ones overlap those before, m >= lanes."""
     live = code.program.live(code.outputs)
     kind, parts, form = scalar.type, "", _Form(code, scalar, lanes)
+    room: list[str] = []
     if len(live) <= LONG:
-        room, body = [], [*form.body(_steps(code, live, scalar)), *form.stores()]
+        body = [*form.body(_steps(code, live, scalar)), *form.stores()]
     else:
-        parts, (room, *body) = _split(f"{name}.wide", code, live, scalar, lanes)
-        room = [room]
+        parts, calls = _split(f"{name}.wide", code, live, scalar, lanes)
+        room, body = calls[:1], calls[1:]
     lines = [
         f"define void @{name}.wide(ptr noalias readonly %states, ptr noalias %results, i64 %m) #0 {{",
         "entry:",
@@ -200,13 +215,49 @@ def _steps(code: Code, live: Sequence[int], scalar: Scalar) -> list[Step]:
         steps += sorted(reached)
         steps.append(tuple((angle, sine, cosine) for angle, (sine, cosine) in angles.items()))
         done |= reached | {one for pair in angles.values() for one in pair if one is not None}
-    return steps
+    fused = _fused(code, live)
+    taken = {one.product for one in fused.values()}
+    return [fused.get(step, step) if isinstance(step, int) else step for step in steps if step not in taken]
+
+
+def _fused(code: Code, live: Sequence[int]) -> dict[int, Fused]:
+    """Sums that take in one of their products, by their numbers: if there are two, the later one.
+
+    It is decided here and not by the compiler, so that one state and many states get the same numbers.
+    """
+    instructions = code.program.instructions
+    uses = Counter(operand for number in live for operand in instructions[number].operands)
+    uses.update(node.number for node in code.outputs)
+    found = {}
+    for number in live:
+        operation, operands, _ = instructions[number]
+        if operation not in ("add", "subtract"):
+            continue
+        products = [one for one in operands if instructions[one].operation == "multiply" and uses[one] == 1]
+        if products:
+            product = max(products)
+            first = operands[0] == product
+            a, b = instructions[product].operands
+            minus, other = operation == "subtract", operands[1 if first else 0]
+            found[number] = Fused(number, product, (a, b), other, minus and not first, minus and first)
+    return found
+
+
+def _used(code: Code, step: Step) -> Sequence[int]:
+    """What a step needs."""
+    if isinstance(step, int):
+        return code.program.instructions[step].operands
+    if isinstance(step, Fused):
+        return (*step.factors, step.other)
+    return [angle for angle, *_ in step]
 
 
 def _results(step: Step) -> list[int]:
     """What a step computes."""
     if isinstance(step, int):
         return [step]
+    if isinstance(step, Fused):
+        return [step.number]
     return [one for _, sine, cosine in step for one in (sine, cosine) if one is not None]
 
 
@@ -219,8 +270,7 @@ def _split(name: str, code: Code, live: Sequence[int], scalar: Scalar, lanes: in
     needed: list[set[int]] = [set() for _ in parts]
     for place, part in enumerate(parts):
         for step in part:
-            used = instructions[step].operands if isinstance(step, int) else [angle for angle, *_ in step]
-            needed[place].update(number for number in used if home[number] != place)
+            needed[place].update(number for number in _used(code, step) if home[number] != place)
     needed[-1].update(node.number for node in code.outputs if home[node.number] != len(parts) - 1)
     kept: dict[int, int] = {}
     for number in sorted(set().union(*needed)):
@@ -267,7 +317,12 @@ class _Form:
 
     def body(self, steps: Iterable[Step]) -> Iterator[str]:
         for step in steps:
-            yield from self._instruction(step) if isinstance(step, int) else self._angles(step)
+            if isinstance(step, int):
+                yield from self._instruction(step)
+            elif isinstance(step, Fused):
+                yield from self._sum(step)
+            else:
+                yield from self._angles(step)
             for number in _results(step):
                 if number in self.kept and self.code.program.instructions[number].operation != "constant":
                     yield f"  %k{number} = getelementptr {self.kind}, ptr %w, i64 {self.kept[number]}"
@@ -307,13 +362,25 @@ class _Form:
             case [a] if operation == "negative":
                 yield f"  {local} = fneg {kind} {a}"
             case [a] if operation == "sqrt" and self.lanes > 1:
-                suffix = f"v{self.lanes}{'f32' if self.scalar.name == FLOAT32 else 'f64'}"
-                yield f"  {local} = call {kind} @llvm.sqrt.{suffix}({kind} {a})"
+                yield f"  {local} = call {kind} @llvm.sqrt.{suffix(self.scalar, self.lanes)}({kind} {a})"
             case [a]:
                 yield from self._function(f"{operation}{self.scalar.suffix}", local, a)
             case [a, b]:
-                yield f"  {local} = {_ARITHMETIC[operation]} contract {kind} {a}, {b}"
+                yield f"  {local} = {_ARITHMETIC[operation]} {kind} {a}, {b}"
         self.values[number] = local
+
+    def _sum(self, step: Fused) -> Iterator[str]:
+        kind, local = self.kind, f"%v{step.number}"
+        a, b, c = (self.values[number] for number in (*step.factors, step.other))
+        if step.minus_product:
+            yield f"  {local}.a = fneg {kind} {a}"
+            a = f"{local}.a"
+        if step.minus_other:
+            yield f"  {local}.c = fneg {kind} {c}"
+            c = f"{local}.c"
+        function = f"llvm.fmuladd.{suffix(self.scalar, self.lanes)}"
+        yield f"  {local} = call {kind} @{function}({kind} {a}, {kind} {b}, {kind} {c})"
+        self.values[step.number] = local
 
     def _function(self, function: str, local: str, argument: str) -> Iterator[str]:
         """A call of the C library, or one for every lane."""
@@ -379,8 +446,13 @@ class _Form:
                 yield f"  {local}.{letter} = fptrunc {double} {wide} to {kind}"
 
 
-#: From so many states in one call on, code for several at once is compiled.
-WIDE = 1_000
+def suffix(scalar: Scalar, lanes: int) -> str:
+    """What LLVM puts behind the names of intrinsics."""
+    return (f"v{lanes}" if lanes > 1 else "") + ("f32" if scalar.name == FLOAT32 else "f64")
+
+
+#: After so many states (in calls with many) code for several at once is compiled: about what the compiling costs.
+WIDE = 500_000
 
 #: Angles of one state that are computed together.
 MOST_ANGLES = 4
@@ -445,7 +517,7 @@ def many_text(name: str, code: Code, scalar: Scalar) -> str:
 
 def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
     """What the codes call, for one state or several: declarations of library functions, sine and cosine."""
-    called, counts = set(), set()
+    called, counts, fused = set(), set(), False
     for code in codes:
         live = code.program.live(code.outputs)
         for number in live:
@@ -453,19 +525,22 @@ def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
             if len(instruction.operands) == 1 and instruction.operation != "negative":
                 called.add(instruction.operation)
         for step in _steps(code, live, scalar):
-            if not isinstance(step, int):
+            if isinstance(step, tuple):
                 whole, rest = divmod(len(step), MOST_ANGLES)
                 counts |= {lanes} if lanes > 1 else {packed(rest)} - {0} | ({MOST_ANGLES} if whole else set())
-    kind, lines = scalar.type, []
+            fused = fused or isinstance(step, Fused)
+    kind, lines = vector(lanes, scalar.type), []
+    if fused and not (counts and kind in {vector(count, "double") for count in counts}):
+        lines.append(f"declare {kind} @llvm.fmuladd.{suffix(scalar, lanes)}({kind}, {kind}, {kind})\n")
     if counts:
         called -= {"sin", "cos"}
         lines.append("declare double @sin(double) #1\ndeclare double @cos(double) #1\n")
         lines += [sine_cosine.declarations(count) + sine_cosine.text(count) for count in sorted(counts)]
     if lanes > 1 and "sqrt" in called:
         called.remove("sqrt")
-        suffix = f"v{lanes}{'f32' if scalar.name == FLOAT32 else 'f64'}"
-        lines.append(f"declare {vector(lanes, kind)} @llvm.sqrt.{suffix}({vector(lanes, kind)})\n")
-    lines += [f"declare {kind} @{name}{scalar.suffix}({kind}) #1\n" for name in sorted(called)]
+        lines.append(f"declare {kind} @llvm.sqrt.{suffix(scalar, lanes)}({kind})\n")
+    one = scalar.type
+    lines += [f"declare {one} @{name}{scalar.suffix}({one}) #1\n" for name in sorted(called)]
     return "".join(lines)
 
 
@@ -531,10 +606,10 @@ def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:
     return kernels({"f": code}, scalar)["f"]
 
 
-def kernels(codes: Mapping[str, Code], scalar: str = FLOAT64) -> dict[str, Kernel]:
-    """Several kernels compiled together."""
+def kernels(codes: Mapping[str, Code], scalar: str = FLOAT64, wide: bool = False) -> dict[str, Kernel]:
+    """Several kernels compiled together; ``wide``: also, at once, for several states side by side."""
     library = compiled(codes, scalar)
-    return {name: _Called(library, name, code, SCALARS[scalar]) for name, code in codes.items()}
+    return {name: _Called(library, name, code, SCALARS[scalar], wide) for name, code in codes.items()}
 
 
 def compiled_wide(name: str, code: Code, scalar: str) -> Library:
@@ -545,20 +620,27 @@ def compiled_wide(name: str, code: Code, scalar: str) -> Library:
 
 
 class _Called:
-    """A compiled code as a function of arrays; the code for several states at once is compiled when it is needed."""
+    """A compiled code as a function of arrays; several states at once when many of them have been asked for.
 
-    def __init__(self, library: Library, name: str, code: Code, scalar: Scalar) -> None:
+    It makes no difference to the results, which are equal to the last bit.
+    """
+
+    def __init__(self, library: Library, name: str, code: Code, scalar: Scalar, wide: bool) -> None:
         self.library, self.name, self.code, self.scalar, self.dtype = library, name, code, scalar, scalar.dtype
-        pointer = ctypes.c_void_p
+        pointer, whole = ctypes.c_void_p, ctypes.c_int64
         self._one = library.function(name, pointer, pointer)
-        self._many = library.function(f"{name}.many", pointer, pointer, ctypes.c_int64)
+        self._many = library.function(f"{name}.many", pointer, pointer, whole)
         self._lanes = lanes_of(scalar.name)
+        self._states = 0
+        self._wide: Callable[..., Any] | None = None
+        if wide:
+            self._widen()
 
-    @cached_property
-    def _wide(self) -> tuple[Library, Callable[..., Any]]:
-        library = compiled_wide(self.name, self.code, self.scalar.name)
-        pointer = ctypes.c_void_p
-        return library, library.function(f"{self.name}.wide", pointer, pointer, ctypes.c_int64)
+    def _widen(self) -> None:
+        if self._lanes > 1:
+            self.wide_library = compiled_wide(self.name, self.code, self.scalar.name)
+            pointer = ctypes.c_void_p
+            self._wide = self.wide_library.function(f"{self.name}.wide", pointer, pointer, ctypes.c_int64)
 
     def __call__(self, values: Any) -> Any:
         values = np.ascontiguousarray(values, dtype=self.dtype)
@@ -567,8 +649,11 @@ class _Called:
         out = np.empty((len(self.code.outputs), *values.shape[1:]), dtype=self.dtype)
         if values.ndim == 1:
             self._one(values.ctypes.data, out.ctypes.data)
-        elif self._lanes > 1 and values.shape[1] >= max(WIDE, self._lanes):
-            self._wide[1](values.ctypes.data, out.ctypes.data, values.shape[1])
-        else:
-            self._many(values.ctypes.data, out.ctypes.data, values.shape[1])
+            return out
+        count = values.shape[1]
+        self._states += count
+        if self._wide is None and self._states >= WIDE:
+            self._widen()
+        run = self._many if self._wide is None or count < self._lanes else self._wide
+        run(values.ctypes.data, out.ctypes.data, count)
         return out

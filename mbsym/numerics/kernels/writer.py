@@ -21,6 +21,9 @@ _WHOLE = {"+": "add", "-": "sub", "*": "mul"}
 _ORDERED = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge"}
 _SIGNED = {"<": "slt", "<=": "sle", ">": "sgt", ">=": "sge", "==": "eq", "!=": "ne"}
 
+#: Loops of so few rounds are written out.
+WRITTEN_OUT = 16
+
 Number = int | float | Fraction
 
 
@@ -129,7 +132,7 @@ class Function:
     def slot(self, kind: str, count: int = 1) -> Value:
         """Room on the stack."""
         name = f"%{self._fresh('s')}"
-        self.slots.append(f"  {name} = alloca [{max(count, 1)} x {kind}]")
+        self.slots.append(f"  {name} = alloca [{max(count, 1)} x {kind}], align 64")
         return Value(self, POINTER, name)
 
     def at(self, kind: str, base: Value, index: Value | int) -> Value:
@@ -174,6 +177,14 @@ class Function:
         self.store(now + 1, INTEGER, index)
         self.jump(test)
         self.place(done)
+
+    def each(self, count: int) -> Iterator[Value | int]:
+        """The body for 0, ..., count - 1: a loop, or written out if there are few."""
+        if count <= WRITTEN_OUT:
+            yield from range(count)
+        else:
+            with self.repeat(count) as index:
+                yield index
 
     @contextmanager
     def when(self, bit: Value) -> Iterator[None]:

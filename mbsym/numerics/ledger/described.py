@@ -117,7 +117,7 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
         loads = list(work.system.loads)
         loads[place] = replace(load, order=following)
         measures = work.right_hand_sides(replace(work.system, loads=tuple(loads), claims=()))
-        ratio = _relative_size(work.numbers, load)
+        ratio = relative_size(work.numbers, load)
         if ratio is None:
             why, how = (
                 f"terms above (l/R)^{order} are dropped; without numbers for l and R nobody knows if that is safe",
@@ -133,7 +133,7 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
         yield Saving("order of gravity", (f"terms of the field above order {order}",), why, how, measures)
 
 
-def _relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:
+def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:
     """l/R at t = 0: the greatest distance of a body's mass from O1 (with its radius of gyration) over that of O1."""
     if numbers is None:
         return None

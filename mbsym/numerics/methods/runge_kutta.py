@@ -62,7 +62,7 @@ class Stages:
         """Where the slopes of a stage begin."""
         return self.f.at(self.kind, k, stage * self.size)
 
-    def combination(self, k: Value, row: Row, i: Value) -> Value:
+    def combination(self, k: Value, row: Row, i: Value | int) -> Value:
         """sum_j row_j k_j, component i."""
         total: Value | None = None
         for j, weight in enumerate(row):
@@ -80,13 +80,13 @@ class Stages:
     def stage(self, x: Value, k: Value, row: Row, number: int, time: Value, step: Value) -> None:
         """k_number = f(t + c h, x + h sum_j row_j k_j)."""
         h = step.converted(self.kind)
-        with self.f.repeat(self.size) as i:
+        for i in self.f.each(self.size):
             moved = self.f.load(self.kind, x, i) + h * self.combination(k, row, i)
             self.f.store(moved, self.kind, self.argument, i + 1)
         self.evaluate(time + step * sum(row, Fraction(0)), self.slope(k, number))
 
     def copy(self, source: Value, target: Value) -> None:
-        with self.f.repeat(self.size) as i:
+        for i in self.f.each(self.size):
             self.f.store(self.f.load(self.kind, source, i), self.kind, target, i)
 
     def state_argument(self, x: Value) -> None:
@@ -123,7 +123,7 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
         total = f.slot(s.kind)
         f.store(0, s.kind, total)
         h = step.converted(s.kind)
-        with f.repeat(size) as i:
+        for i in f.each(size):
             new = add_compensated(f, s.kind, f["x"], f["carry"], i, h * s.combination(k, tableau.weights, i))
             f.store(f.load(s.kind, total) + (new - new), s.kind, total)
         finite, over = f.label(), f.label()
@@ -176,7 +176,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     for place, row in enumerate(tableau.stages[1:], 1):
         s.stage(x, k, row, place, time, step)
     h = step.converted(s.kind)
-    with f.repeat(size) as i:
+    for i in f.each(size):
         change = h * s.combination(k, tableau.weights, i)
         f.store(change, s.kind, unchanged, i)
         f.store(f.load(s.kind, x, i) + change, s.kind, candidate, i)
@@ -202,7 +202,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     f.jump(again)
 
     f.place(good)
-    with f.repeat(size) as i:
+    for i in f.each(size):
         f.store(f.load(s.kind, x, i), s.kind, f["old"], i)
         add_compensated(f, s.kind, x, f["carry"], i, f.load(s.kind, unchanged, i))
     f.store(time, s.clock, clock, START)
@@ -249,11 +249,12 @@ def _error(
     totals = [f.slot("double") for _ in tableau.errors]
     for total in totals:
         f.store(0, "double", total)
-    with f.repeat(size := s.size) as i:
+    for i in f.each(size := s.size):
         before, after = f.load(s.kind, x, i).absolute(), f.load(s.kind, new, i).absolute()
         scale = absolute + relative * before.compare("<", after).choose(after, before)
+        inverse = 1 / scale
         for total, row in zip(totals, tableau.errors, strict=True):
-            one = (s.combination(k, row, i) / scale).converted("double")
+            one = (s.combination(k, row, i) * inverse).converted("double")
             f.store(f.load("double", total) + one * one, "double", total)
     squares = [f.load("double", total) for total in totals]
     h = step.converted("double").absolute()
@@ -301,7 +302,7 @@ def dense_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     for place, row in enumerate(tableau.extra):
         s.stage(f["old"], k, row, stages + 1 + place, time, step)
     h = step.converted(s.kind)
-    with f.repeat(size) as i:
+    for i in f.each(size):
         change = f.load(s.kind, f["x"], i) - f.load(s.kind, f["old"], i)
         first, last = h * f.load(s.kind, k, i), h * f.load(s.kind, k, i + stages * size)
         terms = [change, first - change, 2 * change - (first + last)]
@@ -313,7 +314,7 @@ def dense_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     kind = s.kind
     share = g.load(kind, g["share"])
     rest = 1 - share
-    with g.repeat(size) as i:
+    for i in g.each(size):
         total: Value | None = None
         for place in reversed(range(len(tableau.dense) + 3)):
             term = g.load(kind, g["terms"], i + place * size)
