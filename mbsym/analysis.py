@@ -326,6 +326,8 @@ class Analysis:
     def _claims(self) -> tuple[ClaimResult, ...]:
         if not self.system.claims:
             return ()
+        for number in self.problems:  # not under the small budget of a claim, whose failures would be remembered
+            self.stage(number)
         symbols = claims.Symbols(self.system)
         own = angle_denominators(self.system)
         arguments = {id(claim): list(symbols.arguments(claim)) for claim in self.system.claims}

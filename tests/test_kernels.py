@@ -13,7 +13,7 @@ import json
 import random
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -35,7 +35,7 @@ from mbsym.expressions.tree import number
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels import arrays, llvm
+from mbsym.numerics.kernels import arrays, llvm, sine_cosine
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.precise import precise
@@ -240,6 +240,191 @@ def test_tiny_extended_constants_lose_digits_but_not_their_size() -> None:
     significand = int(text[7:], 16)
     assert text.startswith("0xK0000")
     assert Fraction(significand) * Fraction(2) ** (-16382 - 63) == value
+
+
+# --- many states at once ---
+
+WIDE_SCALARS = [FLOAT64, FLOAT32]
+
+
+@pytest.mark.parametrize("scalar", WIDE_SCALARS)
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
+def test_states_side_by_side_give_the_same_numbers_within_the_bound(path: Path, scalar: str) -> None:
+    dynamics = dynamics_at(mbsym.load(path).system)
+    codes = {"rhs": dynamics.right_hand_side, "energy": dynamics.energy}
+    wide, lanes = llvm.kernels(codes, scalar, wide=True), llvm.lanes_of(scalar)
+    for name, kernel in llvm.kernels(codes, scalar).items():
+        for count in (1, lanes - 1, lanes, 2 * lanes + 1, 37):
+            inputs = states(codes[name], random.Random(count), count, TYPES[scalar])
+            together = wide[name](inputs)
+            assert np.array_equal(together, kernel(inputs))
+            assert np.array_equal(together[:, -1], kernel(inputs[:, -1]))
+        assert not outside(codes[name], inputs[:, 5], together[:, 5], BITS[scalar])
+
+
+def every_function() -> Code:
+    """Outputs with every function, quotients, fused sums of all signs, and sines of sines."""
+    program = Program()
+    x, y = program.input("x"), program.input("y")
+    own = [
+        program.function(name, x * x + y * y) for name in ("sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh", "tan")
+    ]
+    a, b = program.function("sin", x), program.function("cos", x * y)
+    nested = [program.function("cos", a + b * y), program.function("sin", program.function("sin", b) * a)]
+    sums = [x * y + a, x * y - a, a - x * b, a * b - x * a, a * y + b * b, program.divide(a, y) - x * b]
+    return Code(program, ("x", "y"), (*own, a, b, *nested, *sums, x, program.number(3)))
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+def test_every_function_is_within_the_bound(scalar: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    code = every_function()
+    for long, part in ((4_000, 500), (3, 4)):
+        monkeypatch.setattr(llvm, "LONG", long)
+        monkeypatch.setattr(llvm, "PART", part)
+        inputs = states(code, random.Random(9), 11, TYPES[scalar])
+        results = llvm.kernels({"f": code}, scalar, wide=True)["f"](inputs)
+        assert np.array_equal(results, llvm.kernel(code, scalar)(inputs))
+        for k in range(0, 11, 3):
+            assert not outside(code, inputs[:, k], results[:, k], BITS[scalar])
+
+
+def test_code_for_many_states_is_compiled_when_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
+    code = dynamics_at(mbsym.load(SHIPPED / "double-pendulum.yaml").system).right_hand_side
+    inputs = states(code, random.Random(1), 40, np.float64)
+    made = []
+    compile_it = llvm.compiled_wide
+    monkeypatch.setattr(llvm, "WIDE", 100)
+    monkeypatch.setattr(llvm, "compiled_wide", lambda *given: made.append(given) or compile_it(*given))
+    kernel = llvm.kernel(code)
+    before = [kernel(inputs) for _ in range(2)]
+    assert not made
+    after = [kernel(inputs) for _ in range(3)]
+    assert len(made) == (llvm.lanes_of(FLOAT64) > 1)
+    assert all(np.array_equal(one, before[0]) for one in (*before, *after))
+
+
+def test_long_programs_are_split_for_many_states_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    code = dynamics_at(mbsym.load(SHIPPED / "satellite.yaml").system).right_hand_side
+    inputs = states(code, random.Random(2), 9, np.float64)
+    whole = llvm.kernel(code)(inputs)
+    monkeypatch.setattr(llvm, "LONG", 10)
+    monkeypatch.setattr(llvm, "PART", 13)
+    text = llvm.wide_text("f", code, llvm.SCALARS[FLOAT64], 4)
+    assert text.count("define internal void @f.wide.") > 5
+    assert np.array_equal(llvm.kernels({"f": code}, wide=True)["f"](inputs), whole)
+
+
+# --- sine and cosine ---
+
+
+def sines_and_cosines(lanes: int) -> Callable[[Any], tuple[Any, Any]]:
+    """sine_cosine.N over an array whose length is a multiple of N."""
+    kind = sine_cosine.vector(lanes, "double")
+    text = f"""
+declare double @sin(double) #1
+declare double @cos(double) #1
+{sine_cosine.declarations(lanes)}{sine_cosine.text(lanes)}
+define void @run(ptr %in, ptr %sines, ptr %cosines, i64 %m) #0 {{
+entry:
+  br label %loop
+loop:
+  %k = phi i64 [0, %entry], [%next, %loop]
+  %p = getelementptr double, ptr %in, i64 %k
+  %x = load {kind}, ptr %p, align 8
+  %both = call {{ {kind}, {kind} }} @{sine_cosine.name(lanes)}({kind} %x)
+  %a = extractvalue {{ {kind}, {kind} }} %both, 0
+  %b = extractvalue {{ {kind}, {kind} }} %both, 1
+  %pa = getelementptr double, ptr %sines, i64 %k
+  %pb = getelementptr double, ptr %cosines, i64 %k
+  store {kind} %a, ptr %pa, align 8
+  store {kind} %b, ptr %pb, align 8
+  %next = add i64 %k, {lanes}
+  %more = icmp slt i64 %next, %m
+  br i1 %more, label %loop, label %done
+done:
+  ret void
+}}
+"""
+    library = llvm.Library(text + llvm.ATTRIBUTES)
+    function = library.function("run", *[ctypes.c_void_p] * 3, ctypes.c_int64)
+
+    def run(x: Any) -> tuple[Any, Any]:
+        assert library is not None
+        x = np.ascontiguousarray(x, float)
+        sines, cosines = np.empty_like(x), np.empty_like(x)
+        function(x.ctypes.data, sines.ctypes.data, cosines.ctypes.data, len(x))
+        return sines, cosines
+
+    return run
+
+
+def angles() -> Any:
+    """Random ones of every size, multiples of pi/2 and their neighbours, and the smallest numbers."""
+    source = random.Random(12)
+    found = [source.uniform(-size, size) for size in (0.8, 4, 50, 1e3, 1e5) for _ in range(300)]
+    found += [source.choice((-1, 1)) * 10 ** source.uniform(-320, 0) for _ in range(200)]
+    with ctx.workprec(200):
+        for count in (*range(200), *(source.randrange(63_600) for _ in range(300))):
+            nearest = float((arb.pi() / 2 * count).mid())
+            found += [nearest, -float(np.nextafter(nearest, np.inf)), float(np.nextafter(nearest, -np.inf))]
+    found += [0.0, -0.0, 5e-324, -5e-324, 2.2e-308, sine_cosine.LARGEST_ANGLE, -sine_cosine.LARGEST_ANGLE]
+    return np.array(found[: len(found) // 8 * 8])
+
+
+def most_units(x: Any, results: tuple[Any, Any]) -> float:
+    """The largest error of sines and cosines in units of the last place."""
+    worst = 0.0
+    with ctx.workprec(300):
+        for angle, sine, cosine in zip(x, *results, strict=True):
+            for true, found in ((arb(angle).sin(), sine), (arb(angle).cos(), cosine)):
+                unit = float(np.spacing(abs(float(true))))
+                worst = max(worst, float(abs(arb(found) - true) / arb(unit)))
+    return worst
+
+
+@pytest.mark.parametrize("lanes", [1, 2, 4, 8])
+def test_sines_and_cosines_err_by_less_than_a_unit(lanes: int) -> None:
+    x = angles()
+    assert most_units(x, sines_and_cosines(lanes)(x)) < 0.8
+
+
+@pytest.mark.parametrize(("table", "place"), [("_SINE", 4), ("_COSINE", 4), ("_PI", None)])
+def test_a_wrong_constant_of_the_sine_is_caught(table: str, place: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A coefficient wrong in its fifth digit; pi wrong in the 30th, which shows beside its multiples."""
+    values = getattr(sine_cosine, table)
+    if place is None:
+        monkeypatch.setattr(sine_cosine, table, values + Fraction(1, 10**30))
+    else:
+        changed_one = values[place] * (1 + 1e-5)
+        monkeypatch.setattr(sine_cosine, table, (*values[:place], changed_one, *values[place + 1 :]))
+    x = angles()
+    assert most_units(x, sines_and_cosines(4)(x)) > 1
+
+
+def test_angles_beyond_the_range_do_not_change_their_neighbours() -> None:
+    run = sines_and_cosines(4)
+    usual = np.array([0.3, -1e5, 17.25, -2.5])
+    sines, cosines = run(usual)
+    for other in (1.5e5, -1e22, 1e300, np.inf, -np.inf, np.nan):
+        for place in range(4):
+            x = usual.copy()
+            x[place] = other
+            found = run(x)
+            keep = np.arange(4) != place
+            assert np.array_equal(found[0][keep], sines[keep])
+            assert np.array_equal(found[1][keep], cosines[keep])
+            if np.isfinite(other):
+                assert most_units(x[place : place + 1], (found[0][place : place + 1], found[1][place : place + 1])) < 1
+            else:
+                assert np.isnan(found[0][place])
+                assert np.isnan(found[1][place])
+
+
+def test_the_sine_of_minus_nothing_is_minus_nothing() -> None:
+    sines, cosines = sines_and_cosines(2)([0.0, -0.0])
+    assert list(np.signbit(sines)) == [False, True]
+    assert list(sines) == [0, 0]
+    assert list(cosines) == [1, 1]
 
 
 # --- shapes, long programs ---

@@ -4,8 +4,8 @@
 
 with U the force function (U = -potential energy) of all loads that have one.  A gyrostatic moment h of a body (constant
 angular momentum of rotors inside it) adds h.omega to T, which is then Routh's function of the rotors: the energy that
-problem 7 finds, T_2 - T_0 - U, contains no term that is linear in the velocities.  A coordinate, or a prescribed angle, is
-cyclic if L does not contain it (its velocity may occur).
+problem 7 finds, T_2 - T_0 - U, contains no term that is linear in the velocities.  A coordinate, or a prescribed angle,
+is cyclic if L does not contain it (its velocity may occur).
 
 Source: Banshchikov & Vetrov, eq. (1).
 

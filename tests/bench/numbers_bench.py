@@ -78,26 +78,37 @@ def forward(options: argparse.Namespace) -> list[Record]:
 
 
 def mbsym_forward(links: list[chains.Link]) -> Record:
-    """One state at a time inside machine code, a new state every time."""
+    """A new state every time inside machine code: one state at a time, and several side by side."""
+    import ctypes
+
     import numpy as np
 
-    from mbsym.numerics.kernels.llvm import kernels
+    from mbsym.numerics.kernels.llvm import compiled, kernels
 
     started = time.perf_counter()
     dynamics = dynamics_of(chains.description(links))
     code = dynamics.right_hand_side
     emitted = time.perf_counter() - started
     started = time.perf_counter()
-    kernel = kernels({"rhs": code})["rhs"]
-    compiled = time.perf_counter() - started
+    library = compiled({"rhs": code})
+    compiling = time.perf_counter() - started
+    started = time.perf_counter()
+    kernel = kernels({"rhs": code}, wide=True)["rhs"]
+    compiling_both = time.perf_counter() - started
     points = states_of(dynamics, BATCH)
-    seconds = best(lambda: kernel(points), 300)
+    out = np.empty((len(code.outputs), BATCH))
+    one_by_one = library.function("rhs.many", ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
+    single = best(lambda: one_by_one(points.ctypes.data, out.ctypes.data, BATCH), 300)
+    many = best(lambda: kernel(points), 300)
+    assert np.array_equal(out, kernel(points))
     x = np.array([0.0, *map(float, dynamics.scenario.state)])
     return {
-        "mbsym_ns": seconds / BATCH * 1e9,
+        "mbsym_ns": single / BATCH * 1e9,
+        "mbsym_many_ns": many / BATCH * 1e9,
         "operations": code.operations,
         "emitting_s": emitted,
-        "compiling_s": compiled,
+        "compiling_s": compiling,
+        "compiling_both_s": compiling_both,
         "accelerations": kernel(x)[len(links) :],
     }
 
@@ -250,15 +261,18 @@ def show_forward(results: list[Record], table: Callable[..., None]) -> None:
                 f"{r['joints']} {r['kind']}",
                 str(r["operations"]),
                 f"{r['mbsym_ns']:.0f}",
+                f"{r['mbsym_many_ns']:.0f}",
                 _cell(r.get("pinocchio_ns"), ".0f"),
                 _ratio(r, "pinocchio_ns"),
                 target,
+                _ratio(r, "pinocchio_ns", "mbsym_many_ns"),
                 _cell(r.get("sympy_ns"), ".0f"),
                 _ratio(r, "sympy_ns"),
                 ">= 100" if "sympy_ns" in r else "",
             ]
         )
-    headings = ["joints", "operations", "mbsym, ns", "ABA, ns", "ratio", "target", "lambdify, ns", "ratio", "target"]
+    headings = ["joints", "operations", "one, ns", "many, ns", "ABA, ns", "ABA/one", "target", "ABA/many"]
+    headings += ["lambdify, ns", "ratio", "target"]
     how = next((r["pinocchio_by"] for r in results if "pinocchio_by" in r), "not installed")
     table(f"Forward dynamics of spatial chains, ns a state (Pinocchio timed in {how})", headings, rows)
     differences = [r[key] for r in results for key in ("difference", "sympy_difference") if key in r]
@@ -270,8 +284,8 @@ def _cell(value: float | None, form: str) -> str:
     return "" if value is None else format(value, form)
 
 
-def _ratio(record: Record, key: str) -> str:
-    return _cell(record[key] / record["mbsym_ns"], ".1f") if key in record else ""
+def _ratio(record: Record, key: str, own: str = "mbsym_ns") -> str:
+    return _cell(record[key] / record[own], ".1f") if key in record else ""
 
 
 # --- simulation to equal error ---

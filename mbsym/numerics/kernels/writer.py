@@ -123,9 +123,10 @@ class Function:
     def call(self, name: str, kind: str, *operands: Value) -> Value:
         return self.value(kind, f"call {kind} @{name}({', '.join(f'{x.kind} {x.text}' for x in operands)})")
 
-    def do(self, name: str, *operands: Value) -> None:
-        """A call of a function without result."""
-        self.lines.append(f"  call void @{name}({', '.join(f'{x.kind} {x.text}' for x in operands)})")
+    def do(self, name: str, *operands: Value, apart: bool = False) -> None:
+        """A call of a function without result; ``apart``: its text is not put in place of the call."""
+        end = " noinline" if apart else ""
+        self.lines.append(f"  call void @{name}({', '.join(f'{x.kind} {x.text}' for x in operands)}){end}")
 
     # --- memory ------------------------------------------------------------------------------------------------------
 

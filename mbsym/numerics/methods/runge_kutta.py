@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, isfinite
+from math import ceil, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -41,8 +41,13 @@ from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Row, Tableau
 #: Machine code is left after about so many operations, so that Ctrl-C and progress bars work.
 OPERATIONS_AT_A_TIME = 20_000_000
 
-#: How much a step may grow or shrink at once, and the safety factor of the controller.
-GROWTH, SHRINKAGE, SAFETY = 6.0, 0.2, 0.9
+#: How much a step may grow or shrink at once, and the safety factor of the controller.  With 3/4 instead of the usual
+#: 0.9 hardly a step is rejected: over nine systems and tolerances from 1e-5 to 1e-11 dop853 needs 13 % fewer
+#: evaluations to equal error (3 to 21 % by the system), rk45 some 5 %.
+GROWTH, SHRINKAGE, SAFETY = 6.0, 0.2, 0.75
+
+#: The exponent of the integral part, by the order of the method.
+INTEGRAL = {5: Fraction(4, 100), 8: Fraction(3, 100)}
 
 # Places in the arrays that the machine code and Python share.
 TIME, TIME_CARRY, START, STEP, LAST, UNTIL, RELATIVE, ABSOLUTE, PREVIOUS = range(9)
@@ -53,8 +58,8 @@ REACHED, PAUSED, STOPPED = range(3)
 class Stages:
     """Text for the stages of a tableau: state ``x``, slopes ``k`` stage by stage, (t, x) of a stage in ``argument``."""
 
-    def __init__(self, function: Function, size: int, scalar: Scalar) -> None:
-        self.f, self.size, self.scalar = function, size, scalar
+    def __init__(self, function: Function, size: int, scalar: Scalar, apart: bool = False) -> None:
+        self.f, self.size, self.scalar, self.apart = function, size, scalar, apart
         self.kind, self.clock = scalar.type, clock_kind(scalar)
         self.argument = function.slot(self.kind, size + 1)
 
@@ -75,7 +80,7 @@ class Stages:
     def evaluate(self, time: Value, result: Value) -> None:
         """f at ``time`` and the states that ``argument`` holds."""
         self.f.store(time.converted(self.kind), self.kind, self.argument)
-        self.f.do("rhs", self.argument, result)
+        self.f.do("rhs", self.argument, result, apart=self.apart)
 
     def stage(self, x: Value, k: Value, row: Row, number: int, time: Value, step: Value) -> None:
         """k_number = f(t + c h, x + h sum_j row_j k_j)."""
@@ -112,25 +117,30 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     arguments = [(name, POINTER) for name in ("x", "carry", "clock")] + [("first", INTEGER), ("last", INTEGER)]
     f = Function("fixed", arguments)
     s = Stages(f, size, scalar)
-    k = f.slot(s.kind, len(tableau.stages) * size)
+    k, x, carry = f.slot(s.kind, len(tableau.stages) * size), f.slot(s.kind, size), f.slot(s.kind, size)
+    s.copy(f["x"], x)
+    s.copy(f["carry"], carry)
     start, step = f.load(s.clock, f["clock"], START), f.load(s.clock, f["clock"], STEP)
     with f.repeat(f["last"], f["first"]) as number:
         time = start + number.converted(s.clock) * step
-        s.state_argument(f["x"])
+        s.state_argument(x)
         s.evaluate(time, s.slope(k, 0))
         for place, row in enumerate(tableau.stages[1:], 1):
-            s.stage(f["x"], k, row, place, time, step)
+            s.stage(x, k, row, place, time, step)
         total = f.slot(s.kind)
         f.store(0, s.kind, total)
         h = step.converted(s.kind)
         for i in f.each(size):
-            new = add_compensated(f, s.kind, f["x"], f["carry"], i, h * s.combination(k, tableau.weights, i))
+            new = add_compensated(f, s.kind, x, carry, i, h * s.combination(k, tableau.weights, i))
             f.store(f.load(s.kind, total) + (new - new), s.kind, total)
         finite, over = f.label(), f.label()
         f.branch(f.load(s.kind, total).compare("<=", 0), finite, over)
         f.place(over)
+        s.copy(x, f["x"])
         f.leave(number - f["first"])
         f.place(finite)
+    s.copy(x, f["x"])
+    s.copy(carry, f["carry"])
     f.leave(f["last"] - f["first"])
     return f.text()
 
@@ -192,7 +202,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
 
     f.place(bad)
     usable = error.compare("<", Fraction(10) ** 30)
-    power = f.call("pow", "double", error, f.number(Fraction(-1, tableau.order), "double")) * Fraction(SAFETY)
+    power = f.call("exp", "double", f.call("log", "double", error) * Fraction(-1, tableau.order)) * Fraction(SAFETY)
     shrink = power.compare(">", Fraction(SHRINKAGE)).choose(power, f.number(Fraction(SHRINKAGE), "double"))
     shrink = usable.choose(shrink, f.number(Fraction(1, 10), "double"))
     f.store(step * shrink.converted(s.clock), s.clock, clock, STEP)
@@ -267,15 +277,15 @@ def _error(
 
 
 def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -> None:
-    """h <- h min(6, max(1/5, 0.9 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
+    """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
     clock, count = f["clock"], f["count"]
-    integral = Fraction(4, 100) if tableau.order < 8 else Fraction(2, 100)
+    integral = INTEGRAL[tableau.order]
     alpha = Fraction(1, tableau.order) - integral * Fraction(3, 4)
     floor = f.number(Fraction(1, 10**10), "double")
     seen = error.compare(">", floor).choose(error, floor)
+    size = f.call("log", "double", seen)
     before = f.load(s.clock, clock, PREVIOUS).converted("double")
-    factor = f.call("pow", "double", seen, f.number(-alpha, "double"))
-    factor = factor * f.call("pow", "double", before, f.number(integral, "double")) * Fraction(SAFETY)
+    factor = f.call("exp", "double", before * integral - size * alpha) * Fraction(SAFETY)
     most = f.load(INTEGER, count, CAREFUL).compare("!=", 0)
     limit = most.choose(f.number(1, "double"), f.number(Fraction(GROWTH), "double"))
     factor = factor.compare("<", limit).choose(factor, limit)
@@ -284,8 +294,8 @@ def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -
     grown = step * factor.converted(s.clock)
     longest = f.number(Fraction(10) ** 30, s.clock)
     f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, STEP)
-    lower = f.number(Fraction(1, 10**4), "double")
-    kept = error.compare(">", lower).choose(error, lower)
+    lower = f.number(Fraction(log(1e-4)), "double")
+    kept = size.compare(">", lower).choose(size, lower)
     f.store(kept.converted(s.clock), s.clock, clock, PREVIOUS)
     f.store(0, INTEGER, count, CAREFUL)
 
@@ -296,7 +306,7 @@ def dense_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     ``i64 @prepare(x, old, k, terms, clock)`` computes the terms F, ``i64 @between(old, terms, share, out)`` their sum.
     """
     f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock")])
-    s = Stages(f, size, scalar)
+    s = Stages(f, size, scalar, apart=True)  # once an output: not worth compiling over and over
     k, stages = f["k"], len(tableau.stages)
     time, step = f.load(s.clock, f["clock"], START), f.load(s.clock, f["clock"], LAST)
     for place, row in enumerate(tableau.extra):
@@ -333,10 +343,8 @@ def _dtype(kind: str) -> Any:
 def mathematics(code: Code, scalar: Scalar) -> str:
     """Declarations that the drivers need and the code has not made already."""
     own = {code.program.instructions[number].operation for number in code.program.live(code.outputs)}
-    lines = ["declare double @pow(double, double) #1\n"]
-    if not ("sqrt" in own and scalar.type == "double"):
-        lines.append("declare double @sqrt(double) #1\n")
-    return "".join(lines)
+    missing = [name for name in ("exp", "log", "sqrt") if not (name in own and scalar.type == "double")]
+    return "".join(f"declare double @{name}(double) #1\n" for name in missing)
 
 
 def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
@@ -354,6 +362,14 @@ def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
     return once(dynamics, ("runge-kutta", tableau.name, scalar), make)
 
 
+def aligned(shape: int | tuple[int, ...], dtype: Any) -> Any:
+    """Zeros that begin a cache line: a vector register filled from two lines, one just written, takes twice as long."""
+    count, width = int(np.prod(shape)), np.dtype(dtype).itemsize
+    room = np.zeros(count * width + 64, np.uint8)
+    first = -address(room) % 64
+    return room[first : first + count * width].view(dtype).reshape(shape)
+
+
 def address(array: Any) -> int:
     found: int = array.ctypes.data
     return found
@@ -366,9 +382,9 @@ class _Arrays:
         chosen = SCALARS[scalar]
         self.size = 2 * dynamics.size
         self.dtype, self.clock_type = chosen.dtype, _dtype(clock_kind(chosen))
-        self.x = initial_state(dynamics, self.dtype)
-        self.carry = np.zeros(self.size, self.dtype)
-        self.clock = np.zeros(9, self.clock_type)
+        self.x, self.carry = aligned(self.size, self.dtype), aligned(self.size, self.dtype)
+        self.x[:] = initial_state(dynamics, self.dtype)
+        self.clock = aligned(9, self.clock_type)
         self.work = Work()
         self.time = 0.0
         self.state = self.x.copy()
@@ -447,10 +463,11 @@ class AdaptiveRun(_Arrays):
         self._between = library.function("between", *[pointer] * 4, result=whole)
         self._library = library
         rows = len(tableau.stages) + 1 + len(tableau.extra)
-        self.old = self.x.copy()
-        self.k = np.zeros((rows, self.size), self.dtype)
-        self.terms = np.zeros((3 + len(tableau.dense), self.size), self.dtype)
-        self.count = np.zeros(6, np.int64)
+        self.old = aligned(self.size, self.dtype)
+        self.old[:] = self.x
+        self.k = aligned((rows, self.size), self.dtype)
+        self.terms = aligned((3 + len(tableau.dense), self.size), self.dtype)
+        self.count = aligned(6, np.int64)
         self.share = np.zeros(1, self.dtype)
         self.out = np.zeros(self.size, self.dtype)
         arrays = (self.x, self.carry, self.old, self.k, self.clock, self.count)
@@ -461,7 +478,7 @@ class AdaptiveRun(_Arrays):
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         smallest = 4 * float(np.finfo(self.dtype).eps)
         self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
-        self.clock[PREVIOUS] = 1e-4
+        self.clock[PREVIOUS] = log(1e-4)
         f = compiled_kernel(dynamics, "right_hand_side", scalar)
         self.clock[STEP] = self._first_step(f, max(tolerance, smallest), tolerance)
         self._at_once = max(1, OPERATIONS_AT_A_TIME // (rows * (dynamics.right_hand_side.operations + 10)))
