@@ -31,7 +31,7 @@ types: $(READY)
 	$(BIN)/mypy
 
 test: $(READY)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto
 
 demo: $(READY)
 	$(BIN)/mbsym run systems/satellite.yaml

@@ -111,7 +111,7 @@ def test_accelerations_satisfy_d_alembert(path: Path) -> None:
     for state in rational_states(analysis.system, analysis.ring, 3):
         try:
             expected = accelerated(analysis.system, state, analysis.programs)
-        except ZeroDivisionError:  # the parameters of a random state need not be those of a body
+        except SingularPoint:  # the parameters of a random state need not be those of a body
             continue
         values = dynamics.program.evaluate(dynamics.accelerations, state.values, state.numbers)
         names = [acceleration_name(name) for name in analysis.system.coordinates]

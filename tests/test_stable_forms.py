@@ -141,10 +141,15 @@ def test_a_form_keeps_its_digits_and_its_value(name: str, formula: Formula) -> N
     plain = formula(program, inputs)
     better = stabilised(program, [plain], thorough=True)[0]
     assert better != plain
-    names, values = tuple(VALUES), list(VALUES.values())
-    before, after = (errors(Code(program, names, (node,)), values)[0] for node in (plain, better))
-    assert after < 8 * EPS
-    assert before > 1e-11, "the plain form is the negative control: it loses five digits or more"
+    names = tuple(VALUES)
+    before, after = [], []
+    for place in range(5):  # a plain form can be lucky at one point
+        values = [x * (1 + place * 1e-9) for x in VALUES.values()]
+        errors_there = (errors(Code(program, names, (node,)), values)[0] for node in (plain, better))
+        for found, error in zip((before, after), errors_there, strict=True):
+            found.append(error)
+    assert max(after) < 8 * EPS
+    assert max(before) > 1e-11, "the plain form is the negative control: it loses five digits or more"
     for seed in range(3):
         source = random.Random(seed)
         with ctx.workprec(400):

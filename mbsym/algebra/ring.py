@@ -255,7 +255,9 @@ class Ring(Algebra):
     def sin_cos(self, angle: LinearForm) -> tuple[Polynomial, Polynomial]:
         sine, cosine = self._constant_angle(angle.turns)
         for name, coefficient in angle.coefficients:
-            multiple = coefficient * self.angles.get(name, 0)  # an angle of another kind: zero of it is foreseen
+            if not coefficient:
+                continue
+            multiple = coefficient * self.angles.get(name, 0)  # 0: no sine or cosine of it was foreseen
             if multiple.denominator != 1 or not multiple:
                 raise NoClosedForm(f"sin and cos of {coefficient}*{name} were not foreseen")
             s, c = self.multiple_angle(self.generator("sine", name), self.generator("cosine", name), int(multiple))

@@ -192,6 +192,7 @@ class Arithmetic:
     """
 
     def __init__(self, scenario: Scenario, found: Sequence[Quantity], compiled: bool = True) -> None:
+        self.found = tuple(found)
         fresh = bound(scenario)
         names = ("t", *scenario.system.coordinates, *scenario.system.velocities)
         codes: dict[str, Code] = {}

@@ -32,8 +32,18 @@ from mbsym.numerics.scenario import Scenario
 #: Sums are called good where float64 keeps at least so many digits.
 GOOD = 10.0
 
-#: The Jacobian is left out where its program is longer than this, and where kernels have to be compiled again.
+#: A quantity is left out where its program is longer than this, linear matrices where they have more terms.
 MOST_OPERATIONS = 20_000
+
+#: Steps of polynomial arithmetic that a second of the budget allows the linear equations; a second holds two to four
+#: times as many.  Counted steps make the same thing come out on every machine.
+STEPS_PER_SECOND = 1_000_000
+
+#: Programs with more operations than this for a second of the budget are not compiled but taken step by step.
+COMPILED_PER_SECOND = 1_000
+
+#: So many names are listed where time was short.
+LISTED = 8
 
 
 @dataclass(frozen=True)
@@ -102,36 +112,50 @@ def extremes(
     watch("programs")
     found = _quantities(given.system, ring, left_out)
     truth = Truth(given.system, found)
-    linear = _linear(given, left_out)
+    watch("linear equations")
+    linear = _linear(given, budget, left_out)
     watch("kernels")
-    rungs = _Rungs(given, found, truth, linear)
+    compiled = sum(q.code.operations for q in found) <= COMPILED_PER_SECOND * budget
+    rungs = _Rungs(given, Arithmetic(given, found, compiled), truth, linear, started + budget)
+    late = []
     for ladder in _all(given, overrides, truth, found, linear):
-        if time.perf_counter() - started > budget:
-            left_out.append(f"{ladder.title}: out of time; raise --budget")
-            continue
         watch(ladder.title)
-        rungs.climb(ladder)
+        if not rungs.climb(ladder):
+            late.append(ladder.title)
+    if late:
+        more = f" and {len(late) - LISTED} more" if len(late) > LISTED else ""
+        left_out.append(f"out of time, raise --budget: {', '.join(late[:LISTED])}{more}")
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
     return Extremes(given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined)
 
 
 class _Rungs:
-    """Takes measurements, one rung after another."""
+    """Takes measurements, one rung after another, until the clock shows ``end``."""
 
-    def __init__(self, given: Scenario, found: Sequence[Quantity], truth: Truth, linear: LinearModel | None) -> None:
-        self.given, self.found, self.truth, self.linear = given, found, truth, linear
-        self.lean = tuple(q for q in found if q.name != "Jacobian")
-        self.usual = Arithmetic(given, found)
+    def __init__(
+        self, given: Scenario, usual: Arithmetic, truth: Truth, linear: LinearModel | None, end: float
+    ) -> None:
+        self.given, self.usual, self.truth, self.linear, self.end = given, usual, truth, linear, end
+        self.found = usual.found
+        self.lean = tuple(q for q in self.found if q.name != "Jacobian")
         self.rows: list[Row] = []
         self.verdicts: list[VerdictRow] = []
 
-    def climb(self, ladder: Ladder) -> None:
+    @property
+    def late(self) -> bool:
+        return time.perf_counter() > self.end
+
+    def climb(self, ladder: Ladder) -> bool:
+        """Whether there was time for every rung."""
         for probe in ladder.probes:
+            if self.late:
+                return False
             if ladder.kind != BORDER:
                 self._state(ladder, probe)
             if self.linear is not None and ladder.kind in (BORDER, RATIO):
                 self._linear(ladder, probe, self.linear)
+        return True
 
     def _state(self, ladder: Ladder, probe: Probe) -> None:
         usual = probe.scenario is self.given
@@ -172,11 +196,18 @@ def _quantities(system: System, ring: Ring, left_out: list[str]) -> tuple[Quanti
     return kept
 
 
-def _linear(given: Scenario, left_out: list[str]) -> LinearModel | None:
+def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
+    analysis = Analysis(given.system)
+    analysis.ring.work_budget = min(analysis.ring.work_budget, int(budget * STEPS_PER_SECOND))
+    what = "linear equations, eigenvalues and verdicts"
     try:
-        return LinearModel(Analysis(given.system))
+        terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
+        if terms > MOST_OPERATIONS:
+            left_out.append(f"{what}: {terms} terms are too many here")
+            return None
+        return LinearModel(analysis)
     except (Unavailable, NoClosedForm, SingularPoint) as reason:
-        left_out.append(f"linear equations, eigenvalues and verdicts: {reason}")
+        left_out.append(f"{what}: {reason}")
         return None
 
 
