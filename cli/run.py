@@ -170,7 +170,9 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
             say(f"{path.name}: writing {target.filename}")
             try:
                 texts[folder / target.filename] = target.render(analysis, analysis.problems)
-            except (NoClosedForm, SingularPoint, Unavailable, ValueError) as reason:  # numbers of thousands of digits
+            except (NoClosedForm, SingularPoint, Unavailable, ValueError) as error:
+                long = "digits" in str(error)  # Python refuses to write numbers of thousands of digits
+                reason = "a number in it has more than 4300 digits" if long else str(error)
                 missing.append(f"{path}: {target.filename} cannot be written: {reason}")
         if options.ledger:
             say(f"{path.name}: ledger")

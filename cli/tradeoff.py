@@ -60,7 +60,13 @@ class Request:
 @click.option("--target", default="1e-9", show_default=True, metavar="X", help="The error that is good enough.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--methods", "-m", default="all", show_default=True, help="Some of them, separated by commas.")
-@click.option("--budget", default="60", show_default=True, metavar="S", help="About so many seconds of measuring.")
+@click.option(
+    "--budget",
+    default="60",
+    show_default=True,
+    metavar="S",
+    help="About so many seconds of measuring; the reference takes up to 30, or as many, beside.",
+)
 @click.option("--fidelity/--no-fidelity", default=True, show_default=True, help="Compare simpler models too.")
 @click.option("--all-rows", is_flag=True, help="Print every run, not only those on the front and near the target.")
 @click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")

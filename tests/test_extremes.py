@@ -267,6 +267,18 @@ def whole() -> Any:
     return extremes(given, ring_of(given.system), {}, budget=120)
 
 
+def test_what_the_budget_leaves_out_is_said() -> None:
+    """Without any time only the quantities are set up, and every ladder is named, as far as a line holds."""
+    given = scenario(system("gravity-gradient"))
+    found = extremes(given, ring_of(given.system), {}, budget=0)
+    assert not found.rows
+    assert not found.verdicts
+    linear, late = found.left_out
+    assert linear.startswith("linear equations, eigenvalues and verdicts:")
+    assert "theta -> pi/2, theta -> -pi/2, rates" in late
+    assert late.count(" times") == 5  # R, omega0, A, B and C; m drops out, and nu = R^3 omega0^2
+
+
 def test_every_row_is_known_and_bounded(whole: Any) -> None:
     assert {row.quantity for row in whole.rows} >= {
         "mass matrix", "forcing", "accelerations", "pivots", "energy", "Jacobian", "M", "G", "K", "eigenvalues",

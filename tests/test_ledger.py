@@ -31,7 +31,17 @@ from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.system import GeneralizedForce, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger import code
-from mbsym.numerics.ledger.entry import ESTIMATED, OPERATIONS, PROVED, SECONDS, TERMS, UNDECIDED, Measure, Saving
+from mbsym.numerics.ledger.entry import (
+    ESTIMATED,
+    OPERATIONS,
+    PROVED,
+    SECONDS,
+    TERMS,
+    UNDECIDED,
+    Ledger,
+    Measure,
+    Saving,
+)
 from mbsym.numerics.ledger.table import ledger
 from mbsym.numerics.ledger.work import Work
 from mbsym.numerics.scenario import scenario
@@ -525,3 +535,13 @@ def test_every_package_folder_is_listed_and_exists() -> None:
     for name, folder in settings["package-dir"].items():
         assert name in settings["packages"]
         assert (root / folder).is_dir()
+
+
+def test_seconds_are_told_only_where_they_differ_beyond_doubt() -> None:
+    """Counts are exact; two timings of the same work differ by noise."""
+    told = [(1, "s", 0.040, 0.037), (2, "s", 0.2, 0.02), (3, "n", 514, 515), (4, "n", 7, 7), (5, "s", 0.01, 0.004)]
+    measures = tuple(
+        Measure(str(number), SECONDS if unit == "s" else TERMS, without, taken) for number, unit, without, taken in told
+    )
+    lines = ledger_lines(Ledger((Saving("kind", ("what",), "why", PROVED, measures),)))
+    assert [text.split(":")[0] for text in lines[0].saved] == ["2", "3"]

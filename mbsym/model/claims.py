@@ -17,6 +17,9 @@ INITIAL_STATE = "initial"
 #: Quantities whose single coefficients may be claimed.
 SUMS = ("kinetic energy", "force function", "potential energy", "lagrangian")
 
+#: What a condition may be claimed as; without a word it is either.
+NECESSARY, SUFFICIENT = "necessary", "sufficient"
+
 #: What ``of`` names.
 COORDINATE, BODY, EXPRESSION, SUM = "coordinate", "body", "expression", "sum"
 
@@ -88,6 +91,7 @@ class Claim:
 
     ``of`` is the name of a coordinate, body or quantity, ``of_expression`` an expression instead; ``entry`` holds
     indices counted from 1; ``at`` a product of velocities; ``variable`` the symbol of a characteristic polynomial.
+    A condition's ``role`` is necessary, sufficient (those of one place together), or "" for either.
     ``state`` gives numbers for coordinates, velocities, parameters and t (or they are those of the initial state with
     ``at_initial``), and then ``printed`` keeps a decimal number as it was printed, with its digits.
     """
@@ -101,6 +105,7 @@ class Claim:
     variable: str = ""
     relation: str = ""
     right: Expression | None = None
+    role: str = ""
     at_initial: bool = False
     state: tuple[tuple[str, Expression], ...] = ()
     printed: str = ""

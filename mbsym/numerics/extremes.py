@@ -123,8 +123,8 @@ def extremes(
         if not rungs.climb(ladder):
             late.append(ladder.title)
     if late:
-        more = f" and {len(late) - LISTED} more" if len(late) > LISTED else ""
-        left_out.append(f"out of time, raise --budget: {', '.join(late[:LISTED])}{more}")
+        shown = late if len(late) <= LISTED + 1 else [*late[:LISTED], f"and {len(late) - LISTED} more"]
+        left_out.append(f"out of time, raise --budget: {', '.join(shown)}")
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
     return Extremes(given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined)
@@ -263,7 +263,7 @@ def sentences(found: Extremes) -> Iterator[str]:
             yield from _singular(found, subject)
     for kind, title in (
         (RATES, "rates from 1e-8 to 1e8"),
-        (EQUILIBRIUM, "states that approach the unperturbed motion"),
+        (EQUILIBRIUM, "quantities of states that approach the unperturbed motion"),
     ):
         yield from _range(found, kind, title)
     yield from _ratios(found)

@@ -5,30 +5,42 @@ A claim says "quantity = formula".  The quantity is derived, the formula is read
     difference = claimed - derived
 
 is decided in the exact ring: the claim holds exactly (the difference is zero), on the relations between parameters,
-up to a factor, with the same equations of motion (Lagrangians that differ by dF(q, t)/dt, the kernel of the
-Euler-Lagrange operator), or it differs by exactly this.  A difference is split into products of velocities, and where
-a publication's abbreviations were declared, those that explain a part are named: a part that *is* an abbreviation, or
-an abbreviation that would be right with something added.
+with the same equations of motion (Lagrangians that differ by dF(q, t)/dt, the kernel of the Euler-Lagrange operator),
+or it differs by exactly this.  A difference is split into products of velocities, and where a publication's
+abbreviations were declared, those that explain a part are named: a part that *is* an abbreviation, or an abbreviation
+that would be right with something added.
 
-A first integral I is decided by dI/dt = 0 on the equations of motion, a stability condition by looking for it among the
-conditions of problem 6, a number at a state by rigorous balls against the digits that were printed: 1.234 means
-1.234 +- 0.0005.
+What only has to vanish (an equation of motion, a characteristic polynomial) may be multiplied by anything that is not
+zero: it holds up to a factor.  Where it does not, it is compared with that multiple of the derived one that agrees with
+it in most places, so that the difference is what is wrong:  claimed - factor*derived.  Of every other quantity a factor
+is an error, and it differs by the factor.
+
+A first integral I is decided by dI/dt = 0 on the equations of motion; one that fails is told its dI/dt, with q''
+replaced by M^-1 f, and a state where this is not zero.  A condition is one that stability in the first approximation
+needs, or one of those that problem 6 finds sufficient ('as' may say which: necessary, or sufficient, and then those of
+one place are taken together).  It is looked for among the conditions of problem 6; it is refuted by parameters at which
+the motion is stable without it, or, as sufficient, unstable with it, both exactly.  A number at a state is compared by
+rigorous balls with the digits that were printed: 1.234 means 1.234 +- 0.0005.
+
+Under roots of squares signs matter: sqrt(r**2) is r for r > 0 only.  What holds only for positive coordinates and
+parameters (those whose sign is not declared) is said to hold for these.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from itertools import product as combinations_of
 from typing import Any, Protocol
 
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.base import Lowering, NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -52,16 +64,32 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
-from mbsym.model.claims import CLAIMS, SUMS, Claim
-from mbsym.model.system import INERTIAL, System, acceleration_name, rational, velocity_name
+from mbsym.model.claims import CLAIMS, NECESSARY, SUFFICIENT, SUMS, Claim
+from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
+from mbsym.problems.counterexample import (
+    Counterexample,
+    against_condition,
+    against_constancy,
+    rate_at_states,
+    shown,
+)
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.integrals import is_conserved, is_proved, remainder, residual, total_rate
+from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, residual, total_rate
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability import ExactVerdicts, Stability, conserves_energy
+from mbsym.problems.stability_theory import (
+    ASYMPTOTIC,
+    ASYMPTOTIC_BUT_CYCLIC,
+    ASYMPTOTIC_BUT_TURNED,
+    GYROSCOPIC,
+    STABLE,
+    STABLE_BUT_CYCLIC,
+    UNSTABLE,
+)
 
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
@@ -71,6 +99,8 @@ DIGITS = "holds to the digits printed"
 NUMERICAL = "verified numerically"
 UNDECIDED = "undecided"
 DIFFERS = "differs"
+SCALED = "differs by a factor"
+FAILS = "does not hold"
 
 #: Working precision of balls, in bits; numbers whose digits cancel are tried again with more of them.
 PRECISION = 256
@@ -79,10 +109,13 @@ FINER = (PRECISION, 1024, 4096)
 ROUNDING = arb(2) ** -60
 #: Differences of more products of velocities than this are not taken apart.
 MOST_PARTS = 60
-#: Digits of a derived number that are shown.
-DIGITS_SHOWN = 12
-#: Random parameters at which a claimed condition is tried.
-SAMPLES = 400
+#: Multiples of a derived equation that a claimed one is compared with.
+MOST_FACTORS = 12
+#: Names of undeclared sign under roots for which both signs are tried, and points with each.
+MOST_SIGNS, POINTS = 3, 4
+#: Verdicts with which a motion is stable, and those with which it is so in the first approximation at least.
+_STABLE = (STABLE, ASYMPTOTIC, STABLE_BUT_CYCLIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED)
+_LINEARLY_STABLE = (*_STABLE, GYROSCOPIC)
 _MOTION = ("velocity", "acceleration")
 
 
@@ -135,9 +168,11 @@ class Part:
 class ClaimResult:
     """``outcome`` is one of the words above; ``difference`` is claimed - derived, ``parts`` the same taken apart.
 
-    For a first integral I the difference is det(M) dI/dt instead.  ``factor`` is claimed / derived.  For numbers at a
-    state ``value`` is the derived one, ``digits`` how many of the ``printed_digits`` hold.  ``remark`` says what else
-    there is to say.
+    ``factor`` is claimed / derived where one is a multiple of the other; else, where it is given, the difference is
+    claimed - factor*derived.  For a first integral I the difference is dI/dt on the equations of motion instead.
+    ``where`` are the signs to which the outcome is restricted, ``counterexample`` numbers that refute the claim.  For
+    numbers at a state ``value`` is the derived one, ``digits`` how many of the ``printed_digits`` hold.  ``remark``
+    says what else there is to say.
     """
 
     claim: Claim
@@ -151,17 +186,16 @@ class ClaimResult:
     digits: int | None = None
     printed_digits: int | None = None
     remark: str = ""
+    where: str = ""
+    counterexample: Counterexample | None = None
 
     @property
     def holds(self) -> bool:
-        """A factor is immaterial only where the quantity vanishes, or is constant, on every motion."""
-        if self.outcome == FACTOR:
-            return CLAIMS[self.claim.kind].homogeneous
-        return self.outcome in (EXACT, RELATIONS, EQUIVALENT, DIGITS, NUMERICAL)
+        return self.outcome in (EXACT, RELATIONS, FACTOR, EQUIVALENT, DIGITS, NUMERICAL)
 
     @property
     def refuted(self) -> bool:
-        return self.outcome == DIFFERS or (self.outcome == FACTOR and not self.holds)
+        return self.outcome in (DIFFERS, SCALED, FAILS)
 
 
 def title(claim: Claim, system: System) -> str:
@@ -433,49 +467,156 @@ def _compared(
     if ring.is_zero(claimed - truth):  # in the description's own symbols, if both are written in them
         return result
     if homogeneous:
-        factor = _factor(derived, claimed, truth, homogeneous)
-        if factor is not None:
-            return replace(result, outcome=FACTOR, factor=factor)
+        multiple = _multiple(derived, claim, claimed, truth)
+        if multiple is not None and multiple.verdict == (EXACT, ""):
+            return replace(result, outcome=FACTOR, factor=multiple.factor, remark=multiple.remark)
     own = ring.reduce(claimed - truth)
     claimed, truth = _in_parameters(derived, claimed), _in_parameters(derived, truth)
     difference = ring.reduce(claimed - truth)
-    zero = ring.is_zero(difference)
-    if zero:
+    if ring.is_zero(difference):
         return result
+    exact = EXACT
     related = _on_relations(derived, claim, difference)
     if related != difference:
         claimed, truth = _on_relations(derived, claim, claimed), _on_relations(derived, claim, truth)
-        difference, zero = related, ring.is_zero(related)
-        if zero:
-            return replace(result, outcome=RELATIONS)
-    if zero is None:
-        same = _vanishes_in_balls(ring, difference)
-        return replace(result, outcome=NUMERICAL if same else UNDECIDED, difference=Formula(ring, difference))
-    factor = _factor(derived, claimed, truth, homogeneous)
+        difference, exact = related, RELATIONS
+    outcome, where = _decided(derived, difference)
+    if outcome == EXACT:
+        return replace(result, outcome=exact, where=where)
+    if outcome in (NUMERICAL, UNDECIDED):
+        return replace(result, outcome=outcome, where=where, difference=Formula(ring, difference))
+    if homogeneous:
+        return _up_to_multiple(derived, result, symbols, claimed, truth, min(difference, own, key=len))
+    factor = _factor(derived, claimed, truth)
     if factor is not None:
-        return replace(result, outcome=FACTOR, factor=factor)
+        return replace(result, outcome=SCALED, factor=factor)
     if claim.kind in SUMS and _same_equations(derived, difference):
         remark = "the equations of motion are the same" if _moving(derived, difference) else "it differs by a constant"
         return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
-    difference = min(difference, own, key=len)
-    parts = _parts(derived, claim, symbols, difference)
-    if claim.variable:  # the generator of the time stands for the variable: only the parts can be shown
+    return _differing(derived, result, symbols, min(difference, own, key=len))
+
+
+def _differing(derived: Derived, result: ClaimResult, symbols: Symbols, difference: Polynomial) -> ClaimResult:
+    """The result with its difference, taken apart."""
+    parts = _parts(derived, result.claim, symbols, difference)
+    if result.claim.variable:  # the generator of the time stands for the variable: only the parts can be shown
         return replace(result, derived=None, outcome=DIFFERS, parts=parts)
-    return replace(result, outcome=DIFFERS, difference=Formula(ring, difference), parts=parts)
+    return replace(result, outcome=DIFFERS, difference=Formula(derived.ring, difference), parts=parts)
 
 
-def _vanishes_in_balls(ring: Ring, x: Polynomial) -> bool:
-    """Narrow balls around zero at random points, where the ring cannot decide."""
+# --- signs under roots ---
+
+
+def _decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
+    """Whether x vanishes: EXACT, NUMERICAL, UNDECIDED or DIFFERS; and "for r > 0 ...", if it does for some signs only.
+
+    Roots of squares are opened for each choice of the signs that are not declared.
+    """
+    ring = derived.ring
+    if ring.is_zero(x):
+        return EXACT, ""
+    numerator, _ = ring.fraction(x)
+    degrees = numerator.degrees()
+    adjoined = [g for k, g in enumerate(ring.generators[: ring.spare]) if degrees[k] > 0]
+    if all(g.kind == "root" and g.argument.is_constant() for g in adjoined):
+        return DIFFERS, ""
+    known, unknown = _signs_under_roots(derived, numerator)
+    tried = unknown[:MOST_SIGNS]
+    answers = {
+        pattern: _decided_for(ring, numerator, known | dict(zip(tried, pattern, strict=True)))
+        for pattern in combinations_of((1, -1), repeat=len(tried))
+    }
+    found, *others = answers.values()
+    if found not in (EXACT, NUMERICAL):
+        return found, ""
+    if all(other in (EXACT, NUMERICAL) for other in others) and tried == unknown:
+        return (NUMERICAL if NUMERICAL in answers.values() else EXACT), ""
+    return found, _where(unknown, all(other == DIFFERS for other in others) and len(unknown) == 1)
+
+
+def _where(unknown: Sequence[str], refuted: bool) -> str:
+    positive = ", ".join(f"{name} > 0" for name in unknown)
+    if refuted:
+        return f"for {positive} (it does not for {unknown[0]} < 0)"
+    return f"for {positive} (it need not with other signs)"
+
+
+def _signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[str, int], list[str]]:
+    """Declared negative names (with -1), and the names of undeclared sign, under the roots that occur."""
+    ring, system = derived.ring, derived.system
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    under: set[int] = set()
+    pending = [(x, False) for x in values]
+    seen: set[tuple[int, bool]] = set()
+    while pending:
+        x, below = pending.pop()
+        for k, degree in enumerate(x.degrees()):
+            g = ring.generators[k]
+            if degree <= 0 or (k, below) in seen:
+                continue
+            seen.add((k, below))
+            if k < ring.spare and g.argument is not None:
+                pending.append((g.argument, below or g.kind == "root"))
+            elif below and g.kind in ("coordinate", "parameter") and g.name != "pi":
+                under.add(k)
+    found = [ring.generators[k].name for k in sorted(under)]
+    known = {p.name: -1 for p in system.parameters if p.sign in ("negative", "nonpositive")}
+    unknown = [name for name in found if signs.get(name) not in ("positive", "nonnegative") and name not in known]
+    return known, unknown
+
+
+def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
+    """Whether x vanishes where the named quantities have these signs, and the others are positive."""
+    try:
+        opened = _opened_roots(ring, x, signs)
+        if ring.is_zero(opened):
+            return EXACT
+    except (NoClosedForm, SingularPoint):
+        opened = x
     source = random.Random(1788)
     keep, ctx.prec = ctx.prec, PRECISION
+    finite, narrow = 0, True
     try:
-        for _ in range(4):
-            value = ring.evaluate(x, {name: fmpq(source.randint(1, 99), 64) for name in ring.names()})
-            if not value.is_finite() or not value.contains(0) or value.rad() > arb(2) ** -60:
-                return False
+        for _ in range(4 * POINTS):
+            values = {name: signs.get(name, 1) * fmpq(source.randint(1, 99), 64) for name in ring.names()}
+            value = ring.evaluate(opened, values)
+            if not value.is_finite():
+                continue
+            if not value.contains(0):
+                return DIFFERS
+            finite, narrow = finite + 1, narrow and value.rad() < ROUNDING
+            if finite == POINTS:
+                return NUMERICAL if narrow else UNDECIDED
     finally:
         ctx.prec = keep
-    return True
+    return UNDECIDED
+
+
+def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> Polynomial:
+    """x with sqrt(r^2 p) = +-r sqrt(p) for every root, r of known sign."""
+    images, degrees = {}, x.degrees()
+    for k, g in enumerate(ring.generators[: ring.spare]):
+        if g.kind != "root" or degrees[k] <= 0 or g.argument.is_constant():
+            continue
+        content, factors = ring.factored(g.argument)
+        outside, inside = ring.one, ring.context.constant(content)
+        for factor, exponent in factors:
+            name = _plain_name(ring, factor)
+            if name in signs:
+                outside = ring.times(outside, (factor * signs[name]) ** (exponent // 2))
+                exponent %= 2
+            inside = ring.times(inside, factor**exponent)
+        if not outside.is_one():
+            images[k] = ring.times(outside, ring.square_root(inside))
+    return ring.substitute(x, images) if images else x
+
+
+def _plain_name(ring: Ring, x: Polynomial) -> str:
+    """The name of a coordinate or parameter that x is a multiple of, or ""."""
+    if len(x) != 1 or sum(map(int, x.monomial(0))) != 1:
+        return ""
+    g = ring.generators[[int(e) for e in x.monomial(0)].index(1)]
+    return g.name if g.kind in ("coordinate", "parameter") else ""
 
 
 def _moving(derived: Derived, x: Polynomial) -> bool:
@@ -488,20 +629,131 @@ def _moving(derived: Derived, x: Polynomial) -> bool:
     return bool(ring.dependencies(x, [*derived.system.coordinates, *derived.system.velocities, *prescribed, "t"]))
 
 
-def _factor(derived: Derived, claimed: Polynomial, truth: Polynomial, any_factor: bool) -> Formula | None:
-    """claimed / derived, if that holds parameters only and (where a factor matters) is a product of powers.
+@dataclass(frozen=True)
+class _Multiple:
+    """``factor`` (None for 1) = ``top`` / ``bottom``, the ``difference`` claimed - factor*derived, and its verdict.
+
+    ``cleared`` is the difference without denominators.
+    """
+
+    factor: Formula | None
+    difference: Polynomial | None
+    cleared: Polynomial
+    verdict: tuple[str, str]
+    remark: str
+
+
+def _up_to_multiple(
+    derived: Derived, result: ClaimResult, symbols: Symbols, claimed: Polynomial, truth: Polynomial, own: Polynomial
+) -> ClaimResult:
+    """What has only to vanish, against the multiple of the derived one that comes closest; ``own`` is for 1 times."""
+    multiple = _multiple(derived, result.claim, claimed, truth)
+    if multiple is None or multiple.factor is None or multiple.difference is None:
+        return _differing(derived, result, symbols, own)
+    found = replace(result, factor=multiple.factor, remark=multiple.remark)
+    outcome, where = multiple.verdict
+    if outcome == EXACT:
+        return replace(found, outcome=FACTOR, where=where)
+    if outcome in (NUMERICAL, UNDECIDED):
+        difference = Formula(derived.ring, multiple.difference)
+        return replace(found, outcome=outcome, where=where, difference=difference)
+    return _differing(derived, replace(found, remark=""), symbols, multiple.difference)
+
+
+def _multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth: Polynomial) -> _Multiple | None:
+    """claimed - factor*derived with the fewest products of velocities (powers of the variable), then terms.
+
+    The candidates are 1 and the quotients of coefficients: of the coordinate's own acceleration (of the highest power)
+    first, then of the others.  None where 1 does best, or everything is too long.
+    """
+    ring = derived.ring
+    if claimed.is_zero() or truth.is_zero():
+        return None
+    above, below = _over_common_denominator(ring, claimed, truth)
+    first, second = dict(_places(ring, claim, above)), dict(_places(ring, claim, below))
+    keys = sorted(first.keys() & second.keys(), key=partial(_importance, ring, claim))
+    best: tuple[tuple[int, int], tuple[Polynomial, Polynomial], Polynomial] | None = None
+    for top, bottom in [(ring.one, ring.one), *((first[key], second[key]) for key in keys[:MOST_FACTORS])]:
+        try:
+            common = ring.common_factor(top, bottom)
+            shorter = ring.quotient(top, common), ring.quotient(bottom, common)
+            if shorter[0] is None or shorter[1] is None:
+                continue
+            left = ring.reduce(ring.times(above, shorter[1]) - ring.times(below, shorter[0]))
+        except NoClosedForm:
+            continue
+        cost = (0, 0) if ring.is_zero(left) else (len(list(_places(ring, claim, left))), len(left))
+        if best is None or cost < best[0]:
+            best = (cost, (shorter[0], shorter[1]), left)
+        if cost == (0, 0):
+            break
+    if best is None or best[1][0] == best[1][1]:
+        return None
+    (top, bottom), left = best[1:]
+    try:
+        factor = ring.reduce(ring.times(top, ring.reciprocal(bottom)))
+        difference = ring.reduce(claimed - ring.times(truth, factor))
+    except (NoClosedForm, SingularPoint):
+        return None
+    return _Multiple(
+        Formula(ring, factor), difference, left, _decided(derived, left), _exceptions(derived, top, bottom)
+    )
+
+
+def _over_common_denominator(ring: Ring, first: Polynomial, second: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """Both times their denominators."""
+    above, denominators = ring.fraction(first)
+    below, others = ring.fraction(second)
+    for factor, exponent in others:
+        above = ring.times(above, ring.power(factor, exponent))
+    for factor, exponent in denominators:
+        below = ring.times(below, ring.power(factor, exponent))
+    return above, below
+
+
+def _places(ring: Ring, claim: Claim, x: Polynomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """x by products of velocities and accelerations; a characteristic polynomial by powers of its variable."""
+    if not claim.variable:
+        return _by_motion(ring, x)
+    time = ring.index("time", "t")
+    return _split(ring, x, set(range(len(ring.generators))) - {time})
+
+
+def _importance(ring: Ring, claim: Claim, place: tuple[int, ...]) -> tuple[bool, bool, int, tuple[int, ...]]:
+    """Sorts the coordinate's own acceleration first, then other accelerations, then high powers."""
+    kinds = [ring.generators[k] for k, exponent in enumerate(place) if exponent]
+    own = any(g.kind == "acceleration" and g.name == claim.of for g in kinds)
+    accelerated_ = any(g.kind == "acceleration" for g in kinds)
+    return not own, not accelerated_, -sum(place), place
+
+
+def _exceptions(derived: Derived, top: Polynomial, bottom: Polynomial) -> str:
+    """ "where r and cos(theta) are not 0": what of top and bottom is not known to be different from zero."""
+    ring = derived.ring
+    doubtful: list[str] = []
+    for x in (top, bottom):
+        try:
+            factors = [] if x.is_constant() else ring.factored(x)[1]
+        except NoClosedForm:
+            return "where the factor is neither 0 nor infinite"
+        for factor, _ in factors:
+            if derived.signs.sign(factor) not in ("positive", "negative", "nonzero"):
+                doubtful.append(str(Formula(ring, factor)))
+    if not doubtful:
+        return ""
+    names_of = list(dict.fromkeys(doubtful))
+    return f"where {' and '.join(names_of)} {'is' if len(names_of) == 1 else 'are'} not 0"
+
+
+def _factor(derived: Derived, claimed: Polynomial, truth: Polynomial) -> Formula | None:
+    """claimed / derived, if that is a product of powers of parameters.
 
     Both are split into what varies with the state and what stands before it; then one of these quotients is the factor.
     """
     ring = derived.ring
     if claimed.is_zero() or truth.is_zero():
         return None
-    above, denominators = ring.fraction(claimed)
-    below, others = ring.fraction(truth)
-    for factor, exponent in others:
-        above = ring.times(above, ring.power(factor, exponent))
-    for factor, exponent in denominators:
-        below = ring.times(below, ring.power(factor, exponent))
+    above, below = _over_common_denominator(ring, claimed, truth)
     constant = {k for k in range(len(ring.generators)) if not _moving(derived, ring.context.gen(k))}
     first, second = dict(_split(ring, above, constant)), dict(_split(ring, below, constant))
     if first.keys() != second.keys():
@@ -509,9 +761,7 @@ def _factor(derived: Derived, claimed: Polynomial, truth: Polynomial, any_factor
     key = min(second, key=lambda one: len(first[one]) + len(second[one]))
     common = ring.common_factor(first[key], second[key])
     top, bottom = ring.quotient(first[key], common), ring.quotient(second[key], common)
-    if top is None or bottom is None:
-        return None
-    if not any_factor and (len(top) > 1 or len(bottom) > 1):
+    if top is None or bottom is None or len(top) > 1 or len(bottom) > 1:
         return None
     if not ring.is_zero(ring.times(claimed, bottom) - ring.times(truth, top)):
         return None
@@ -646,9 +896,9 @@ def _parameters(ring: Ring, x: Polynomial) -> set[int]:
 def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
     """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
     scene, ring, equations = derived.scene, derived.ring, derived.equations
-    shown = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, derived.system.velocities):
-        return replace(shown, outcome=DIFFERS, remark="it does not hold any velocity")
+        return replace(result, outcome=FAILS, remark="it does not hold any velocity")
     outcome = EXACT
     for outcome in (EXACT, RELATIONS):
         if outcome == RELATIONS:
@@ -658,12 +908,78 @@ def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynom
             claimed = ring.substitute(claimed, images)
             equations = _substituted(ring, equations, images)
         if is_conserved(scene, equations, claimed):
-            proved = is_proved(scene, equations, claimed)
-            return replace(shown, outcome=outcome if proved else NUMERICAL)
-    left = remainder(scene, equations, claimed)
-    if left is None:
-        return replace(shown, outcome=DIFFERS, remark="dI/dt does not vanish on the equations of motion")
-    return replace(shown, outcome=DIFFERS, difference=Formula(ring, left))
+            if is_proved(scene, equations, claimed):
+                return replace(result, outcome=outcome)
+            found, where = _conserved_where(derived, equations, claimed)
+            return replace(result, outcome=outcome if found == EXACT else NUMERICAL, where=where)
+    rate = total_rate(scene, claimed)
+    parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
+    parts += [x.polynomial for x in equations.forcing]
+    example = against_constancy(derived.system, ring, derived.programs, rate, _names_in(derived, parts))
+    difference = _rate_of(derived, equations, claimed)
+    remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
+    return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
+
+
+def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial) -> tuple[str, str]:
+    """What became of dI/dt = 0 for the signs that are not declared: EXACT or NUMERICAL, and where."""
+    scene, ring = derived.scene, derived.ring
+    found = rate_on_motion(scene, equations, claimed)
+    if found is not None:
+        outcome, where = _decided(derived, found[0])
+        if outcome in (EXACT, NUMERICAL):
+            return outcome, where
+    rate = total_rate(scene, claimed)
+    parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
+    _, unknown = _signs_under_roots(derived, *parts, *(x.polynomial for x in equations.forcing))
+    for pattern in combinations_of((1, -1), repeat=min(len(unknown), MOST_SIGNS)):
+        negative = [name for name, sign in zip(unknown, pattern, strict=False) if sign < 0]
+        states = rate_at_states(derived.system, ring, derived.programs, rate, negative)
+        if negative and any(not value.contains(0) for _, value in states):
+            return NUMERICAL, _where(unknown, len(unknown) == 1)
+    return NUMERICAL, "" if len(unknown) <= MOST_SIGNS else _where(unknown, False)
+
+
+def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> Formula | None:
+    """dI/dt on the equations of motion in lowest terms; None where that is too long."""
+    ring = derived.ring
+    try:
+        found = rate_on_motion(derived.scene, equations, claimed)
+        if found is None:
+            return None
+        common = ring.common_factor(*found)
+        top, bottom = ring.quotient(found[0], common), ring.quotient(found[1], common)
+        if top is None or bottom is None:
+            top, bottom = found
+        return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+    except (NoClosedForm, SingularPoint):
+        return None
+
+
+def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
+    """Coordinates, velocities and parameters in the values, those that relations and notation are made of included."""
+    ring, system = derived.ring, derived.system
+    wanted = [*system.coordinates, *system.velocities]
+    found: set[str] = set()
+    for x in values:
+        found |= set(ring.dependencies(x, wanted))
+        found |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
+    made_of = {item.name: names(item.value) for item in (*system.relations, *system.notation)}
+    pending = list(found)
+    while pending:
+        new = made_of.get(pending.pop(), set()) - found
+        found |= new
+        pending += new
+    return found
+
+
+def _holds(ring: Ring, x: Polynomial, index: int) -> bool:
+    """Whether a generator occurs in x, in what its reciprocals, roots and functions are made of included."""
+    degrees = x.degrees()
+    if degrees[index] > 0:
+        return True
+    inner = (g.argument for k, g in enumerate(ring.generators[: ring.spare]) if degrees[k] > 0)
+    return any(argument is not None and _holds(ring, argument, index) for argument in inner)
 
 
 def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
@@ -681,7 +997,10 @@ def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomi
 
 
 def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """Looks for the inequality among the conditions of problem 6, factors of known sign apart."""
+    """Looks for the inequality among the conditions of problem 6, factors of known sign apart; then for what refutes it.
+
+    Sufficient conditions of one place may be refuted together even where each is one of those of problem 6.
+    """
     ring, scene = derived.ring, derived.parameters_scene
     symbols = Symbols(derived.system)
     assert claim.right is not None
@@ -692,7 +1011,10 @@ def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.relation in ("<", "<="):
         left, right = right, left
     result = ClaimResult(claim, about, EXACT)
-    example = ""
+    if claim.role == SUFFICIENT:
+        refuted = _contradicted(derived, claim, result)
+        if refuted is not None:
+            return refuted
     for own in (True, False):  # in the description's own symbols, then in declared parameters
         try:
             wanted = _essential(derived, claim, left - right, own)
@@ -710,61 +1032,69 @@ def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         if kind == "always":
             return replace(result, remark="it follows from the declared signs and assumptions")
         if kind == "never":
-            return replace(result, outcome=DIFFERS, remark="with the declared signs and assumptions it never holds")
-        if own and claim.relation != "!=":
-            example = _counterexample(derived, wanted, [found for _, found, relation in known if relation != "!="])
-    remark = "it is not one of the conditions of problem 6 as they stand there"
-    return replace(result, outcome=UNDECIDED, remark=remark + example)
+            return replace(result, outcome=FAILS, remark="with the declared signs and assumptions it never holds")
+    refuted = None if claim.role == SUFFICIENT else _contradicted(derived, claim, result)
+    if refuted is not None:
+        return refuted
+    remark = "it is not one of the conditions of problem 6 as they stand there, and no parameters refute it"
+    return replace(result, outcome=UNDECIDED, remark=remark)
 
 
-def _counterexample(derived: Derived, wanted: Polynomial, known: list[Polynomial]) -> str:
-    """Rational parameters at which all conditions of problem 6 hold and the claimed one does not, in words."""
-    source = random.Random(1788)
-    for number in range(SAMPLES):
-        try:
-            values = _sample(derived.system, source, near=number % 2 == 0)
-            carry = Carrier(derived.ring, Rationals({}, derived.ring.angles), values)
-            if carry(wanted) < 0 and all(carry(x) > 0 for x in known):
-                where = ", ".join(f"{name} = {values[name]}" for name in derived.system.parameter_names)
-                return f", and not necessary: those hold, and it does not, at {where}"
-        except (NotRational, SingularPoint, ZeroDivisionError):
-            continue
-        except KeyError:  # sines of constant angles and the like
+def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult | None:
+    """The claim refuted by parameters: stable without it, or (where it is to be sufficient) unstable with it."""
+    system, sufficient = derived.system, claim.role == SUFFICIENT
+    together = [claim]
+    if sufficient and claim.place:
+        alike = (
+            one for one in system.claims if (one.kind, one.role, one.place) == (claim.kind, claim.role, claim.place)
+        )
+        together = list(alike)
+    energy = derived.energy
+    conserved = conserves_energy(derived.parameters_scene, energy)
+    verdict_at = ExactVerdicts(
+        derived.parameters_scene, conserved, energy.cyclic, derived.linearisation, derived.equilibrium, derived.signs
+    )
+    symbols = Symbols(system)
+
+    def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
+        found = []
+        for one in together:
+            assert one.right is not None
+            sides = [one.equals, one.right]
+            lower = symbols.lowering(numbers, values, symbols.occurring(sides))
+            left, right = (lower(symbols.opened(side)) for side in sides)
+            found.append((f"{text(one.equals)} - ({text(one.right)})", left - right, one.relation))
+        return found
+
+    solved = {name: value.polynomial for name, value in derived.equilibrium.solved}
+    words = (UNSTABLE,) if sufficient else _LINEARLY_STABLE
+    mass_matrix = derived.linearisation.M
+    best = None
+    for example, verdict in against_condition(
+        system, derived.ring, mass_matrix, solved, verdict_at, claimed, sufficient, words
+    ):
+        if best is None or verdict.word in _STABLE:
+            best = example
+        if sufficient or verdict.word in _STABLE:
             break
-    return ""
-
-
-def _sample(system: System, source: random.Random, near: bool) -> dict[str, fmpq]:
-    """Random parameters of the declared signs (near the given values, if wanted), relations and notation with them.
-
-    Raises SingularPoint where an assumption does not hold.
-    """
-    values: dict[str, Any] = {"pi": fmpq(355, 113)}
-    numbers = Rationals({}, {})
-    for parameter in system.parameters:
-        value = fmpq(source.randint(1, 40), source.randint(1, 24))
-        given = rational(parameter.value)
-        if near and given:
-            value = abs(numbers.number(given)) * fmpq(source.randint(10, 40), 20)
-        values[parameter.name] = -value if parameter.sign in ("negative", "nonpositive") else value
-    for relation in system.relations:
-        values[relation.name] = Lowering(numbers, values)(relation.value)
-    for symbol in system.notation:
-        values[symbol.name] = Lowering(numbers, values)(symbol.value)
-    for assumption in system.assumptions:
-        lower = Lowering(numbers, values)
-        gap = lower(assumption.left) - lower(assumption.right)
-        if not {"<": gap < 0, "<=": gap <= 0, ">": gap > 0, ">=": gap >= 0, "!=": gap != 0}[assumption.relation]:
-            raise SingularPoint("an assumption does not hold")
-    return values
+    if best is None:
+        return None
+    if sufficient:
+        alone = "it is" if len(together) == 1 else "the conditions of this place together are"
+        remark = f"{alone} not sufficient for stability"
+    else:
+        in_first = dict(best.shows)["the motion"] == GYROSCOPIC
+        remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
+    return replace(result, outcome=FAILS, remark=remark, counterexample=best)
 
 
 def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str, Polynomial, str]]:
     """What a condition of problem 6 is called, the polynomial that has to be positive (or not zero), the relation."""
     for part in derived.stability.subsystems:
         whose = ", ".join(part.coordinates)
+        sufficient = () if claim.role == NECESSARY else part.sufficient
         for found, note in (
-            ((*part.conditions, *part.unreduced, *part.sufficient), ""),
+            ((*part.conditions, *part.unreduced, *sufficient), ""),
             (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
         ):
             for label, formula, relation in found:
@@ -832,7 +1162,7 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
     for what, number in (("the value", value), ("the claimed value", printed)):
         if not number.is_finite():
             return ClaimResult(claim, about, UNDECIDED, remark=f"{what} is not finite") if last else None
-    result = ClaimResult(claim, about, DIGITS, value=_shown(value))
+    result = ClaimResult(claim, about, DIGITS, value=shown(value))
     error = abs(printed - value)
     if not claim.printed:
         if not error.contains(0):
@@ -915,12 +1245,3 @@ def _agreeing(error: Any, value: Any, digits: int) -> int:
     while right < digits and 2 * error < arb(10) ** (leading - right):
         right += 1
     return right
-
-
-def _shown(value: Any) -> str:
-    """A dozen digits, zero where nothing but rounding is left."""
-    if value.contains(0):
-        return "0"
-    written = str(value.mid().str(DIGITS_SHOWN, radius=False))
-    mantissa, mark, exponent = written.partition("e")
-    return (mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa) + mark + exponent

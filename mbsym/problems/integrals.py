@@ -303,6 +303,12 @@ def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polyno
 
     None where that is too long to be formed.
     """
+    found = rate_on_motion(scene, equations, formula)
+    return None if found is None else found[0]
+
+
+def rate_on_motion(scene: Scene, equations: Equations, formula: Polynomial) -> tuple[Polynomial, Polynomial] | None:
+    """(det(M) dI/dt on the equations of motion, det(M)); None where that is too long to be formed."""
     ring, names = scene.ring, scene.system.coordinates
     n = len(names)
     if n > MOST_COORDINATES or len(formula) > MOST_TERMS or equations.mass_matrix.terms > MOST_TERMS:
@@ -315,7 +321,7 @@ def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polyno
     left = ring.times(determinant, total_rate(scene, formula))
     for i in range(n):
         left = left - ring.times(multipliers[i], residual(scene, equations, i))
-    return ring.reduce(left)
+    return ring.reduce(left), ring.reduce(determinant)
 
 
 def _cofactor(scene: Scene, matrix: list[list[Polynomial]], i: int, j: int) -> Polynomial:

@@ -8,7 +8,8 @@ from itertools import groupby
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
-from mbsym.problems.claims import UNDECIDED, ClaimResult, Part
+from mbsym.problems.claims import FACTOR, SCALED, UNDECIDED, ClaimResult, Part
+from mbsym.problems.counterexample import Counterexample
 
 #: Differences longer than this are counted, not printed.
 LONGEST_DIFFERENCE = 400
@@ -31,15 +32,20 @@ def claim_line(result: ClaimResult) -> ClaimLine:
     """The outcome in words; ``word`` is held, refuted or undecided."""
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
     outcome = result.outcome
-    if result.factor is not None:
+    if result.outcome == SCALED:
+        outcome = f"differs by the factor {_long(result.factor)}" if result.factor is not None else outcome
+    elif result.outcome == FACTOR and result.factor is not None:
         outcome += f": claimed = {_long(result.factor)} times derived"
+    elif result.factor is not None:
+        outcome += f" (compared with {_long(result.factor)} times derived)"
+    outcome += f" {result.where}" if result.where else ""
     if result.value:
         claimed = result.claim.printed or text(result.claim.equals)
         outcome += f" ({result.value})" if result.holds else f": claimed {claimed}, derived {result.value}"
     if result.digits is not None and result.digits != result.printed_digits:
         outcome += f", {result.digits} of {result.printed_digits} digits right"
     if result.outcome == UNDECIDED or (result.remark and not result.parts):
-        outcome += f": {result.remark}" if result.remark else ""
+        outcome += f"{', ' if result.outcome == FACTOR else ': '}{result.remark}" if result.remark else ""
     return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)))
 
 
@@ -64,17 +70,28 @@ def titles(lines: Iterable[ClaimLine]) -> str:
 
 def _differences(result: ClaimResult) -> Iterator[str]:
     for part in result.parts:
-        yield f"{part_name(result, part)}claimed - derived = {_difference(part)}"
+        yield f"{part_name(result, part)}{left_side(result)} = {_difference(part)}"
         for name, change in part.repairs:
             words, formula = repair(part, change)
             yield f"  right with {'this' if formula is None else _long(formula)} {words} {name}"
     if not result.parts and result.difference is not None:
         yield f"{left_side(result)} = {_long(result.difference)}"
+    if result.counterexample is not None:
+        yield counterexample(result.counterexample)
+
+
+def counterexample(found: Counterexample) -> str:
+    """``for example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh)``."""
+    at = ", ".join(f"{name} = {value}" for name, value in found.at)
+    shows = ", ".join(f"{what} {'is' if what == 'the motion' else '='} {value}" for what, value in found.shows)
+    return f"for example at {at}: {shows}"
 
 
 def left_side(result: ClaimResult) -> str:
     """What ``difference`` is."""
-    return "det(M) dI/dt" if result.claim.kind == "first integral" else "claimed - derived"
+    if result.claim.kind == "first integral":
+        return "dI/dt on the equations of motion"
+    return "claimed - derived" if result.factor is None else "claimed - factor*derived"
 
 
 def repair(part: Part, change: Formula) -> tuple[str, Formula | None]:

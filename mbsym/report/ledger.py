@@ -29,14 +29,14 @@ class LedgerLine:
 
 
 def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
-    """Every saving as text; measures that come out equal are left to the files."""
+    """Every saving as text; measures that come out equal, or nearly as quick, are left to the files."""
     return tuple(
         LedgerLine(
             item.kind,
             _names(item.what),
             item.why,
             item.how,
-            tuple(_compared(measure) for measure in item.measures if measure.saved),
+            tuple(_compared(measure) for measure in item.measures if measure.clear),
         )
         for item in found.savings
     )

@@ -18,7 +18,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
-from mbsym.report.claims import claim_line
+from mbsym.report.claims import claim_line, left_side
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
 
 if TYPE_CHECKING:
@@ -69,8 +69,14 @@ def _claim(result: ClaimResult, system: System) -> dict[str, Any]:
         found["value"] = result.value
     if result.digits is not None:
         found |= {"digits_right": result.digits, "digits_printed": result.printed_digits}
-    if result.remark:
-        found["remark"] = result.remark
+    for key in ("remark", "where"):
+        if getattr(result, key):
+            found[key] = getattr(result, key)
+    if result.difference is not None or result.parts:
+        found["difference_is"] = left_side(result)
+    if result.counterexample is not None:
+        example = result.counterexample
+        found["counterexample"] = {"at": dict(example.at), "shows": dict(example.shows)}
     if result.parts:
         found["parts"] = [
             {

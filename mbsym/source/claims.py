@@ -13,6 +13,8 @@ from mbsym.model.claims import (
     COORDINATE,
     EXPRESSION,
     INITIAL_STATE,
+    NECESSARY,
+    SUFFICIENT,
     SUM,
     SUMS,
     Abbreviation,
@@ -117,9 +119,12 @@ class _Reader:
         node = self.fields.require("that", "write for example that: b > a")
         scalar = None if node is None else self.reading.scalar(node, "a condition")
         place, span = self.fields.text("place"), self.fields.key_span("claim")
+        role = self.fields.get("as")
+        word = "" if role is None else self.reading.word(role, "the role of a condition", (NECESSARY, SUFFICIENT)) or ""
         found = [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
         return [
-            Claim(self.word, one.left, relation=one.relation, right=one.right, place=place, span=span) for one in found
+            Claim(self.word, one.left, relation=one.relation, right=one.right, role=word, place=place, span=span)
+            for one in found
         ]
 
     def refuse_keys(self) -> None:
@@ -128,6 +133,7 @@ class _Reader:
         wanted = {
             "equals": not kind.inequality,
             "that": kind.inequality,
+            "as": kind.inequality,
             "of": bool(kind.of),
             "entry": kind.entry == 2,
             "component": kind.entry == 1,

@@ -135,6 +135,7 @@ CLAIM = {
     "at": "the product of velocities whose coefficient is claimed: x_dot*phi_dot (1/2*c*x_dot**2 has c/2 at x_dot**2)",
     "variable": "the symbol of the characteristic polynomial",
     "that": "the inequality that is claimed, for a condition",
+    "as": "of a condition: necessary, or sufficient (those of one place together); either when left out",
     "equals": "the formula or number as it was printed",
     "state": "'initial' or {name: number}: the claim is about numbers at this state, to the digits printed",
     "place": "where it was printed: eq. (3)",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mbsym.model.claims import CLAIMS, INITIAL_STATE
+from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
 from mbsym.model.system import EXACT, GRAVITY_ORDERS
 from mbsym.source.keys import (
     ALIASES,
@@ -135,6 +135,7 @@ def _claim_values() -> dict[str, Schema]:
         "component": {"enum": [1, 2, 3, "1", "2", "3"]},
         "variable": {"type": "string", "pattern": _NAME},
         "that": {"type": "string"},
+        "as": {"enum": [NECESSARY, SUFFICIENT]},
         "state": {"anyOf": [{"const": INITIAL_STATE}, {**state, "additionalProperties": False}]},
         "place": {"type": "string"},
     }

@@ -192,6 +192,8 @@ def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
         shape["equals"] = claim.printed or text(claim.equals)
     else:
         shape["that"] = assumption_text(claim.equals, claim.relation, claim.right)
+    if claim.role:
+        shape["as"] = claim.role
     if claim.place:
         shape["place"] = claim.place
     return shape

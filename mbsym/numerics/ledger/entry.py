@@ -33,6 +33,13 @@ class Measure:
     def saved(self) -> float:
         return self.without - self.taken
 
+    @property
+    def clear(self) -> bool:
+        """Whether the two differ beyond doubt: counts if they differ at all, seconds if by half and a hundredth."""
+        if self.unit != SECONDS:
+            return self.saved != 0
+        return abs(self.saved) > max(0.01, 0.5 * min(self.without, self.taken))
+
 
 @dataclass(frozen=True)
 class Saving:
