@@ -22,13 +22,13 @@ enclosures of the roots.  Solutions that are not isolated are families.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz
+from flint import arb, ctx, fmpq_poly
 
 from mbsym.algebra import krawczyk
 from mbsym.algebra.base import NoClosedForm, SingularPoint
@@ -36,18 +36,17 @@ from mbsym.algebra.polynomial_systems import (
     AlgebraicPoint,
     Family,
     Limits,
-    context,
-    inverse_modulo,
     solve,
 )
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.formulas.python import python_text
 from mbsym.mechanics.charts import Chart, charts, moments, rows
-from mbsym.mechanics.rest import Rest, at_numbers, rest
+from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems import energy as energies
-from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict_with_cyclic
-from mbsym.problems.stability import conserves_energy
+from mbsym.problems.enclosed_stability import MASS_SINGULAR
+from mbsym.problems.rest_place import PRECISION, Place
+from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
+from mbsym.problems.rest_unknowns import Unknowns
+from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
@@ -57,25 +56,17 @@ from mbsym.problems.stability_theory import (
     STABLE_BUT_CYCLIC,
     UNDECIDED,
     UNSTABLE,
-    LinearSystem,
     Verdict,
-    combine,
-    verdict_at,
 )
 
 EXACT, CERTIFIED = "exact", "proved in a box"
 
 #: Plain coordinates that no formula bounds are searched for in [-WITHIN, WITHIN], where no exact solution is possible.
 WITHIN = 10.0
-#: Working precision of enclosures, in bits.
-PRECISION = 200
 #: Boxes that a bisection looks at.
 MOST_BOXES = 6_000
-#: Starting points of a search from many points.
-STARTS = 400
 #: More unknowns than this are not searched for by bisection.
 MOST_BISECTED = 3
-_SEED = 1788
 
 
 @dataclass(frozen=True)
@@ -207,60 +198,7 @@ def _sort_key(x: RelativeEquilibrium) -> tuple[tuple[float, float], ...]:
     return tuple((round(abs(item.value), 9), -item.value) for item in x.values)
 
 
-# --- places ----------------------------------------------------------------------------------------------------------
-
-
-class _Place:
-    """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic."""
-
-    def __init__(self, found: Rest, balls: Mapping[str, Any], exact: Mapping[int, Any], modulus: Any) -> None:
-        self.ring = found.ring
-        self.modulus = modulus
-        self._exact = dict(exact)
-        names = dict.fromkeys(found.ring.names(), arb(0))
-        for entry in found.system.coordinates:
-            names[entry + "_dot"] = found.ring.evaluate(found.rates[found.ring.index("velocity", entry)], names)
-        self.balls = names | dict(balls)
-
-    def ball(self, x: Polynomial) -> Any:
-        """An enclosure; exactly 0 where the value is proved to vanish."""
-        residue = self.residue(x)
-        if residue is not None and residue.degree() <= 0:
-            return arb(residue[0])
-        keep, ctx.prec = ctx.prec, PRECISION
-        try:
-            return self.ring.evaluate(x, self.balls)
-        finally:
-            ctx.prec = keep
-
-    def residue(self, x: Polynomial) -> Any:
-        """The value in the number field, or None where it is not known to lie there."""
-        if x.is_zero():
-            return fmpq_poly([0])
-        if self.modulus is None:
-            return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
-        total = fmpq_poly([0])
-        used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
-        generators = {k: self._generator(k) for k in used}
-        if any(value is None for value in generators.values()):
-            return None
-        for monomial, coefficient in x.terms():
-            term = fmpq_poly([coefficient])
-            for k in used:
-                for _ in range(int(monomial[k])):
-                    term = term * generators[k] % self.modulus
-            total += term
-        return total % self.modulus
-
-    def _generator(self, index: int) -> Any:
-        if index not in self._exact:
-            g = self.ring.generators[index]
-            value = None
-            if g.kind == "reciprocal":
-                inner = self.residue(g.argument)
-                value = None if inner is None or inner == 0 else inverse_modulo(inner, self.modulus)
-            self._exact[index] = value
-        return self._exact[index]
+# --- configurations ---------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -270,7 +208,7 @@ class _Candidate:
     values: tuple[CoordinateValue, ...]
     features: tuple[Any, ...]
     proof: str
-    place: _Place
+    place: Place
     chart: _ChartSearch
     free: tuple[str, ...]
 
@@ -420,7 +358,7 @@ class _ChartSearch:
     # --- exactly ---
 
     def _solve_exactly(self) -> None:
-        table = _Variables(self.ring, self.equations)
+        table = Unknowns(self.ring, self.equations)
         equations = [table.polynomial(x) for x in self.equations] + table.relations()
         usable = [x for x in self.nonzero if table.holds(x)]
         result = solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
@@ -438,7 +376,7 @@ class _ChartSearch:
             )
             self._search_numerically(bisect=False)
 
-    def _place(self, table: _Variables, point: AlgebraicPoint) -> _Place:
+    def _place(self, table: Unknowns, point: AlgebraicPoint) -> Place:
         ring = self.ring
         exact = dict(zip(table.indices, point.values, strict=True))
         balls = {}
@@ -452,7 +390,7 @@ class _ChartSearch:
             exact |= {ring.index("coordinate", name): fmpq_poly([0])}
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-        return _Place(self.found, balls, exact | self._exact_rates(), point.modulus)
+        return Place(self.found, balls, exact | self._exact_rates(), point.modulus)
 
     def _exact_rates(self) -> dict[int, Any]:
         rates = {k: rate for k, rate in self.found.rates.items() if rate.is_constant()}
@@ -462,7 +400,7 @@ class _ChartSearch:
         self._add(self._zero(), EXACT)
         self.remarks.append("every position is an equilibrium")
 
-    def _add_family(self, table: _Variables, family: Family) -> None:
+    def _add_family(self, table: Unknowns, family: Family) -> None:
         place = self._place(table, family.sample)
         free = [self.ring.generators[table.indices[k]] for k in family.free]
         names = [g.name if g.argument is None else table.names[k] for k, g in zip(family.free, free, strict=True)]
@@ -509,7 +447,7 @@ class _ChartSearch:
                     f"{len(result.open_boxes)} boxes of the bisection are undecided: there may be more equilibria"
                 )
         else:
-            starts = _from_many_points(ring, independent, slopes, names, bounds)
+            starts = from_many_points(ring, independent, slopes, names, bounds)
             if bisect:
                 self._incomplete(f"searched for from {STARTS} points: there may be more equilibria")
         limited = [name for name in names if not self._periodic(name)]
@@ -532,7 +470,7 @@ class _ChartSearch:
         }
         return any(abs(float(self.ring.evaluate(x, at).mid())) < 1e-5 for x in self.nonzero)
 
-    def _zero(self) -> _Place:
+    def _zero(self) -> Place:
         """The place where every coordinate is 0, exactly."""
         ring, zero, one = self.ring, fmpq_poly([0]), fmpq_poly([1])
         exact = {}
@@ -540,7 +478,7 @@ class _ChartSearch:
             exact[ring.index("coordinate", name)] = zero
             if name in ring.angles:
                 exact |= {ring.index("sine", name): zero, ring.index("cosine", name): one}
-        return _Place(self.found, {}, exact | self._exact_rates(), fmpq_poly([0, 1]))
+        return Place(self.found, {}, exact | self._exact_rates(), fmpq_poly([0, 1]))
 
     def _square_system(self) -> list[Polynomial] | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""
@@ -571,7 +509,7 @@ class _ChartSearch:
                 if not self._known([0.0] * len(self.occurring), 1e-12):
                     self._add(place, EXACT)
                 return
-        place = _Place(self.found, box, {}, None)
+        place = Place(self.found, box, {}, None)
         keep, ctx.prec = ctx.prec, PRECISION
         try:
             if any(self.ring.evaluate(x, place.balls).contains(0) for x in self.nonzero):
@@ -587,7 +525,7 @@ class _ChartSearch:
         """Whether a solution is listed already, within ``tolerance``."""
         return any(
             all(
-                abs(_turned(x - item.value, self.ring.angles[item.name]) if item.angle else x - item.value) < tolerance
+                abs(turned(x - item.value, self.ring.angles[item.name]) if item.angle else x - item.value) < tolerance
                 for x, item in zip(place, other.values, strict=True)
             )
             for other in self.points
@@ -606,16 +544,16 @@ class _ChartSearch:
 
     # --- candidates ---
 
-    def _add(self, place: _Place, proof: str) -> None:
+    def _add(self, place: Place, proof: str) -> None:
         self.points.append(self._candidate(place, proof))
 
-    def _candidate(self, place: _Place, proof: str) -> _Candidate:
+    def _candidate(self, place: Place, proof: str) -> _Candidate:
         return _Candidate(self._values(place), self._features(place), proof, place, self, self.free)
 
-    def _values(self, place: _Place) -> tuple[CoordinateValue, ...]:
+    def _values(self, place: Place) -> tuple[CoordinateValue, ...]:
         return tuple(self._value(place, name) for name in self.occurring)
 
-    def _value(self, place: _Place, name: str) -> CoordinateValue:
+    def _value(self, place: Place, name: str) -> CoordinateValue:
         ring, ball = self.ring, place.balls[name]
         periodic = self._periodic(name)
         value = float(ball.mid())
@@ -628,10 +566,10 @@ class _ChartSearch:
             return CoordinateValue(name, _short(value), value, False, False)
         if proof_of := self._twelfths(place, name, value):
             return CoordinateValue(name, proof_of, value, True, True)
-        value = _turned(value, ring.angles[name])
+        value = turned(value, ring.angles[name])
         return CoordinateValue(name, _short(value), value, True, False)
 
-    def _twelfths(self, place: _Place, name: str, value: float) -> str:
+    def _twelfths(self, place: Place, name: str, value: float) -> str:
         """``k*pi/12`` if the angle is such a multiple, proved by (cos + i sin)^24 = 1 in the number field."""
         s, c = (place.residue(self.ring.generator(kind, name)) for kind in ("sine", "cosine"))
         if s is None or c is None or self.ring.angles[name] != 1:
@@ -647,7 +585,7 @@ class _ChartSearch:
         top = {1: "pi", -1: "-pi"}.get(part.numerator, f"{part.numerator}*pi")
         return top if part.denominator == 1 else f"{top}/{part.denominator}"
 
-    def _features(self, place: _Place) -> tuple[Any, ...]:
+    def _features(self, place: Place) -> tuple[Any, ...]:
         """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates."""
         features, done = [], set(self.free)
         for joint in self.chart.joints:
@@ -669,14 +607,14 @@ class _ChartSearch:
     # --- stability ---
 
     @cached_property
-    def _linear(self) -> _Linear | str:
+    def _linear(self) -> LinearAtRest | str:
         """The matrices as formulas, or why there are none."""
         try:
-            return _linear(self.found)
+            return linear_at_rest(self.found)
         except (NoClosedForm, SingularPoint) as reason:
             return str(reason)
 
-    def verdict(self, place: _Place) -> Verdict:
+    def verdict(self, place: Place) -> Verdict:
         """The verdict of problem 6 at a place."""
         if isinstance(self._linear, str):
             return Verdict(UNDECIDED, "", self._linear)
@@ -693,277 +631,5 @@ def _angle(s: Any, c: Any) -> Any:
         ctx.prec = keep
 
 
-def _turned(value: float, denominator: int = 1) -> float:
-    """The same angle in (-pi, pi]."""
-    period = 2 * math.pi * denominator
-    return value - period * math.ceil((value - period / 2) / period - 1e-12)
-
-
 def _short(value: float) -> str:
     return f"{value + 0.0:.10g}" if abs(value) > 1e-15 else "0"
-
-
-# --- polynomial variables --------------------------------------------------------------------------------------------
-
-
-class _Variables:
-    """Which generators of the ring are unknowns, and the way into integer polynomials in them."""
-
-    def __init__(self, ring: Ring, equations: Sequence[Polynomial]) -> None:
-        self.ring = ring
-        used = {k for x in equations for k, degree in enumerate(x.degrees()) if degree > 0}
-        pending = list(used)
-        while pending:
-            g = ring.generators[pending.pop()]
-            more: set[int] = set()
-            if g.argument is not None:
-                more = {k for k, degree in enumerate(g.argument.degrees()) if degree > 0}
-            elif g.kind in ("sine", "cosine"):
-                more = {ring.index("sine", g.name), ring.index("cosine", g.name)}
-            pending += more - used
-            used |= more
-        self.indices = sorted(used)
-        letters = {"sine": "sin", "cosine": "cos"}
-        self.names = []
-        for k in self.indices:
-            g = ring.generators[k]
-            name = f"{g.name}/{g.denominator}" if g.denominator != 1 else g.name
-            if g.argument is not None:
-                written = python_text(ring, ring.context.gen(k))
-                self.names.append(written if g.kind == "root" else f"({written})")
-            else:
-                self.names.append(f"{letters[g.kind]}({name})" if g.kind in letters else name)
-        self.context = context([f"x{k}" for k in range(len(self.indices))])
-
-    def holds(self, x: Polynomial) -> bool:
-        return all(k in self.indices for k, degree in enumerate(x.degrees()) if degree > 0)
-
-    def polynomial(self, x: Polynomial) -> Any:
-        """x times a positive integer."""
-        common = math.lcm(*(int(c.q) for c in x.coeffs()))
-        terms = {tuple(m[k] for k in self.indices): fmpz(int((c * common).p)) for m, c in x.terms()}
-        return self.context.from_dict(terms)
-
-    def back(self, x: Any) -> Polynomial:
-        """An integer polynomial in the unknowns, in the ring."""
-        terms = {}
-        for monomial, coefficient in x.terms():
-            exponents = [0] * len(self.ring.generators)
-            for k, e in zip(self.indices, monomial, strict=True):
-                exponents[k] = int(e)
-            terms[tuple(exponents)] = fmpq(coefficient)
-        return self.ring.context.from_dict(terms)
-
-    def relations(self) -> list[Any]:
-        """s^2 + c^2 = 1 of every angle, root^2 = radicand, x * reciprocal = 1."""
-        ring, found = self.ring, []
-        for k in self.indices:
-            g = ring.generators[k]
-            one = ring.context.gen(k)
-            if g.kind == "sine":
-                found.append(one**2 + ring.generator("cosine", g.name) ** 2 - 1)
-            elif g.kind == "root":
-                found.append(one**2 - g.argument)
-            elif g.kind == "reciprocal":
-                found.append(one * g.argument - 1)
-        return [self.polynomial(x) for x in found]
-
-    def is_relation(self, x: Any) -> bool:
-        return any(x == y or x == -y for y in self.relations())
-
-    def bounded(self) -> list[int]:
-        return [i for i, k in enumerate(self.indices) if self.ring.generators[k].kind in ("sine", "cosine")]
-
-    def roots_agree(self, point: AlgebraicPoint) -> bool:
-        """Whether every square root is not negative."""
-        for i, k in enumerate(self.indices):
-            is_root = self.ring.generators[k].kind == "root" and point.values[i] != 0
-            if is_root and point.enclosure(point.values[i], PRECISION) < 0:
-                return False
-        return True
-
-    def text(self, x: Any) -> str:
-        """A polynomial as a reader writes it."""
-        parts = []
-        for monomial, coefficient in x.terms():
-            factors = [name if e == 1 else f"{name}**{e}" for name, e in zip(self.names, monomial, strict=True) if e]
-            number = int(coefficient)
-            if not factors or abs(number) != 1:
-                factors.insert(0, str(abs(number)))
-            parts.append(("-" if number < 0 else "+", "*".join(factors)))
-        first, *others = parts
-        return ("-" if first[0] == "-" else "") + first[1] + "".join(f" {sign} {term}" for sign, term in others)
-
-
-# --- many starting points --------------------------------------------------------------------------------------------
-
-
-def _from_many_points(
-    ring: Ring,
-    equations: Sequence[Polynomial],
-    slopes: Sequence[Sequence[Polynomial]],
-    names: Sequence[str],
-    bounds: Sequence[tuple[float, float]],
-) -> list[list[float]]:
-    """Where damped Newton iterations from random points end, without repetition; found, not proved."""
-    import numpy as np
-
-    source = np.random.default_rng(_SEED)
-    n = len(names)
-    q = np.array([source.uniform(low, high, STARTS) for low, high in bounds])
-    value = _vectorised(ring, [*equations, *(x for row in slopes for x in row)], names)
-    for _ in range(60):
-        with np.errstate(all="ignore"):
-            found = np.array(value(q))
-        f, jacobian = found[:n], found[n:].reshape(n, n, -1)
-        matrices = np.moveaxis(jacobian, 2, 0)
-        usable = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=0)
-        change = np.zeros_like(q)
-        damping = 1e-14 * np.eye(n)
-        normal = np.einsum("kji,kjl->kil", matrices[usable], matrices[usable])
-        scale = np.trace(normal, axis1=1, axis2=2)[:, None, None] + 1e-300
-        right = np.einsum("kji,jk->ki", matrices[usable], f[:, usable])
-        change[:, usable] = -np.linalg.solve(normal + scale * damping, right[..., None])[..., 0].T
-        length = np.sqrt((change**2).sum(axis=0))
-        q = q + change * np.minimum(1.0, 0.7 / np.maximum(length, 1e-300))
-    ends: dict[tuple[float, ...], list[float]] = {}
-    for k in range(STARTS):
-        if usable[k] and length[k] < 1e-8:
-            point = [float(x) for x in q[:, k]]
-            for i, name in enumerate(names):
-                if bounds[i][1] - bounds[i][0] > 2 * math.pi * ring.angles.get(name, 10**6):
-                    point[i] = _turned(point[i], ring.angles[name])
-            ends.setdefault(tuple(round(x, 6) for x in point), point)
-    return [ends[key] for key in sorted(ends)]
-
-
-def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[str]) -> Callable[[Any], list[Any]]:
-    """Values of polynomials at many points at once."""
-    import numpy as np
-
-    tables = [
-        [(float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e]) for m, c in x.terms()]
-        for x in polynomials
-    ]
-
-    def generator(index: int, q: Any, known: dict[int, Any]) -> Any:
-        if index in known:
-            return known[index]
-        g = ring.generators[index]
-        if g.argument is not None:
-            table = [
-                (float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e])
-                for m, c in g.argument.terms()
-            ]
-            inner = total(table, q, known)
-            outer: dict[str, Callable[[Any], Any]] = {
-                "sine": np.sin,
-                "cosine": np.cos,
-                "root": np.sqrt,
-                "reciprocal": lambda x: 1 / x,
-                "exp": np.exp,
-                "log": np.log,
-                "atan": np.arctan,
-            }
-            known[index] = outer[g.name if g.kind == "function" else g.kind](inner)
-        elif g.name == "pi":
-            known[index] = np.pi
-        else:
-            plain = q[names.index(g.name)] if g.name in names else np.zeros(q.shape[1])
-            inner = plain / g.denominator
-            known[index] = {"sine": np.sin, "cosine": np.cos}.get(g.kind, lambda x: x)(inner)
-        return known[index]
-
-    def total(table: Sequence[tuple[float, list[tuple[int, int]]]], q: Any, known: dict[int, Any]) -> Any:
-        result = np.zeros(q.shape[1])
-        for coefficient, powers in table:
-            term: Any = coefficient
-            for index, exponent in powers:
-                base = generator(index, q, known)
-                term = term * (base if exponent == 1 else base**exponent)
-            result = result + term
-        return result
-
-    def values(q: Any) -> list[Any]:
-        known: dict[int, Any] = {}
-        return [total(table, q, known) for table in tables]
-
-    return values
-
-
-# --- linearisation ---------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Linear:
-    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes."""
-
-    matrices: tuple[Sequence[Sequence[Polynomial]], ...]
-    conservative: bool
-    cyclic: tuple[int, ...]
-    varying: tuple[str, ...]
-
-    def verdict(self, place: _Place) -> Verdict:
-        if self.varying:
-            why = f"The first approximation varies with {', '.join(self.varying)}; nothing is claimed."
-            return Verdict(UNDECIDED, "", why)
-        values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
-        exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
-        rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
-        verdicts = []
-        for indices in blocks(*values):
-            cyclic = tuple(
-                at
-                for at, i in enumerate(indices)
-                if i in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
-            )
-            if rational:
-                parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
-                verdicts.append(_rational_verdict(parts, self.conservative, cyclic))
-            else:
-                parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
-                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
-        # Singular coordinates make every other part of the linear equations meaningless.
-        return next((v for v in verdicts if v.explanation == MASS_SINGULAR), None) or combine(verdicts)
-
-
-def _linear(found: Rest) -> _Linear:
-    """M = mass matrix, D + G = -df/dq', K + N = -df/dq, on the steady motions."""
-    ring, names = found.ring, found.system.coordinates
-    rates = dict(found.rates)
-    half = ring.number(Fraction(1, 2))
-    n = range(len(names))
-    mass = found.mass_matrix()
-    velocity = [
-        [-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing
-    ]
-    position = [[-ring.derivative(f, name) for name in names] for f in found.at_rest]
-    moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-    every = (x for rows_ in (mass, velocity, position) for row in rows_ for x in row)
-    varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, moving)))
-    scene = found.scene
-    try:
-        known = energies.energy(scene)
-    except (NoClosedForm, SingularPoint):
-        known = None
-    cyclic = tuple(i for i, name in enumerate(names) if known is not None and name in known.cyclic)
-    parts = (
-        mass,
-        [[ring.reduce(half * (velocity[i][j] + velocity[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (velocity[i][j] - velocity[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (position[i][j] + position[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (position[i][j] - position[j][i])) for j in n] for i in n],
-    )
-    return _Linear(parts, conserves_energy(scene, known), cyclic, varying)
-
-
-_CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
-
-
-def _rational_verdict(
-    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...]
-) -> Verdict:
-    """By exact counting of roots."""
-    made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
-    found = verdict_at(LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic), {}).verdict
-    return replace(found, explanation=MASS_SINGULAR) if found.explanation == "The mass matrix is singular." else found

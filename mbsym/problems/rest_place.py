@@ -1,0 +1,68 @@
+"""A state of rest, as enclosures and, where it is algebraic, exactly in its number field."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flint import arb, ctx, fmpq_poly
+
+from mbsym.algebra.polynomial_systems import inverse_modulo
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.rest import Rest
+
+#: Working precision of enclosures, in bits.
+PRECISION = 200
+
+
+class Place:
+    """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic."""
+
+    def __init__(self, found: Rest, balls: Mapping[str, Any], exact: Mapping[int, Any], modulus: Any) -> None:
+        self.ring = found.ring
+        self.modulus = modulus
+        self._exact = dict(exact)
+        names = dict.fromkeys(found.ring.names(), arb(0))
+        for entry in found.system.coordinates:
+            names[entry + "_dot"] = found.ring.evaluate(found.rates[found.ring.index("velocity", entry)], names)
+        self.balls = names | dict(balls)
+
+    def ball(self, x: Polynomial) -> Any:
+        """An enclosure; exactly 0 where the value is proved to vanish."""
+        residue = self.residue(x)
+        if residue is not None and residue.degree() <= 0:
+            return arb(residue[0])
+        keep, ctx.prec = ctx.prec, PRECISION
+        try:
+            return self.ring.evaluate(x, self.balls)
+        finally:
+            ctx.prec = keep
+
+    def residue(self, x: Polynomial) -> Any:
+        """The value in the number field, or None where it is not known to lie there."""
+        if x.is_zero():
+            return fmpq_poly([0])
+        if self.modulus is None:
+            return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
+        total = fmpq_poly([0])
+        used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
+        generators = {k: self._generator(k) for k in used}
+        if any(value is None for value in generators.values()):
+            return None
+        for monomial, coefficient in x.terms():
+            term = fmpq_poly([coefficient])
+            for k in used:
+                for _ in range(int(monomial[k])):
+                    term = term * generators[k] % self.modulus
+            total += term
+        return total % self.modulus
+
+    def _generator(self, index: int) -> Any:
+        if index not in self._exact:
+            g = self.ring.generators[index]
+            value = None
+            if g.kind == "reciprocal":
+                inner = self.residue(g.argument)
+                value = None if inner is None or inner == 0 else inverse_modulo(inner, self.modulus)
+            self._exact[index] = value
+        return self._exact[index]

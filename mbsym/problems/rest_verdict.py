@@ -1,0 +1,93 @@
+"""Linear equations at states of rest, as formulas in the coordinates, and the verdict of problem 6 on one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from flint import fmpq, fmpq_mpoly_ctx
+
+from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.rest import Rest
+from mbsym.problems import energy as energies
+from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict_with_cyclic
+from mbsym.problems.rest_place import PRECISION, Place
+from mbsym.problems.stability import conserves_energy
+from mbsym.problems.stability_theory import UNDECIDED, LinearSystem, Verdict, combine, verdict_at
+
+
+@dataclass(frozen=True)
+class LinearAtRest:
+    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes."""
+
+    matrices: tuple[Sequence[Sequence[Polynomial]], ...]
+    conservative: bool
+    cyclic: tuple[int, ...]
+    varying: tuple[str, ...]
+
+    def verdict(self, place: Place) -> Verdict:
+        if self.varying:
+            why = f"The first approximation varies with {', '.join(self.varying)}; nothing is claimed."
+            return Verdict(UNDECIDED, "", why)
+        values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
+        exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
+        rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
+        verdicts = []
+        for indices in blocks(*values):
+            cyclic = tuple(
+                at
+                for at, i in enumerate(indices)
+                if i in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
+            )
+            if rational:
+                parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
+                verdicts.append(_rational_verdict(parts, self.conservative, cyclic))
+            else:
+                parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
+                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
+        # Singular coordinates make every other part of the linear equations meaningless.
+        return next((v for v in verdicts if v.explanation == MASS_SINGULAR), None) or combine(verdicts)
+
+
+def linear_at_rest(found: Rest) -> LinearAtRest:
+    """M = mass matrix, D + G = -df/dq', K + N = -df/dq, on the steady motions."""
+    ring, names = found.ring, found.system.coordinates
+    rates = dict(found.rates)
+    half = ring.number(Fraction(1, 2))
+    n = range(len(names))
+    mass = found.mass_matrix()
+    velocity = [
+        [-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing
+    ]
+    position = [[-ring.derivative(f, name) for name in names] for f in found.at_rest]
+    moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
+    every = (x for rows_ in (mass, velocity, position) for row in rows_ for x in row)
+    varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, moving)))
+    scene = found.scene
+    try:
+        known = energies.energy(scene)
+    except (NoClosedForm, SingularPoint):
+        known = None
+    cyclic = tuple(i for i, name in enumerate(names) if known is not None and name in known.cyclic)
+    parts = (
+        mass,
+        [[ring.reduce(half * (velocity[i][j] + velocity[j][i])) for j in n] for i in n],
+        [[ring.reduce(half * (velocity[i][j] - velocity[j][i])) for j in n] for i in n],
+        [[ring.reduce(half * (position[i][j] + position[j][i])) for j in n] for i in n],
+        [[ring.reduce(half * (position[i][j] - position[j][i])) for j in n] for i in n],
+    )
+    return LinearAtRest(parts, conserves_energy(scene, known), cyclic, varying)
+
+
+_CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
+
+
+def _rational_verdict(
+    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...]
+) -> Verdict:
+    """By exact counting of roots."""
+    made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
+    found = verdict_at(LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic), {}).verdict
+    return replace(found, explanation=MASS_SINGULAR) if found.explanation == "The mass matrix is singular." else found
