@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,8 @@ from mbsym_cli.assignments import assignments
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, console, counted, read_description
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from mbsym.model.system import System
     from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
 
@@ -135,7 +138,6 @@ def _agrees(value: Fraction, sign: str) -> bool:
 
 
 def _show(system: System, found: Equilibria, file: Path, seconds: float) -> None:
-    from rich.table import Table
     from rich.text import Text
 
     out = console()
@@ -143,30 +145,43 @@ def _show(system: System, found: Equilibria, file: Path, seconds: float) -> None
     for name, rate in found.turning:
         out.print(Text(f"  {name} turns at the rate {rate:.10g}"))
     if found.equilibria:
-        columns = [name for name in system.coordinates if any(_has(x, name) for x in found.equilibria)]
-        others = any(x.coordinates_of for x in found.equilibria)
-        boxes = any(x.proof != "exact" for x in found.equilibria)
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-        table.add_column("", justify="right", style="dim")
-        for name in columns:
-            table.add_column(name, justify="right")
-        table.add_column("stability")
-        table.add_column("by", style="dim")
-        if boxes:
-            table.add_column("proof", style="dim")
-        if others:
-            table.add_column("angles of", style="dim")
-        for number, one in enumerate(found.equilibria, 1):
-            colour = _COLOURS.get(one.verdict.word.split(" ")[0], "yellow")
-            cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
-            cells += [Text(_SHORTER.get(one.verdict.word, one.verdict.word), style=colour), one.verdict.theorem]
-            cells += [one.proof] if boxes else []
-            cells += [one.coordinates_of] if others else []
-            table.add_row(*cells)
-        out.print(table)
+        out.print(_table(system, found.equilibria))
+    if found.singular:
+        where = "the coordinates are singular there: equilibria or not is undecided"
+        out.print(Text(f"  {counted(len(found.singular), 'more solution', 'more solutions')}, {where}", style="bold"))
+        out.print(_table(system, found.singular, judged=False))
     for number, family in enumerate(found.families, 1):
         _show_family(number, family)
     _show_summary(found)
+
+
+def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    columns = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
+    others = any(x.coordinates_of for x in listed)
+    boxes = any(x.proof != "exact" for x in listed)
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
+    table.add_column("", justify="right", style="dim")
+    for name in columns:
+        table.add_column(name, justify="right")
+    if judged:
+        table.add_column("stability")
+        table.add_column("by", style="dim")
+    if boxes:
+        table.add_column("proof", style="dim")
+    if others:
+        table.add_column("angles of", style="dim")
+    for number, one in enumerate(listed, 1):
+        colour = _COLOURS.get(one.verdict.word.split(" ")[0], "yellow")
+        cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
+        if judged:
+            cells += [Text(_SHORTER.get(one.verdict.word, one.verdict.word), style=colour), one.verdict.theorem]
+        cells += [one.proof] if boxes else []
+        cells += [one.coordinates_of] if others else []
+        table.add_row(*cells)
+    return table
 
 
 def _has(one: RelativeEquilibrium, name: str) -> bool:
@@ -218,6 +233,7 @@ def _show_summary(found: Equilibria) -> None:
         out.print(Text(f"  {remark}", style="yellow"))
     if found.complete:
         how = "every one exact" if all(x.proof == "exact" for x in found.equilibria) else "every one proved"
-        out.print(Text(f"  the list is complete ({how})", style="green"))
+        but = " apart from these" if found.singular else ""
+        out.print(Text(f"  the list is complete{but} ({how})", style="green"))
     else:
         out.print(Text("  the list may be incomplete", style="bold yellow"))

@@ -215,12 +215,77 @@ def test_cart_position_is_arbitrary() -> None:
 def test_conical_pendulum(rate: int, tilted: bool) -> None:
     """cos(theta) = g/(l Omega^2), if that is less than 1; on the axis the azimuth is no coordinate."""
     _, found = at("spherical-pendulum", Omega=rate)
-    angles = sorted(one.values[0].value for one in found.equilibria if one.verdict.word != "undecided")
+    angles = sorted(one.values[0].value for one in found.equilibria)
     expected = [-math.acos(9.81 / rate**2), math.acos(9.81 / rate**2)] if tilted else []
     assert angles == pytest.approx(expected, abs=1e-12)
     assert found.complete
-    assert sum(one.verdict.word == "undecided" for one in found.equilibria) == 2
+    assert [texts(one) for one in found.singular] == [("0",), ("pi",)]
     assert any("singular" in remark for remark in found.remarks)
+
+
+SPINNING = """
+mbsym: 1
+name: spinning gyrostat
+parameters: {{A: 5, B: 4, C: 2, h: 0}}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {{axes: [3, {second}, {third}], angles: [phi, alpha, beta]}}
+    mass: 1
+    inertia about: mass centre
+    inertia: [A, B, C]
+    gyrostatic moment: [0, 0, h]
+motion: {{phi: {{value: 0, rate: 1}}, alpha: 0, beta: 0}}
+"""
+
+
+def spin_directions(found: Equilibria, second: int, third: int) -> list[tuple[float, ...]]:
+    """What the body sees of the axis that it spins about, from the angles (of the other sequence where it says so)."""
+    seen = []
+    for one in found.equilibria:
+        axes = (second, third)
+        if one.coordinates_of:
+            axes = (third, second) if third != 3 else (second, 6 - 3 - second)
+        n = np.array([0.0, 0.0, 1.0])
+        for axis, item in zip(axes, one.values, strict=True):
+            i, j = axis % 3, (axis + 1) % 3
+            c, s = math.cos(item.value), math.sin(item.value)
+            n[i], n[j] = c * n[i] + s * n[j], c * n[j] - s * n[i]
+        seen.append(tuple(float(round(x, 9)) + 0.0 for x in n))
+    return sorted(seen)
+
+
+@pytest.mark.parametrize(("second", "third"), [(1, 2), (2, 1), (1, 3), (2, 3)])
+def test_a_spinning_gyrostat_in_every_sequence(second: int, third: int) -> None:
+    """n x (J n + h e3) = 0 for the unit vector n of the spin at the rate 1, solved by hand.
+
+    n = +-e3;  n2 = 0, n3 = h/(A - C);  n1 = 0, n3 = h/(B - C), where these are less than 1.  Each sequence of angles is
+    singular at one of the axes, where it has solutions that are no equilibria.
+    """
+    source = SPINNING.format(second=second, third=third)
+    for h in (Fraction(0), Fraction(1), Fraction(5, 2)):
+        _, found = at(source, h=str(h))
+        expected = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
+        for place, moment in ((0, 5), (1, 4)):
+            along = float(h / (moment - 2))
+            if along < 1:
+                for sign in (1, -1):
+                    n = [0.0, 0.0, along]
+                    n[place] = sign * math.sqrt(1 - along**2)
+                    expected.append((round(n[0], 9), round(n[1], 9), round(n[2], 9)))
+        assert spin_directions(found, second, third) == sorted(expected), (h, second, third)
+        assert found.complete
+        assert not found.singular
+
+
+def test_a_spin_that_may_be_turned_is_judged_as_in_problem_6() -> None:
+    """Lyapunov and Malkin's theorem for the spin of a free body with a damper, by the same name in both places."""
+    a, found = at("satellite-with-damper")
+    verdict = a.stability.numerical
+    assert verdict is not None
+    upright = next(one for one in found.equilibria if texts(one) == ("0", "0", "0"))
+    assert (upright.verdict.word, upright.verdict.theorem) == (verdict.word, verdict.theorem)
+    assert verdict.word == "asymptotically stable up to a rotation of space"
 
 
 def test_spherical_pendulum_at_rest_is_seen_in_other_angles() -> None:

@@ -5,6 +5,9 @@ cos x2 = 0 for three different axes, sin x2 = 0 for {a, b, a}.  There body axis 
 a1.  The sequence {a2, a1, a3}, respectively {b, c, a}, is singular elsewhere, so the two together cover every
 orientation: the first where it is regular, the second only where body axis a3 lies along axis a1.
 
+Where the first angle runs at a constant rate (a spin about an axis fixed in the previous body), it has to stay the
+first: {a1, a3, a2}, respectively {a1, a2, c}, is regular there, and what the body sees of axis a1 is the configuration.
+
 Two turns {a1, a2} of a body without twist (a thin rod, a point mass: nothing depends on a turn about a body axis g) are
 the same with the third turn left out; only the direction of g matters then.
 """
@@ -33,12 +36,14 @@ class Joint:
     """A joint whose angles can be replaced: ``axes`` a1, a2, a3; ``angles`` the two or three coordinates.
 
     ``direction_only``: only the direction of body axis a3 matters (no third turn, or one that runs at a constant rate).
+    ``spinning``: the first angle runs at a constant rate, so that only the direction of axis a1 in the body matters.
     """
 
     body: str
     axes: tuple[int, int, int]
     angles: tuple[str, ...]
     direction_only: bool
+    spinning: bool = False
 
     @property
     def proper(self) -> bool:
@@ -48,6 +53,8 @@ class Joint:
     @property
     def other_axes(self) -> tuple[int, int, int]:
         first, second, third = self.axes
+        if self.spinning:
+            return (first, third, second) if self.proper else (first, second, 6 - first - second)
         if self.proper:
             return second, first, third
         return second, 6 - first - second, third
@@ -91,12 +98,14 @@ def joints(system: System, turning: Sequence[str]) -> tuple[Joint, ...]:
         angles = [angle.name for _, angle in turns if isinstance(angle, Name) and angle.name in system.coordinates]
         axes = [axis for axis, _ in turns]
         distinct = len(set(angles)) == len(turns) and all(a != b for a, b in pairwise(axes))
-        if len(turns) not in (2, 3) or not distinct or set(angles[:2]) & set(turning):
+        if len(turns) not in (2, 3) or not distinct:
             continue
-        if _used_elsewhere(system, body, angles):
+        steady = [name in turning for name in angles]
+        spinning = steady == [True, False, False]
+        if (any(steady[:2]) and not spinning) or _used_elsewhere(system, body, angles):
             continue
         if len(turns) == 3:
-            found.append(Joint(body.name, (axes[0], axes[1], axes[2]), tuple(angles), angles[2] in turning))
+            found.append(Joint(body.name, (axes[0], axes[1], axes[2]), tuple(angles), steady[2], spinning))
             continue
         for third in (6 - axes[0] - axes[1], axes[0]):
             if _has_no_twist(system, body, third):
@@ -154,8 +163,10 @@ def charts(first: Rest) -> tuple[Chart, ...]:
         restrictions: list[Polynomial] = []
         for joint, other in zip(replaceable, choice, strict=True):
             if other:
-                row = rows(current, joint)[joint.axes[2] - 1]
-                restrictions += [x for k, x in enumerate(row, start=1) if k != joint.axes[0]]
+                seen = rows(current, joint)
+                across = [k for k in (0, 1, 2) if k != (joint.axes[2] if joint.spinning else joint.axes[0]) - 1]
+                first_axis, last_axis = joint.axes[0] - 1, joint.axes[2] - 1
+                restrictions += [seen[k][first_axis] if joint.spinning else seen[last_axis][k] for k in across]
             else:
                 nonzero.append(current.ring.generator(joint.singular_kind, joint.angles[1]))
         found.append(Chart(current, replaceable, choice, tuple(nonzero), tuple(restrictions)))
@@ -177,6 +188,16 @@ def rows(found: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
     return direction_cosines(found.ring, found.scene.motions[joint.body].turns)
 
 
+def features(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
+    """Direction cosines that tell the joint's steady configurations apart, whatever the angles."""
+    seen = rows(found, joint)
+    if joint.direction_only:
+        return seen[joint.axes[2] - 1]
+    if joint.spinning:
+        return tuple(row[joint.axes[0] - 1] for row in seen)
+    return tuple(x for row in seen for x in row)
+
+
 def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     """The moment that three angles stand for, in the axes of the body and in those of the previous one.
 
@@ -186,7 +207,7 @@ def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     left out; they say nothing that f does not say, only more shortly.
     """
     ring, turns = found.ring, found.scene.motions[joint.body].turns
-    if len(joint.angles) != 3 or len(turns) != 3 or joint.direction_only:
+    if len(joint.angles) != 3 or len(turns) != 3 or joint.direction_only or joint.spinning:
         return ()
     axes = [axis_vector(ring, turn.axis, ring.one) for turn in turns]
     f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]

@@ -111,7 +111,7 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) ->
         return Verdict(STABLE, LAGRANGE if free_of_gyroscopic else ROUTH, why)
     if potential and _positive(d) and _positive(k):
         return Verdict(ASYMPTOTIC, KELVIN_CHETAEV, "K > 0 and complete dissipation.")
-    roots, simple = _eigenvalues(m, _sum(d, g), _sum(k, n))
+    roots, simple = eigenvalues(m, _sum(d, g), _sum(k, n))
     if roots is None:
         return Verdict(UNDECIDED, "", "The roots could not be enclosed.")
     right = sum(bool(root.real > 0) for root in roots)
@@ -125,8 +125,8 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) ->
     return Verdict(UNDECIDED, "", "On a border, or too close to one: no theorem of the first approximation decides.")
 
 
-def _eigenvalues(m: Rows, c: Rows, k: Rows) -> tuple[list[Any] | None, bool]:
-    """(balls around all roots, whether they are isolated from each other)."""
+def eigenvalues(m: Rows, c: Rows, k: Rows) -> tuple[list[Any] | None, bool]:
+    """(balls around all roots of M x'' + C x' + K x = 0, whether they are isolated from each other)."""
     size = len(m)
     mass = arb_mat(size, size, [x for row in m for x in row])
     position = mass.solve(arb_mat(size, size, [x for row in k for x in row]))

@@ -39,7 +39,8 @@ from mbsym.algebra.polynomial_systems import (
     solve,
 )
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.mechanics.charts import Chart, charts, moments, rows
+from mbsym.mechanics.charts import Chart, charts, moments
+from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.enclosed_stability import MASS_SINGULAR
@@ -50,6 +51,7 @@ from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
+    ASYMPTOTIC_BUT_TURNED,
     CRITICAL,
     GYROSCOPIC,
     STABLE,
@@ -119,6 +121,8 @@ class EquilibriumFamily:
 class Equilibria:
     """``complete``: nothing is missing; otherwise ``remarks`` say what was not done, and why.
 
+    ``singular`` are solutions of f = 0 at which the mass matrix, and with it the coordinates, are singular: whether
+    they are equilibria is undecided.
     ``turning`` are the coordinates that turn at the description's rates, ``charts`` how many sets of angles were used.
     """
 
@@ -128,6 +132,7 @@ class Equilibria:
     remarks: tuple[str, ...]
     turning: tuple[tuple[str, float], ...] = ()
     charts: int = 1
+    singular: tuple[RelativeEquilibrium, ...] = ()
 
 
 def equilibria(
@@ -156,11 +161,12 @@ def equilibria(
             break
     listed = [_described(group) for group in _groups(found)]
     listed.sort(key=lambda x: (_ORDER.get(x.verdict.word, 9), x.coordinates_of, _sort_key(x)))
-    verdicts = [x.verdict for x in listed] + [x.verdict for x in families]
-    if any(verdict.explanation == MASS_SINGULAR for verdict in verdicts):
+    singular = tuple(x for x in listed if x.verdict.explanation == MASS_SINGULAR)
+    listed = [x for x in listed if x not in singular]
+    if singular or any(x.verdict.explanation == MASS_SINGULAR for x in families):
         remarks.append(
             "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
-            "and its stability is to be seen in other coordinates"
+            "which is to be seen in other coordinates"
         )
     if families and covering[0].joints:
         remarks.append("families are listed in coordinates: one set of configurations may be described more than once")
@@ -168,7 +174,9 @@ def equilibria(
         (name, float(first.ring.evaluate(first.rates[first.ring.index("velocity", name)], {}).mid()))
         for name in first.turning
     )
-    return Equilibria(tuple(listed), tuple(families), complete, tuple(dict.fromkeys(remarks)), turning, len(covering))
+    return Equilibria(
+        tuple(listed), tuple(families), complete, tuple(dict.fromkeys(remarks)), turning, len(covering), singular
+    )
 
 
 def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[_Candidate]:
@@ -189,7 +197,17 @@ def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[_
 _ORDER = {
     word: k
     for k, word in enumerate(
-        (ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, STABLE, STABLE_BUT_CYCLIC, GYROSCOPIC, CRITICAL, UNDECIDED, UNSTABLE)
+        (
+            ASYMPTOTIC,
+            ASYMPTOTIC_BUT_TURNED,
+            ASYMPTOTIC_BUT_CYCLIC,
+            STABLE,
+            STABLE_BUT_CYCLIC,
+            GYROSCOPIC,
+            CRITICAL,
+            UNDECIDED,
+            UNSTABLE,
+        )
     )
 }
 
@@ -591,9 +609,7 @@ class _ChartSearch:
         for joint in self.chart.joints:
             if set(joint.angles) & set(self.free):
                 continue
-            matrix = rows(self.found, joint)
-            wanted = (matrix[joint.axes[2] - 1],) if joint.direction_only else matrix
-            features += [place.ball(x) for row in wanted for x in row]
+            features += [place.ball(x) for x in direction_features(self.found, joint)]
             done |= set(joint.angles)
         for name in self.found.constant:
             if name in done:

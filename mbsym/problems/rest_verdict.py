@@ -11,6 +11,7 @@ from flint import fmpq, fmpq_mpoly_ctx
 from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
+from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import energy as energies
 from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.rest_place import PRECISION, Place
@@ -26,6 +27,8 @@ class LinearAtRest:
     conservative: bool
     cyclic: tuple[int, ...]
     varying: tuple[str, ...]
+    tilts: tuple[int, ...]
+    spin: Polynomial | None
 
     def verdict(self, place: Place) -> Verdict:
         if self.varying:
@@ -43,12 +46,18 @@ class LinearAtRest:
             )
             if rational:
                 parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
-                verdicts.append(_rational_verdict(parts, self.conservative, cyclic))
+                rate = self._rate(place) if {*self.tilts} <= {*indices} else None
+                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate))
             else:
                 parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
                 verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
         # Singular coordinates make every other part of the linear equations meaningless.
         return next((v for v in verdicts if v.explanation == MASS_SINGULAR), None) or combine(verdicts)
+
+    def _rate(self, place: Place) -> fmpq | None:
+        """The rate of a steady spin that may be turned in space, where it is a rational number."""
+        residue = None if self.spin is None else place.residue(self.spin)
+        return None if residue is None or residue.degree() > 0 else residue[0]
 
 
 def linear_at_rest(found: Rest) -> LinearAtRest:
@@ -78,16 +87,22 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
         [[ring.reduce(half * (position[i][j] + position[j][i])) for j in n] for i in n],
         [[ring.reduce(half * (position[i][j] - position[j][i])) for j in n] for i in n],
     )
-    return LinearAtRest(parts, conserves_energy(scene, known), cyclic, varying)
+    spin = free_spin(found.system)
+    tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
+    rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
+    return LinearAtRest(parts, conserves_energy(scene, known), cyclic, varying, tilts, rate)
 
 
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 
 def _rational_verdict(
-    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...]
+    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...], spin: fmpq | None
 ) -> Verdict:
-    """By exact counting of roots."""
+    """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space."""
+    turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
-    found = verdict_at(LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic), {}).verdict
+    found = verdict_at(
+        LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned), {}
+    ).verdict
     return replace(found, explanation=MASS_SINGULAR) if found.explanation == "The mass matrix is singular." else found

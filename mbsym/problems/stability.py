@@ -28,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from flint import ctx, fmpq
 
@@ -50,6 +51,7 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
+from mbsym.problems.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
 from mbsym.problems.stability_theory import Stability as Theory
 
@@ -132,11 +134,15 @@ class SubsystemStability:
 
 @dataclass(frozen=True)
 class Stability:
-    """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any."""
+    """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
+
+    ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.
+    """
 
     subsystems: tuple[SubsystemStability, ...]
     verdict: Verdict
     numerical: Verdict | None
+    spectra: tuple[Spectrum, ...] = ()
 
 
 def stability(
@@ -160,14 +166,43 @@ def stability(
         for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
     )
     numerical = _motion_at(scene, equilibrium, values)
+    spectra: tuple[Spectrum, ...] = ()
     if numerical is None and values is not None:
+        spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         numerical = combine(
             _enclosed(scene, linear, part.coordinates, values, energy_conserved, cyclic)
             if part.theory.at_point is None
             else part.theory.at_point.verdict
             for part in judged
         )
-    return Stability(judged, combine(part.theory.verdict for part in judged), numerical)
+    return Stability(judged, combine(part.theory.verdict for part in judged), numerical, spectra)
+
+
+def _spectrum(
+    scene: Scene, linear: Linearisation, part: SubsystemStability, values: Mapping[str, Fraction]
+) -> Spectrum | None:
+    """The eigenvalues of a subsystem in physical time."""
+    point = part.theory.at_point
+    if point is not None and point.roots is not None:
+        scale = scene.ring.one if linear.time_scale is None else linear.time_scale.polynomial
+        return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
+    if point is not None:
+        return None
+    at = [linear.coordinates.index(name) for name in part.coordinates]
+    rows = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
+    return from_matrices(part.coordinates, [_balls(scene, matrix, values) for matrix in rows])
+
+
+def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
+    """Formulas in the parameters as enclosures."""
+    ring = scene.ring
+    numbers = dict.fromkeys(ring.names(), fmpq(0))
+    numbers |= {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        return [[ring.evaluate(x, numbers) for x in row] for row in rows]
+    finally:
+        ctx.prec = keep
 
 
 def _enclosed(
@@ -179,17 +214,8 @@ def _enclosed(
     cyclic: Sequence[str],
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
-    ring = scene.ring
     at = [linear.coordinates.index(name) for name in coordinates]
-    numbers = dict.fromkeys(ring.names(), fmpq(0))
-    numbers |= {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
-        parts = [
-            [[ring.evaluate(matrix.polynomials[i][j], numbers) for j in at] for i in at] for matrix in linear.matrices
-        ]
-    finally:
-        ctx.prec = keep
+    parts = [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
     idle = tuple(
         at.index(i)
         for i in at

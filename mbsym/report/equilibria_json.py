@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.model.system import System
-from mbsym.problems.equilibria import CoordinateValue, Equilibria
+from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
 from mbsym.problems.stability_theory import Verdict
 
 
@@ -20,17 +20,8 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
         "turning": dict(found.turning),
         "complete": found.complete,
         "remarks": list(found.remarks),
-        "equilibria": [
-            {
-                "coordinates": [_coordinate(item) for item in one.values],
-                "angles of": one.coordinates_of or None,
-                "arbitrary": list(one.free),
-                "descriptions": one.described,
-                "proof": one.proof,
-                "stability": _verdict(one.verdict),
-            }
-            for one in found.equilibria
-        ],
+        "equilibria": [_equilibrium(one) for one in found.equilibria],
+        "singular": [_equilibrium(one) for one in found.singular],
         "families": [
             {
                 "dimension": family.dimension,
@@ -44,6 +35,17 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
         ],
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _equilibrium(one: RelativeEquilibrium) -> dict[str, Any]:
+    return {
+        "coordinates": [_coordinate(item) for item in one.values],
+        "angles of": one.coordinates_of or None,
+        "arbitrary": list(one.free),
+        "descriptions": one.described,
+        "proof": one.proof,
+        "stability": _verdict(one.verdict),
+    }
 
 
 def _coordinate(item: CoordinateValue) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
-from mbsym.report.claims import claim_line, repair, titles, together
+from mbsym.problems.spectrum import Spectrum, numbers
+from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
@@ -62,6 +63,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "row": row,
             "entries": entries,
             "sum": polynomial,
+            "eigenvalues": eigenvalues,
             "label": label,
             "refer": refer,
             "load": lambda value: load_in_words(value, names, escaped),
@@ -69,6 +71,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "displays": displays,
             "prose": prose,
             "claim_line": claim_line,
+            "counterexample": lambda found: counterexample(found).replace("for", "For", 1),
             "together": together,
             "titles": titles,
             "printed": lambda value: expression(value, printed),
@@ -258,6 +261,21 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
             text = LatexPrinter(coefficient.ring, breaks=True).factor(Factor(shape))
         written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
     return "".join(written) or "0"
+
+
+def eigenvalues(spectrum: Spectrum) -> str:
+    """``-0.1 \\pm 2.3\\,\\mathrm{i}``, separated by commas; six digits."""
+    written = []
+    for root in numbers(spectrum):
+        real, imaginary = (scientific(x) for x in (root.real, root.imaginary))
+        text = real if not root.imaginary else f"{real if root.real else ''}\\pm {imaginary}\\,\\mathrm{{i}}"
+        written.append(text if root.multiplicity == 1 else f"{text}\\ ({root.multiplicity}\\times)")
+    return ",\\; \\penalty0 ".join(written)
+
+
+def scientific(value: float) -> str:
+    digits, _, exponent = f"{value:.6g}".partition("e")
+    return f"{digits}\\cdot 10^{{{int(exponent)}}}" if exponent else digits
 
 
 def claimed_names(analysis: Analysis) -> LatexNames:

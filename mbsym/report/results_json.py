@@ -17,6 +17,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.spectrum import numbers
 from mbsym.problems.stability import Stability
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
@@ -177,6 +178,15 @@ def _stability(found: Stability, system: System) -> dict[str, Any]:
         "verdict": found.verdict.word,
         "theorem": found.verdict.theorem,
         "verdict_at_values": None if found.numerical is None else found.numerical.word,
+        "eigenvalues_at_values": [
+            {
+                "coordinates": list(part.coordinates),
+                "roots": [
+                    {"real": x.real, "imaginary": x.imaginary, "multiplicity": x.multiplicity} for x in numbers(part)
+                ],
+            }
+            for part in found.spectra
+        ],
     }
 
 

@@ -15,6 +15,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability_theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
 from mbsym.report.claims import ClaimLine, claim_line
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 #: Conditions longer than this are counted, not printed.
 LONGEST = 100
+
+#: More eigenvalues of a subsystem are left to the files.
+MOST_ROOTS = 10
 
 
 @dataclass(frozen=True)
@@ -132,6 +136,24 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
     if found.numerical is not None:
         why = found.numerical.explanation if found.numerical.word == UNDECIDED else ""
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
+    for spectrum in found.spectra:
+        yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _roots(spectrum: Spectrum) -> str:
+    listed = [root_text(x) for x in numbers(spectrum)]
+    more = len(listed) - MOST_ROOTS
+    return ", ".join(listed[:MOST_ROOTS]) + (f" and {more} more" if more > 0 else "")
+
+
+def root_text(root: RootNumbers) -> str:
+    """``-0.1 +- 2.3i (twice)``."""
+    real = f"{root.real:.6g}"
+    text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
+    if root.imaginary and root.real:
+        text = f"{real} +- {root.imaginary:.6g}i"
+    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
+    return text + times
 
 
 def _depends(part: SubsystemStability) -> bool:

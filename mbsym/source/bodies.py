@@ -166,7 +166,7 @@ def bare_name(angle: Expression | None) -> str | None:
 def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
     """The second pass: everything about one body."""
     fields = draft.fields
-    mass = fields.required_expression("mass", Allowed("a mass"))
+    mass = fields.required_expression("mass", Allowed("a mass"), "write mass: 0 for a massless frame")
     return Body(
         name=draft.name,
         attached_to=_attached_to(draft, drafts, reading),

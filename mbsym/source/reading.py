@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
-from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
+from mbsym.expressions.parser import ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Vector
@@ -39,6 +39,14 @@ def comma_hint(items: tuple[Node, ...], wanted: int) -> str | None:
         return double and f"is a comma missing: {_TWO_IN_ONE.sub(', ', double)}?"
     tight = [isinstance(second, Scalar) and _is_decimal_comma(first, second) for first, second in pairwise(items)]
     return "numbers have a decimal point: write 0.5 for 0,5" if any(tight) and not all(tight) else None
+
+
+def _filled_hint(items: tuple[Node, ...]) -> str | None:
+    """Components that were left out, most likely because the motion is planar, are zeros."""
+    texts = [item.text.strip() if isinstance(item, Scalar) else "" for item in items]
+    if len(texts) > 2 or any(not text or len(text) > MAX_SHOWN for text in texts):
+        return None
+    return f"components along the axes 1, 2, 3: for example [{', '.join([*texts, *['0'] * (3 - len(texts))])}]"
 
 
 def _is_decimal_comma(whole: Node, decimals: Scalar) -> bool:
@@ -107,8 +115,13 @@ class Reading:
     def expression(self, node: Node, allowed: Allowed) -> Expression:
         """A parsed expression whose names are all allowed here; zero where something is wrong."""
         scalar = self.scalar(node, allowed.what)
-        tree = None if scalar is None else parse_expression(scalar.text, self.complaints, scalar.place)
+        if scalar is None:
+            return ZERO
+        before = len(self.complaints.items)
+        tree = parse_expression(scalar.text, self.complaints, scalar.place, bool(allowed.kinds))
         if tree is None:
+            for one in names_apart(scalar.text, scalar.place, self.complaints.items[before:]):
+                self.scope.check(one, allowed)
             return ZERO
         self.scope.check(tree, allowed)
         return tree
@@ -130,7 +143,7 @@ class Reading:
             return None
         if len(node.items) != 3:
             message = f"{what} has three components, not {len(node.items)}"
-            self.error("wrong-shape", message, node.span, comma_hint(node.items, 3))
+            self.error("wrong-shape", message, node.span, comma_hint(node.items, 3) or _filled_hint(node.items))
             return None
         return node.items
 
@@ -240,8 +253,8 @@ class Fields:
         node = self.get(key)
         return None if node is None else self.reading.expression(node, allowed)
 
-    def required_expression(self, key: str, allowed: Allowed) -> Expression:
-        node = self.require(key)
+    def required_expression(self, key: str, allowed: Allowed, hint: str | None = None) -> Expression:
+        node = self.require(key, hint)
         return ZERO if node is None else self.reading.expression(node, allowed)
 
     def exclude(self, key: str, others: Iterable[str]) -> None:

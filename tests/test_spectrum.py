@@ -1,0 +1,73 @@
+"""Eigenvalues at numbers against frequencies known otherwise and against floats from the matrices in physical time."""
+
+from __future__ import annotations
+
+import json
+from math import sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED
+
+import mbsym
+from mbsym.problems.spectrum import RootNumbers, numbers
+from mbsym.report.summary import root_text
+from mbsym_cli.main import main
+
+#: Descriptions whose values, with their relations, give every parameter a number.
+WITH_VALUES = ["dumbbell", "satellite", "heavy-top", "satellite-with-damper", "ziegler-damped", "orbital-gyrostat"]
+
+
+def test_a_dumbbell_swings_at_the_square_root_of_three_and_at_two() -> None:
+    """Pitch and roll of a dumbbell in an orbit with omega0 = 1/1000 (Beletsky)."""
+    found = mbsym.load(SHIPPED / "dumbbell.yaml").stability.spectra
+    assert [x.coordinates for x in found] == [("alpha",), ("beta",)]
+    for spectrum, frequency in zip(found, (sqrt(3), 2), strict=True):
+        (pair,) = numbers(spectrum)
+        assert pair.real == 0
+        assert pair.imaginary == pytest.approx(frequency / 1000, rel=1e-15)
+
+
+def test_the_turned_spin_is_among_the_eigenvalues() -> None:
+    """A steady spin at the rate 1 that is turned in space: +-i, exactly on the axis."""
+    found = mbsym.load(SHIPPED / "satellite-with-damper.yaml").stability.spectra
+    assert any(x.real == 0 and x.imaginary == 1 for part in found for x in numbers(part))
+
+
+@pytest.mark.parametrize("name", WITH_VALUES)
+def test_floats_from_the_physical_matrices_agree(name: str) -> None:
+    """Another route: numpy on M, D + G, K + N of problem 5, in physical time and declared parameters."""
+    a = mbsym.load(SHIPPED / f"{name}.yaml")
+    linear, spectra = a.linearisation, a.stability.spectra
+    values = mbsym.problems.stability.parameter_values(a.parameters_scene, a.equilibrium)
+    assert values is not None
+    floats = {x: float(v) for x, v in values.items()}
+    m, d, g, k, n = (np.array(x.to_sympy().subs(floats).evalf(30), dtype=float) for x in linear.matrices)
+    size = len(m)
+    zero, one = np.zeros((size, size)), np.eye(size)
+    a_matrix = np.block([[zero, one], [-np.linalg.solve(m, k + n), -np.linalg.solve(m, d + g)]])
+    expected = np.linalg.eigvals(a_matrix)
+    got = [complex(x) for part in spectra for root in part.roots for x in [root.ball.mid()] * root.multiplicity]
+    assert len(got) == len(expected) == 2 * size
+    scale = max(abs(expected))
+    for x in got:
+        assert min(abs(expected - x)) < 1e-6 * scale  # multiple roots are known to half the digits in floats
+    for x in expected:
+        assert min(abs(np.array(got) - x)) < 1e-6 * scale
+
+
+def test_texts() -> None:
+    assert root_text(RootNumbers(-0.5, 2.0, 1)) == "-0.5 +- 2i"
+    assert root_text(RootNumbers(0.0, 2.0, 2)) == "+-2i (twice)"
+    assert root_text(RootNumbers(0.0, 0.0, 4)) == "0 (4 times)"
+
+
+def test_the_command_tells_them(tmp_path: Path) -> None:
+    result = CliRunner().invoke(main, ["run", str(SHIPPED / "dumbbell.yaml"), "--out", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    assert "eigenvalues there (alpha): +-0.00173205i" in result.output
+    told = json.loads((tmp_path / "results.json").read_text())["stability"]["eigenvalues_at_values"]
+    assert told[1] == {"coordinates": ["beta"], "roots": [{"real": 0.0, "imaginary": 0.002, "multiplicity": 1}]}
+    assert r"\pm 0.002\,\mathrm{i}" in (tmp_path / "report.tex").read_text()
