@@ -1,44 +1,60 @@
-"""``mbsym explain``: what a problem does and the formula it uses."""
+"""``mbsym explain``: what a problem does and the formula it uses; what may stand in a description."""
 
 from __future__ import annotations
 
 import sys
+from difflib import get_close_matches
 
 import click
 
 from mbsym_cli.console import BAD_INPUT
 
+TOPICS = {
+    "description": "the keys of a description",
+    "loads": "the kinds of load and their keys",
+    "expressions": "what a formula may hold",
+    "claims": "how printed formulas are checked, and the kinds of claim",
+}
+
 
 @click.command("explain")
-@click.argument("number", required=False)
-def command(number: str | None) -> None:
-    """Print what problem NUMBER does and the formula it uses; without NUMBER, the list of problems.
+@click.argument("topic", required=False)
+def command(topic: str | None) -> None:
+    """Print what problem TOPIC (1 to 7) does and the formula it uses; without TOPIC, the list of problems and topics.
 
-    'claims' in place of a number explains how claims are checked, and lists their kinds.
+    The topics description, loads, expressions and claims tell what may stand in a description.
 
     \b
-    Example:
+    Examples:
       mbsym explain 5
+      mbsym explain loads
     """
     from mbsym.analysis import PROBLEMS
 
-    if number is None:
+    if topic is None:
+        width = max(map(len, TOPICS))
         for problem in PROBLEMS.values():
-            click.echo(f"{problem.number}  {problem.title}")
-        return
-    if number == "claims":
-        click.echo(_claims())
-        return
-    if not number.isdigit() or int(number) not in PROBLEMS:
-        click.echo(f"there is no problem {number}; problems are numbered 1 to {len(PROBLEMS)}", err=True)
+            click.echo(f"{problem.number:<{width}}  {problem.title}")
+        for name, meaning in TOPICS.items():
+            click.echo(f"{name:<{width}}  {meaning}")
+    elif topic in TOPICS:
+        click.echo(_topic(topic))
+    elif topic.isdigit() and int(topic) in PROBLEMS:
+        click.echo(PROBLEMS[int(topic)].explanation)
+    else:
+        near = get_close_matches(topic, TOPICS, 1)
+        known = f"did you mean {near[0]}?" if near else f"problems are numbered 1 to {len(PROBLEMS)}"
+        known += "" if near else f"; topics are {', '.join(TOPICS)}"
+        click.echo(f"there is no problem or topic {topic}; {known}", err=True)
         sys.exit(BAD_INPUT)
-    click.echo(PROBLEMS[int(number)].explanation)
 
 
-def _claims() -> str:
-    from mbsym.model.claims import CLAIMS
-    from mbsym.problems import claims
+def _topic(name: str) -> str:
+    from mbsym.source import topics
 
-    width = max(map(len, CLAIMS))
-    kinds = "\n".join(f"    {kind:<{width}}  {entry.meaning}" for kind, entry in CLAIMS.items())
-    return f"{str(claims.__doc__).strip()}\n\nKinds of claim:\n\n{kinds}"
+    if name == "claims":
+        from mbsym.problems import claims
+
+        return f"{str(claims.__doc__).strip()}\n\n{topics.claim_kinds()}"
+    found: str = getattr(topics, name)()
+    return found

@@ -11,8 +11,14 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from mbsym import loads
 from mbsym.analysis import PROBLEMS
+from mbsym.expressions.tree import FUNCTIONS
+from mbsym.model.claims import CLAIMS
+from mbsym.source.keys import BODY, LOADS, SYSTEM
+from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
+from mbsym_cli.explain import TOPICS
 from mbsym_cli.main import COMMANDS, main
 
 ROOT = Path(__file__).parent.parent
@@ -173,8 +179,33 @@ def test_explain(number: int) -> None:
 
 
 def test_explain_lists_and_refuses() -> None:
-    assert mbsym("explain").stdout.count("\n") == len(PROBLEMS)
+    assert mbsym("explain").stdout.count("\n") == len(PROBLEMS) + len(TOPICS)
     assert mbsym("explain", "8").exit_code == 2
+    assert "did you mean claims" in mbsym("explain", "clams").stderr
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_topics_name_everything_that_is_read(topic: str) -> None:
+    wanted = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "expressions": FUNCTIONS, "claims": CLAIMS}[topic]
+    done = mbsym("explain", topic)
+    assert done.exit_code == 0
+    assert not [word for word in wanted if word not in done.stdout]
+
+
+def test_the_examples_of_claims_are_read() -> None:
+    """A rod on a slide; what is claimed need not be true, but is a claim."""
+    text = """
+mbsym: 1
+name: rod on a slide
+parameters: [m, l, k, g]
+abbreviations: {c1: m}
+bodies:
+  - {name: slide, attached to: 0, connection point: [x, 0, 0], mass: 0, coordinates: [x]}
+  - {name: rod, attached to: slide, rotation: {axes: [3], angles: [phi]}, mass centre: [l, 0, 0], mass: m}
+initial: {x: 0, phi: 1}
+"""
+    examples = "\n".join(line.removeprefix("    ") for line in EXAMPLES.splitlines())
+    assert len(loads(text + examples).system.claims) == EXAMPLES.count("claim: ")
 
 
 @pytest.mark.parametrize("name", COMMANDS)

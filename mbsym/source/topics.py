@@ -1,0 +1,95 @@
+"""What may stand in a description, in words: ``mbsym explain description``, ``loads``, ``expressions``.
+
+Everything comes from the tables that the reader itself goes by, so that nothing is described that is not read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import wrap
+
+from mbsym.expressions.tree import FUNCTIONS
+from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
+from mbsym.source.keys import BODY, CLAIM, LOAD_MEANINGS, LOADS, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
+
+WIDTH = 110
+
+
+def description() -> str:
+    """Every key of a description, of its bodies, parameters and prescribed quantities."""
+    parts = [
+        ("A description", SYSTEM),
+        ("A parameter", PARAMETER),
+        ("A prescribed quantity", PRESCRIBED),
+        ("A body", BODY),
+        ("Its rotation", ROTATION),
+    ]
+    return "\n\n".join(f"{title}\n\n{_listed(table)}" for title, table in parts) + "\n\n" + _SEE
+
+
+def loads() -> str:
+    """Every kind of load with its keys."""
+    parts = []
+    for kind, keys in LOADS.items():
+        parts.append(f"{kind}: {LOAD_MEANINGS[kind]}" + (f"\n\n{_listed(keys)}" if keys else ""))
+    parts.append(f"A point, for 'between'\n\n{_listed(POINT)}")
+    return "loads:  a list; each load is  - kind: {key: value, ...}  or  - kind: expression\n\n" + "\n\n".join(parts)
+
+
+def expressions() -> str:
+    """What a formula in a description is made of."""
+    return _EXPRESSIONS.format(functions=", ".join(sorted(FUNCTIONS)))
+
+
+def claim_kinds() -> str:
+    """Every kind of claim, the keys that it needs, and what they mean."""
+    width = max(map(len, CLAIMS))
+    kinds = "\n".join(f"    {kind:<{width}}  {entry.meaning}{_keys(entry)}" for kind, entry in CLAIMS.items())
+    head = f"Kinds of claim, and the keys they need beside 'equals':\n\n{kinds}"
+    return f"{head}\n\nKeys:\n\n{_listed(CLAIM)}\n\nExamples:\n\n{EXAMPLES}"
+
+
+def _keys(entry: ClaimKind) -> str:
+    needed = ["of, state" if entry.of == EXPRESSION else "of"] if entry.of else []
+    needed += {0: [], 1: ["component"], 2: ["entry"]}[entry.entry]
+    needed += ["at"] if entry.at else []
+    needed += ["variable"] if entry.variable else []
+    needed += ["that (instead of equals)"] if entry.inequality else []
+    return f"  [{', '.join(needed)}]" if needed else ""
+
+
+def _listed(table: Mapping[str, str]) -> str:
+    width = max(map(len, table))
+    lines = []
+    for key, meaning in table.items():
+        first, *others = wrap(meaning, WIDTH - width - 6)
+        lines.append(f"    {key:<{width}}  {first}")
+        lines += [" " * (width + 6) + other for other in others]
+    return "\n".join(lines)
+
+
+_SEE = "Kinds of load: mbsym explain loads.  Formulas: mbsym explain expressions.  Claims: mbsym explain claims."
+
+_EXPRESSIONS = """\
+Formulas in a description
+
+    numbers       exact: 0.1 is 1/10, 3/2 is 3/2, 1e-3 is 1/1000
+    names         letters, digits and _ ; upper and lower case differ; pi is the number
+    operations    + - * / and ** with a rational exponent; parentheses
+    functions     {functions}
+    velocities    x_dot of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
+    accelerations x_ddot: in claims of equations of motion and of values
+    time          t: in loads and claims
+
+Angles are in radians (30 degrees are pi/6).  There are no units: take all numbers in one consistent system of them.
+2*x, not 2x."""
+
+#: Claims as they stand in a description.
+EXAMPLES = """\
+    claims:
+      - {claim: kinetic energy, equals: c1*x_dot**2/2 - m*l*x_dot*phi_dot*sin(phi), place: eq. (3)}
+      - {claim: coefficient, of: kinetic energy, at: x_dot*phi_dot, equals: -m*l*sin(phi), place: eq. (4)}
+      - {claim: mass matrix, entry: [x, phi], equals: -m*l*sin(phi)}
+      - {claim: angular velocity, of: rod, component: 3, equals: phi_dot}
+      - {claim: condition, that: k > 0, as: necessary}
+      - {claim: value, of: phi_ddot, state: initial, equals: -0.4821}"""
