@@ -20,6 +20,7 @@ $(READY): pyproject.toml
 	    { echo "mbsym needs Python 3.11 or newer; try  make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || \
 	    { echo "python's venv module is missing (on Debian: apt-get install python3-venv)"; exit 1; }
+	@echo "installing mbsym and what it needs into $(VENV): a minute or two"
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $(READY)
 

@@ -600,3 +600,21 @@ def test_wrong_settings_are_refused(setting: str) -> None:
     result = run(str(SHIPPED / "double-pendulum.yaml"), "--set", setting)
     assert result.exit_code == 2
     assert "error" in result.stderr
+
+
+def test_a_load_that_varies_with_time_is_said_to_be_why_nothing_rests() -> None:
+    _, found = at(
+        """
+mbsym: 1
+name: pushed
+parameters: {m: 1, k: 2}
+bodies:
+  - {name: block, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - generalized force: {x: sin(3*t)}
+"""
+    )
+    assert found.equilibria == ()
+    assert found.complete
+    assert found.remarks == ("the equations vary with t: a relative equilibrium has to satisfy them at all times",)

@@ -324,6 +324,9 @@ class _ChartSearch:
         if not present:
             yield x
             return
+        self.remarks.append(
+            f"the equations vary with {', '.join(present)}: a relative equilibrium has to satisfy them at all times"
+        )
         indices = [
             k
             for k, g in enumerate(ring.generators)

@@ -49,7 +49,8 @@ def _names(names: Sequence[str]) -> str:
 
 def _compared(item: Measure) -> str:
     least = "more than " if item.at_least else ""
-    return f"{item.quantity}: {_number(item.taken, item)} instead of {least}{_number(item.without, item)}"
+    costs = " (costs more)" if item.saved < 0 else ""
+    return f"{item.quantity}: {_number(item.taken, item)} instead of {least}{_number(item.without, item)}{costs}"
 
 
 def _number(value: float, item: Measure) -> str:
