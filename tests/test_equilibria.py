@@ -22,8 +22,10 @@ from mbsym.algebra import krawczyk
 from mbsym.algebra.polynomial_systems import Limits, Solutions, context, solve
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
+from mbsym.numerics.scenario import exact
 from mbsym.problems.enclosed_stability import enclosed_verdict
 from mbsym.problems.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
+from mbsym.problems.stability import parameter_values
 from mbsym_cli.equilibria import command
 
 
@@ -618,3 +620,31 @@ loads:
     assert found.equilibria == ()
     assert found.complete
     assert found.remarks == ("the equations vary with t: a relative equilibrium has to satisfy them at all times",)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [path for path in sorted(SHIPPED.glob("*.yaml")) if path.stem != "satellite"],  # half a minute for its 144
+    ids=lambda path: path.stem,
+)
+def test_the_described_motion_is_listed_and_judged_as_problem_6_does(path: Path) -> None:
+    """Another route to every verdict: problem 6 judges matrices by quadratisation, with symbols, at the same values."""
+    a = mbsym.load(path)
+    try:
+        judged = a.stability.numerical
+    except Unavailable:
+        pytest.skip("no unperturbed motion")
+    values = parameter_values(a.parameters_scene, a.equilibrium)
+    assert judged is not None
+    assert values is not None
+    motion = {entry.coordinate: float(exact(entry.value, values)) for entry in a.system.motion}
+    found = equilibria(a.system, values)
+
+    def is_described(one: RelativeEquilibrium) -> bool:
+        apart = [(item.value - motion.get(item.name, 0.0), item.angle) for item in one.values]
+        gaps = [math.remainder(gap, 2 * math.pi) if angle else gap for gap, angle in apart]
+        return not one.coordinates_of and max(map(abs, gaps), default=0.0) < 1e-9
+
+    listed = [one for one in (*found.equilibria, *found.singular) if is_described(one)]
+    assert len(listed) == (0 if judged.explanation.startswith("The motion does not exist there") else 1)
+    assert {one.verdict.word for one in listed} <= {judged.word}
