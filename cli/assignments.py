@@ -2,92 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.parser import ascii_safe, parse_expression
-from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, walk
+from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
+from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.tree import CONSTANTS, Expression, Name, walk
 from mbsym.model.system import velocity_name
-from mbsym.source import render
-from mbsym.source.scope import did_you_mean
+from mbsym.source import render_option
+from mbsym.source.scope import did_you_mean, listed
+from mbsym_cli.lacking import missing
+from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-
-#: An assignment on the command line has at most so many characters.
-MAX_LENGTH = 2_000
+    from mbsym.numerics.scenario import Lack, Scenario
 
 
-def assignments(texts: Sequence[str], system: System) -> tuple[dict[str, Expression], list[str]]:
-    """Expressions by name, and rendered complaints (all of them; then the expressions are not to be used).
+@dataclass(frozen=True)
+class Assigned:
+    """What ``--set`` says: sound expressions by name, and the text that each name was given, sound or not."""
+
+    values: Mapping[str, Expression]
+    texts: Mapping[str, str]
+
+    def complain(self, name: str, code: str, message: str, options: Options, hint: str | None = None) -> None:
+        """A complaint about one of them as a whole."""
+        text = self.texts[name]
+        span = Span(1, 1, max(1, len(text)))
+        options.complaints.append(render_option(Complaint(code, message, span, hint), text, "--set"))
+
+
+def assignments(texts: Sequence[str], system: System, options: Options) -> Assigned:
+    """Expressions by name; every complaint joins those of ``options``.
 
     A name is that of a parameter, a coordinate (its initial position) or ``<coordinate>_dot`` (its initial velocity);
     an expression is made of numbers, pi and parameters.
     """
-    texts = [" ".join(text.splitlines()) for text in texts]
-    complaints = Complaints()
     found: dict[str, Expression] = {}
-    for line, text in enumerate(texts, 1):
-        name, equals, right = text.partition("=")
-        offset = len(name) + 1
-        blanks = len(name) - len(name.lstrip())
-        name = name.strip()
-        span = Span(line, blanks + 1, max(1, len(name)))
-        if not equals or not name or len(text) > MAX_LENGTH:
-            reason = f"{ascii_safe(text)} gives no value" if len(text) <= MAX_LENGTH else "this assignment is too long"
-            complaints.error("bad-assignment", reason, Span(line, 1, len(text)), "write name=value, for example l=3/2")
-            continue
-        known = _check_target(name, span, system, complaints)
-        if name in found:
-            complaints.error("repeated-name", f"'{name}' is set twice", span)
-        before = len(complaints.errors)
-        place = _Places(line, offset)
-        value = parse_expression(right, complaints, place)
-        if value is None:
-            continue
-        _check_names(value, system, complaints)
-        if known and len(complaints.errors) == before:
-            found[name] = value
-    whole = "\n".join(texts)
-    return found, [render(complaint, whole, "--set") for complaint in complaints.sorted()]
+    given: dict[str, str] = {}
+    for text in texts:
+        text = " ".join(text.splitlines())
+        complaints = Complaints()
+        _read(text, system, complaints, found, given)
+        options.complaints += [render_option(complaint, text, "--set") for complaint in complaints.sorted()]
+    return Assigned(found, given)
 
 
-def number(text: str, option: str) -> tuple[float | None, list[str]]:
-    """A positive number of an option, made of numbers and pi (``2*pi``, ``1e-3``), or rendered complaints."""
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
-    from mbsym.numerics.scenario import exact
+def _read(
+    text: str, system: System, complaints: Complaints, found: dict[str, Expression], given: dict[str, str]
+) -> None:
+    left, equals, right = text.partition("=")
+    name, blanks = left.strip(), len(left) - len(left.lstrip())
+    span = Span(1, blanks + 1, max(1, len(name)))
+    if not equals or not name or len(text) > MAX_LENGTH:
+        reason = f"{ascii_safe(text)} gives no value" if len(text) <= MAX_LENGTH else "this assignment is too long"
+        complaints.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
+        return
+    known = _check_target(name, span, system, complaints)
+    if name in given:
+        complaints.error("repeated-name", f"'{name}' is set twice", span)
+    given[name] = text
+    place = _Places(len(left) + 1)
+    value = parse_expression(right, complaints, place)
+    parts = walk(value) if value is not None else names_apart(right, place, complaints.items)
+    for node in parts:
+        if isinstance(node, Name) and node.name not in (*system.parameter_names, *CONSTANTS) and node.span is not None:
+            hint = did_you_mean(node.name, system.parameter_names) or "a value is made of numbers, pi and parameters"
+            complaints.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+    if known and value is not None and not complaints.errors:
+        found[name] = value
 
-    complaints = Complaints()
-    value = None
-    if len(text) > MAX_LENGTH:
-        complaints.error("bad-number", "this number is too long", Span(1, 1))
-    else:
-        value = parse_expression(text, complaints, _Places(1, 0))
-    if value is not None:
-        for node in walk(value):
-            if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
-                complaints.error("unknown-name", f"a number is wanted here, not {ascii_safe(node.name)}", node.span)
-    found = None
-    if value is not None and not complaints.errors:
-        try:
-            found = float(exact(value, {}))
-        except (NoClosedForm, SingularPoint) as reason:
-            complaints.error("bad-number", f"it has no value: {reason}", Span(1, 1, len(text)))
+
+def numbers(
+    file: Path, system: System, settings: Sequence[str], options: Options
+) -> tuple[Scenario | None, Mapping[str, Expression]]:
+    """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``."""
+    from mbsym.numerics.scenario import Incomplete, scenario
+
+    assigned = assignments(settings, system, options)
+    try:
+        return scenario(system, assigned.values), assigned.values
+    except Incomplete as error:
+        contradictions(file, error.lack, assigned, options)
+        names = [shown for shown in error.lack.names if _unread(shown.split(" ")[0], assigned)]
+        if names:
+            options.complaints.append(missing(file, names))
+        return None, assigned.values
+
+
+def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:
+    """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
+    for one in lack.contradictions:
+        if one.name in assigned.texts:
+            assigned.complain(one.name, one.code, one.text, options)
         else:
-            if not found > 0:
-                complaints.error("bad-number", "it must be positive", Span(1, 1, len(text)))
-    return found, [render(complaint, text, option) for complaint in complaints.sorted()]
+            options.complaints.append(render_option(Complaint(one.code, one.text), "", str(file)))
+
+
+def _unread(name: str, assigned: Assigned) -> bool:
+    """Whether nothing was said about a name; where its value was refused, it does not lack one."""
+    return name not in assigned.texts or name in assigned.values
 
 
 class _Places:
-    """Offsets in the right side to places in the assignments, one a line."""
+    """Offsets in the right side to places in the assignment."""
 
-    def __init__(self, line: int, offset: int) -> None:
-        self.line, self.offset = line, offset
+    def __init__(self, offset: int) -> None:
+        self.offset = offset
 
     def __call__(self, start: int, end: int) -> Span:
-        return Span(self.line, self.offset + start + 1, max(1, end - start))
+        return Span(1, self.offset + start + 1, max(1, end - start))
 
 
 def _settable(system: System) -> list[str]:
@@ -112,16 +139,5 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
     return False
 
 
-def _choices(names_: Iterable[str]) -> str:
-    listed = list(names_)
-    return "these have values: " + ", ".join(listed[:20]) + (", ..." if len(listed) > 20 else "")
-
-
-def _check_names(value: Expression, system: System, complaints: Complaints) -> None:
-    allowed = {*system.parameter_names, *CONSTANTS}
-    if names(value) <= allowed:
-        return
-    for node in walk(value):
-        if isinstance(node, Name) and node.name not in allowed and node.span is not None:
-            hint = did_you_mean(node.name, system.parameter_names) or "a value is made of numbers, pi and parameters"
-            complaints.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+def _choices(names: Iterable[str]) -> str | None:
+    return listed("these have values", names)

@@ -22,6 +22,9 @@ OK, FAILED, BAD_INPUT = 0, 1, 2
 #: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
 BROKEN_DOWN, INTERRUPTED = 3, 130
 
+#: Problems are numbered 1 to this.
+PROBLEMS = 7
+
 
 @cache
 def console(stderr: bool = False) -> Console:
@@ -58,15 +61,24 @@ def counted(n: int, one: str, many: str) -> str:
     return f"{n} {one if n == 1 else many}"
 
 
-def numbers(text: str) -> tuple[int, ...]:
-    """``1-5``, ``1,3,5`` or ``6`` as problem numbers.  Raises ValueError with a hint."""
+def numbers(text: str, complain: Callable[[str, str, str], None]) -> tuple[int, ...]:
+    """``1-5``, ``1,3,5`` or ``6`` as problem numbers; ``complain(code, message, hint)`` hears of each part that is none."""
     found: set[int] = set()
-    for part in text.split(","):
-        first, dash, last = part.strip().partition("-")
-        if not first.isdigit() or (dash and not last.isdigit()):
-            raise ValueError(f"'{part.strip()}' is no problem number; write 1-5 or 1,3,6")
-        found.update(range(int(first), int(last or first) + 1))
-    wrong = sorted(n for n in found if not 1 <= n <= 7)
-    if wrong or not found:
-        raise ValueError(f"there is no problem {', '.join(map(str, wrong))}; problems are numbered 1 to 7")
+    usual = "write for example 1-5 or 1,3,6"
+    for part in (part.strip() for part in text.split(",")):
+        first, dash, last = (piece.strip() for piece in part.partition("-"))
+        ends = (first, last) if dash else (first, first)
+        if not all(end.isascii() and end.isdigit() and len(end) < 10 for end in ends):
+            complain("bad-number", f"'{part}' is no problem number", usual)
+            continue
+        low, high = map(int, ends)
+        if low > high:
+            complain("bad-range", f"the range {part} is empty", f"a range goes upwards: write {last}-{first}")
+            continue
+        wrong = [n for n in dict.fromkeys((low, high)) if not 1 <= n <= PROBLEMS]
+        if wrong:
+            message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
+            complain("unknown-problem", message, f"problems are numbered 1 to {PROBLEMS}")
+            continue
+        found.update(range(low, high + 1))
     return tuple(sorted(found))

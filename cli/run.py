@@ -13,6 +13,7 @@ import click
 
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, numbers, read_description, status
 from mbsym_cli.files import write_whole
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -24,7 +25,7 @@ SUFFIXES = (".yaml", ".yml", ".txt")
 
 
 @dataclass(frozen=True)
-class Options:
+class Request:
     """What to derive, and what to write."""
 
     problems: tuple[int, ...]
@@ -37,41 +38,22 @@ class Options:
     width: int = 0
 
 
-def _problems(context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, ...]:
-    try:
-        return numbers(value)
-    except ValueError as error:
-        raise click.BadParameter(str(error)) from None
-
-
-def _formats(context: click.Context, parameter: click.Parameter, value: str) -> tuple[str, ...]:
-    from mbsym.report.targets import TARGETS
-
-    chosen = tuple(dict.fromkeys(part.strip() for part in value.split(",") if part.strip()))
-    if chosen == ("all",):
-        return tuple(TARGETS)
-    unknown = [name for name in chosen if name not in TARGETS]
-    if unknown or not chosen:
-        raise click.BadParameter(f"choose from {', '.join(TARGETS)} or all, separated by commas")
-    return chosen
-
-
 @click.command("run")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option("--problems", "-p", default="1-7", callback=_problems, show_default=True, help="1-5 or 1,3,6.")
-@click.option("--format", "formats", "-f", default="all", callback=_formats, show_default=True, help="Some of them.")
+@click.option("--problems", "-p", default="1-7", show_default=True, help="1-5 or 1,3,6.")
+@click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
-@click.option("--terms", default=60_000, show_default=True, help="Budget of terms for one closed formula.")
+@click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms for one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
-    problems: tuple[int, ...],
-    formats: tuple[str, ...],
+    problems: str,
+    formats: str,
     out: Path | None,
-    terms: int,
+    terms: str,
     strict_claims: bool,
     brief: bool,
     ledger: bool,
@@ -95,14 +77,26 @@ def command(
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
     """
+    from mbsym.report.targets import TARGETS
+
     paths = list(_descriptions(files))
+    asked = Options()
+    chosen = numbers(problems, lambda code, message, hint: asked.complain("--problems", code, message, hint))
+    kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
+    budget = asked.whole("--terms", terms, 1, 10**12)
     if not paths:
-        raise click.UsageError(f"no descriptions ({', '.join(SUFFIXES)}) in {', '.join(map(str, files))}")
+        hint = f"a description is a file that ends in {', '.join(SUFFIXES)}"
+        asked.complain(", ".join(map(str, files)), "no-descriptions", "there are no descriptions here", hint)
+    if asked.complaints or budget is None:
+        for path in paths:
+            read_description(path)
+        asked.refused(*paths)
+        sys.exit(BAD_INPUT)
     width = max(len(path.name) for path in paths)
-    options = Options(problems, formats, terms, quiet, strict_claims, ledger, brief, width)
+    request = Request(chosen, kinds, budget, quiet, strict_claims, ledger, brief, width)
     worst = OK
     for path, folder in zip(paths, _folders(paths, out), strict=True):
-        worst = max(worst, _run_one(path, folder, options))
+        worst = max(worst, _run_one(path, folder, request))
     sys.exit(worst)
 
 
@@ -132,13 +126,13 @@ def _folders(paths: list[Path], out: Path | None) -> list[Path]:
     return folders
 
 
-def _run_one(path: Path, folder: Path, options: Options) -> int:
+def _run_one(path: Path, folder: Path, request: Request) -> int:
     """Reads, derives, writes and reports on one file; the exit code it deserves."""
     system = read_description(path)
     if system is None:
         return BAD_INPUT
     try:
-        return _derive(path, system, folder, options)
+        return _derive(path, system, folder, request)
     except OSError as error:
         print(f"{path}: the reports cannot be written: {error}", file=sys.stderr)
     except MemoryError:
@@ -149,14 +143,14 @@ def _run_one(path: Path, folder: Path, options: Options) -> int:
     return FAILED
 
 
-def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
+def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.algebra.base import NoClosedForm, SingularPoint
     from mbsym.analysis import PROBLEMS, Analysis, Unavailable
     from mbsym.report.targets import TARGETS
 
     started = time.perf_counter()
-    analysis = Analysis(system, options.problems, options.terms)
-    with status(options.quiet) as say:
+    analysis = Analysis(system, request.problems, request.terms)
+    with status(request.quiet) as say:
         for number in analysis.problems:
             say(f"{path.name}: problem {number}, {PROBLEMS[number].title}")
             analysis.stage(number)
@@ -166,7 +160,7 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
         say(f"{path.name}: self-check")
         failed = [check for check in analysis.checks if check.failed]
         texts, missing = {}, []
-        for target in (part for name in options.formats for part in (TARGETS[name], *TARGETS[name].companions)):
+        for target in (part for name in request.formats for part in (TARGETS[name], *TARGETS[name].companions)):
             say(f"{path.name}: writing {target.filename}")
             try:
                 texts[folder / target.filename] = target.render(analysis, analysis.problems)
@@ -174,20 +168,20 @@ def _derive(path: Path, system: System, folder: Path, options: Options) -> int:
                 long = "digits" in str(error)  # Python refuses to write numbers of thousands of digits
                 reason = "a number in it has more than 4300 digits" if long else str(error)
                 missing.append(f"{path}: {target.filename} cannot be written: {reason}")
-        if options.ledger:
+        if request.ledger:
             say(f"{path.name}: ledger")
             found = _ledger(analysis, folder, texts)
     for file, text in texts.items():
         write_whole(file, text)
     for line in missing:
         print(line, file=sys.stderr)
-    if options.brief and not options.quiet:
-        _print_brief(analysis, path, options.width, time.perf_counter() - started)
-    elif not options.quiet:
+    if request.brief and not request.quiet:
+        _print_brief(analysis, path, request.width, time.perf_counter() - started)
+    elif not request.quiet:
         _print_summary(analysis, path, list(texts), time.perf_counter() - started)
-        if options.ledger:
+        if request.ledger:
             _print_ledger(found)
-    open_claims = [result for result in analysis.claims if not result.holds] if options.strict_claims else []
+    open_claims = [result for result in analysis.claims if not result.holds] if request.strict_claims else []
     for result in open_claims:
         place = f"{result.claim.place}: " if result.claim.place else ""
         print(f"{path}: CLAIM DOES NOT HOLD: {place}{result.title}: {result.outcome}", file=sys.stderr)

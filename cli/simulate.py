@@ -47,6 +47,9 @@ ARITHMETIC = ("float64", "float32", "extended")
 TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
 SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
 
+#: Paths are drawn with so many points from one sample to the next, to be smooth.
+SMOOTHER = 8
+
 #: No arithmetic here is finer, and nothing coarser is a solution.
 FINEST, COARSEST = 1e-19, 0.1
 
@@ -404,7 +407,7 @@ def _integrate(
         "resting": _resting(chosen.resting),
     }
     with alone(folder):
-        paths = _write(folder, dynamics.scenario, found, chosen, request, summary, further, conserved == CONSERVED)
+        paths = _write(folder, dynamics, found, chosen, request, summary, further, conserved == CONSERVED)
     if not request.quiet:
         print_summary(file, dynamics, found, chosen, request, summary, paths)
     if found.breakdown is not None:
@@ -479,7 +482,7 @@ def _estimated(dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: R
 
 def _write(
     folder: Path,
-    scenario: Scenario,
+    dynamics: Dynamics,
     found: Trajectory,
     chosen: Chosen,
     request: Request,
@@ -504,17 +507,20 @@ def _write(
     images: dict[str, bytes] = {}
     kinds = [kind for kind in request.formats if kind != "csv"]
     if kinds:
+        from mbsym.numerics.between import accelerations
         from mbsym.report.figures import figures
 
         with status(request.quiet, "drawing"):
-            images = figures(found, kinds, note(found), conserved) | _motion(scenario, found, kinds)
+            rates = accelerations(dynamics, found.times, found.states)
+            images = figures(found, kinds, note(found), conserved, rates)
+            images |= _motion(dynamics.scenario, found, kinds, rates)
     for name, content in images.items():
         stem, _, kind = name.rpartition(".")
         write(f"{stem}{mark}.{kind}", content)
     listed = [path.name for path in written]
     write(
         "simulation.json",
-        simulation_json(found, scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed),
+        simulation_json(found, dynamics.scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed),
     )
     # Figures and tables of an earlier simulation would contradict simulation.json.
     for path in sorted(folder.iterdir()):
@@ -523,15 +529,20 @@ def _write(
     return written
 
 
-def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str]) -> dict[str, bytes]:
+def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:
     """Pictures of the bodies themselves, where there is something to be seen."""
     from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+    from mbsym.numerics.between import between
     from mbsym.numerics.positions import positions
     from mbsym.report.motion_figure import motion_figures
 
     every = -(-len(found.times) // MOST_SAMPLES)  # a picture of a million samples would only be slow
+    times, states = found.times[::every], found.states[:, ::every]
+    pieces = min(MOST_SAMPLES // len(times), SMOOTHER)
+    if pieces > 1:
+        times, states = between(times, states, rates, [pieces] * (len(times) - 1))
     try:
-        places = positions(scenario, found.times[::every], found.states[:, ::every])
+        places = positions(scenario, times, states)
     except (NoClosedForm, NotRational, SingularPoint):
         return {}
     return motion_figures(places, kinds, note(found)) if places is not None else {}

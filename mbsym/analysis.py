@@ -42,6 +42,7 @@ from mbsym.problems import (
 )
 from mbsym.problems.checks import Check
 from mbsym.problems.claims import ClaimResult
+from mbsym.problems.counterexample import Trials
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibria import Equilibria
@@ -328,6 +329,8 @@ class Analysis:
             return ()
         for number in self.problems:  # not under the small budget of a claim, whose failures would be remembered
             self.stage(number)
+        if any(claim.right is not None for claim in self.system.claims):
+            self._optional("trials")
         symbols = claims.Symbols(self.system)
         own = angle_denominators(self.system)
         arguments = {id(claim): list(symbols.arguments(claim)) for claim in self.system.claims}
@@ -344,6 +347,19 @@ class Analysis:
             allowance -= spent
             found.append(result)
         return tuple(found)
+
+    @property
+    def trials(self) -> Trials:
+        """Parameters at which claimed conditions are tried, with exact verdicts."""
+        return self._result("trials", self._trials)
+
+    def _trials(self) -> Trials:
+        scene, energies, linear = self.parameters_scene, self._optional("energy"), self.linearisation
+        cyclic = () if energies is None else energies.cyclic
+        conserved = stability.conserves_energy(scene, energies)
+        verdict_at = stability.ExactVerdicts(scene, conserved, cyclic, linear, self.equilibrium, self.signs)
+        solved = {name: value.polynomial for name, value in self.equilibrium.solved}
+        return Trials(self.system, self.ring, linear.M, solved, verdict_at)
 
     def _claim(self, source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:
         """One claim and the work that it took: bounded by itself, so that claims cost the reports nothing."""

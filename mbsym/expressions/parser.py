@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
 from math import ceil
 
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
@@ -50,6 +50,8 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|[-+*/()^,])",
 )
 
+_OPENING = re.compile(r"\s*\(")
+
 _LOOKALIKES = {
     "−": "write - for minus",
     "–": "write - for minus",
@@ -60,6 +62,7 @@ _LOOKALIKES = {
     "∗": "write * for a product",
     "÷": "write / for a quotient",
     "∕": "write / for a quotient",
+    "°": "angles are in radians: write 30*pi/180 for 30 degrees",
     "²": "write **2",
     "³": "write **3",
     "√": "write sqrt(...)",
@@ -93,6 +96,16 @@ _FOREIGN_FUNCTIONS = {
 #: Names of functions elsewhere, so short that they could be taken for factors.
 _NO_FACTORS = ("abs", "exp", "max", "min", "pow", "sec", "csc", "sgn")
 
+_DEGREES = ("deg", "degs", "degree", "degrees")
+_RADIANS = ("rad", "rads", "radian", "radians")
+
+#: Units behind a number, which mean nothing here; some are names of quantities just as well.
+_UNITS = frozenset(
+    "kg g mg lb lbs m mm cm km um ft s ms us sec min h hr Hz kHz N kN mN Nm Pa kPa MPa J kJ W kW rpm "
+    "second seconds minute minutes hour hours meter meters metre metres gram grams kilogram kilograms "
+    "newton newtons".split()
+)
+
 _DECIMAL_COMMA = re.compile(r"(?<![\w.,])([0-9]+),([0-9]+)(?![\w.,])")
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20}
@@ -111,11 +124,13 @@ class _Refused(Exception):
     """Internal: this expression is given up; the complaint is already recorded."""
 
 
-def parse_expression(text: str, complaints: Complaints, span_of: SpanOf) -> Expression | None:
+def parse_expression(
+    text: str, complaints: Complaints, span_of: SpanOf, named: bool = True
+) -> Expression | None:
     """The tree of an expression, or None with at least one complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
-    names a place allows is the reader's business.
+    names a place allows is the reader's business; where it allows none (``named`` is false) no hint speaks of any.
     """
     errors_before = len(complaints.errors)
     try:
@@ -123,10 +138,47 @@ def parse_expression(text: str, complaints: Complaints, span_of: SpanOf) -> Expr
             complaints.error("too-long", f"an expression has at most {MAX_LENGTH} characters", span_of(0, 1))
             raise _Refused
         parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
+        parser.named = named
         tree = parser.whole()
     except _Refused:
         return None
     return tree if len(complaints.errors) == errors_before else None
+
+
+def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> list[Name]:
+    """The names in a text that is no expression, so that each can be looked up: one mistake hides no other.
+
+    Left out is what would be blamed twice (the pieces that ``refused`` is about) and what is no name of anything:
+    functions, letters beside foreign characters, words that stand behind one another like prose or units.
+    """
+    spans = [item.span for item in refused if item.span is not None and item.code != "division-by-zero"]
+    if len(text) > MAX_LENGTH:
+        return []
+    found: list[Name] = []
+    blank = _Token("operator", "", 0, 0)
+    previous, end, position = blank, -1, 0  # end: where the last piece that is no token ended
+    while position < len(text):
+        match = _TOKEN.match(text, position)
+        if match is None:
+            previous, position = blank, position + 1
+            end = position
+            continue
+        start, position = match.span()
+        if match.lastgroup == "blank":
+            continue
+        token = _Token(match.lastgroup or "", match.group(), start, position)
+        beside = start == end or (position < len(text) and _TOKEN.match(text, position) is None)
+        call = _OPENING.match(text, position) is not None
+        if token.kind == "name" and previous.kind == "operator" and not (beside or call or token.text in FUNCTIONS):
+            span = span_of(start, position)
+            if not any(_inside(span, other) for other in spans):
+                found.append(Name(token.text, span))
+        previous = token
+    return found
+
+
+def _inside(span: Span, other: Span) -> bool:
+    return span.line == other.line and other.column <= span.column < other.column + other.length
 
 
 def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
@@ -204,6 +256,7 @@ class _Parser:
         self.kept: list[Expression] = []  # keeps identities from being used again
         self.complaints = complaints
         self.span_of = span_of
+        self.named = True
 
     def whole(self) -> Expression:
         if self.next.kind == "end":
@@ -386,6 +439,8 @@ class _Parser:
             return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         if token.kind in ("name", "number") or token.text == "(":
             hint = f"write {previous.text}*{token.text} for a product"
+        if previous.kind == "number" and token.kind == "name":
+            hint = _unit_hint(previous.text, token.text, self.named) or hint
         if token.text == ",":
             hint = decimal_comma(self.text)
         if previous.kind == "number" and re.fullmatch(r"[0-9_]+", token.text):
@@ -395,6 +450,19 @@ class _Parser:
         if token.text == ")":
             return self.refusal("bad-expression", "this parenthesis was never opened", token)
         return self.refusal("bad-expression", f"an operator is missing before {ascii_safe(token.text)}", token, hint)
+
+
+def _unit_hint(value: str, unit: str, named: bool) -> str | None:
+    """For a number with a unit behind it; where names may stand, the unit may be meant as a factor, too."""
+    if unit.lower() in _DEGREES:
+        short = " or pi/6" if value == "30" else ""
+        return f"angles are in radians: write {value}*pi/180{short}"
+    if unit.lower() in _RADIANS:
+        return f"angles are in radians: write {value} alone"
+    if named and unit not in _UNITS:
+        return None
+    product = f"; for a product write {value}*{unit}" if named else ""
+    return f"units are not used: write numbers only, in one consistent system of units{product}"
 
 
 def _function_hint(name: str) -> str:

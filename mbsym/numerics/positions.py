@@ -3,8 +3,8 @@
     r_O = r^j_O turned back body by body into the axes of the frame F,   r_C = r_O + r^k_C,      from the origin of F
 
 F is the inertial frame, or one that it carries without a coordinate's doing (an orbit): what moves by metres is not
-drawn thousands of kilometres away.  A body without extent, all of whose points coincide, shows its turning by the
-tips of its three axes instead.
+drawn thousands of kilometres away.  Where nothing extends, bodies show their turning by the tips of their three axes
+instead; so does, besides what moves along with it, a body that turns by three angles and has no line of its own.
 """
 
 from __future__ import annotations
@@ -47,6 +47,9 @@ STILL = 1e-9
 #: fill it.  Of the axes of one body the slowest counts.
 PLANAR, SPATIAL, TURNING = 5.0, 10.0, 15.0
 
+#: Axes of a body that is seen with others are so much longer than the others are far from it.
+BEYOND = 1.25
+
 ORIGIN, JOINT, MASS_CENTRE, AXIS = "origin", "joint", "mass centre", "axis"
 
 
@@ -65,7 +68,8 @@ class Positions:
 
     ``links`` join points by number within bodies, ``slides`` along springs and joints that change their length.
     ``centres`` are the mass centres by body.  ``up`` is the direction away from gravity in the frame's axes, None where
-    there is none.  Where no body extends the points of kind AXIS are the tips of unit vectors.
+    there is none.  Where no body extends the points of kind AXIS are the tips of unit vectors; otherwise
+    (``extended``) their length means nothing.
     """
 
     system: System
@@ -77,6 +81,7 @@ class Positions:
     times: Any
     places: Any
     up: tuple[float, float, float] | None
+    extended: bool = False
 
     @property
     def size(self) -> float:
@@ -113,10 +118,11 @@ class Positions:
         moving = self.moving(range(len(self.points)))
         if not moving:
             return self
-        if self.tips:
+        own = [i for i in moving if i not in self.tips]
+        if self.tips and not (self.extended and own):
             length, most = np.min(paths[[i for i in self.tips if i in moving]], axis=0, initial=np.inf), TURNING
         else:
-            length, most = np.max(paths[moving], axis=0), SPATIAL if self.plane is None else PLANAR
+            length, most = np.max(paths[own], axis=0), SPATIAL if self.plane is None else PLANAR
         end = int(np.searchsorted(length, most * self.size, side="right"))
         return self.until(max(end, 2))
 
@@ -211,18 +217,52 @@ def _positions(system: System, frame: str, values: Any, times: Any) -> Positions
     travelled = float(np.linalg.norm(np.ptp(places[own], axis=(0, 2))))
     scale = float(np.max(np.abs(places[own])))
     point_like = extent <= STILL * scale
+    drawn = _own_axes(system, frame, points, places) if not point_like else {}
     for i, point in enumerate(points):
-        if point.kind == AXIS:
+        if point.body in drawn and point.kind == AXIS:
+            places[i] = places[joints[point.body]] + drawn[point.body] * places[i]
+        elif point.kind == AXIS:
             places[i] = places[joints[point.body]] + (0.1 * travelled if travelled > STILL * scale else 1.0) * places[i]
     kept = [
-        i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE) or (point.kind == AXIS and point_like)
+        i
+        for i, point in enumerate(points)
+        if point.kind in (JOINT, MASS_CENTRE) or (point.kind == AXIS and (point_like or point.body in drawn))
     ]
     if any(_held(system, frame, points[i]) for i in kept):
         kept.insert(0, 0)
     shown = tuple(points[i] for i in kept)
     links, slides = _lines(system, frame, shown)
     centres = {body.name: _centre(shown, body) for body in system.bodies if body.mass != ZERO and body.name in joints}
-    return Positions(system, frame, shown, links, slides, centres, times, places[kept], up)
+    return Positions(system, frame, shown, links, slides, centres, times, places[kept], up, not point_like)
+
+
+def _own_axes(system: System, frame: str, points: Sequence[Point], places: Any) -> dict[str, float]:
+    """How long to draw the axes of bodies that turn by three angles about a point at rest and have no line of their own.
+
+    Nothing where all motion is in a plane: there the picture says enough.
+    """
+    plain = [i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE)]
+    spread = np.ptp(places[plain], axis=(0, 2))
+    size = float(np.linalg.norm(spread))
+    if np.any(spread <= STILL * size):
+        return {}
+    links, _ = _lines(system, frame, [points[i] for i in plain])
+    lined = {end for link in links if _length(places, [plain[k] for k in link]) > STILL * size for end in link}
+    found = {}
+    for k, i in enumerate(plain):
+        name, kind = points[i].body, points[i].kind
+        angles = {x for angle in system.body(name).rotation.angles for x in names(angle)}
+        free = len(angles & set(system.coordinates)) >= 3 and system.body(name).inertia is not None
+        if kind == JOINT and free and k not in lined and np.max(np.ptp(places[i], axis=1)) <= STILL * size:
+            carried = [j for j in plain if name in system.path(points[j].body)]
+            reach = max(_length(places, (i, j)) for j in carried)
+            found[name] = BEYOND * reach if reach > STILL * size else size / 4
+    return found
+
+
+def _length(places: Any, pair: Sequence[int]) -> float:
+    """The greatest distance of two points."""
+    return float(np.max(np.linalg.norm(places[pair[0]] - places[pair[1]], axis=0)))
 
 
 def _centre(points: Sequence[Point], body: Body) -> int:

@@ -29,11 +29,20 @@ AGREEMENT = Fraction(1, 10**12)
 
 
 @dataclass(frozen=True)
+class Contradiction:
+    """A value that cannot be: a short stable ``code``, the ``name`` that has it, and a sentence."""
+
+    code: str
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
 class Lack:
-    """``names`` have no value; ``contradictions`` are sentences about values that cannot be."""
+    """``names`` have no value; ``contradictions`` are values that cannot be."""
 
     names: tuple[str, ...] = ()
-    contradictions: tuple[str, ...] = ()
+    contradictions: tuple[Contradiction, ...] = ()
 
 
 class Incomplete(Exception):
@@ -43,7 +52,7 @@ class Incomplete(Exception):
         parts = []
         if lack.names:
             parts.append("no value for " + ", ".join(lack.names))
-        super().__init__("; ".join([*parts, *lack.contradictions]))
+        super().__init__("; ".join([*parts, *(one.text for one in lack.contradictions)]))
         self.lack = lack
 
 
@@ -109,7 +118,7 @@ class _Numbers:
     def __init__(self) -> None:
         self.known: dict[str, Fraction] = {}
         self.refused: set[str] = set()
-        self.contradictions: list[str] = []
+        self.contradictions: list[Contradiction] = []
 
     def ready(self, expression: Expression) -> bool:
         return names(expression) <= self.known.keys() | {"pi"}
@@ -121,7 +130,8 @@ class _Numbers:
         try:
             return exact(expression, self.known)
         except (NoClosedForm, SingularPoint) as reason:
-            self.contradictions.append(f"{name} has no value: {reason}")
+            text = f"{name} has no value: {reason}"
+            self.contradictions.append(Contradiction("bad-number", name.split(" ")[-1], text))
             self.refused.add(name)
             return Fraction(0)
 
@@ -163,15 +173,13 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             follows = numbers.value(f"the relation of {relation.name}", relation.value)
             own = numbers.known[relation.name]
             if abs(follows - own) > AGREEMENT * max(abs(follows), abs(own)):
-                numbers.contradictions.append(
-                    f"{relation.name} = {float(own):.12g} contradicts its relation, which gives {float(follows):.12g}"
-                )
+                text = f"{relation.name} = {float(own):.12g} contradicts its relation, which gives {float(follows):.12g}"
+                numbers.contradictions.append(Contradiction("conflicting-values", relation.name, text))
     for parameter in system.parameters:
         found = numbers.known.get(parameter.name)
         if found is not None and not _SIGNS[parameter.sign](found):
-            numbers.contradictions.append(
-                f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
-            )
+            text = f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
+            numbers.contradictions.append(Contradiction("sign-contradiction", parameter.name, text))
 
 
 _SIGNS: Mapping[str, Callable[[Fraction], bool]] = {

@@ -56,6 +56,7 @@ from mbsym.expressions.tree import (
     differentiate,
     multiply,
     names,
+    subtract,
     text,
     walk,
 )
@@ -68,7 +69,7 @@ from mbsym.model.claims import CLAIMS, NECESSARY, SUFFICIENT, SUMS, Claim
 from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
 from mbsym.problems.counterexample import (
     Counterexample,
-    against_condition,
+    Trials,
     against_constancy,
     rate_at_states,
     shown,
@@ -80,7 +81,7 @@ from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, re
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stability import ExactVerdicts, Stability, conserves_energy
+from mbsym.problems.stability import Stability
 from mbsym.problems.stability_theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
@@ -113,9 +114,15 @@ MOST_PARTS = 60
 MOST_FACTORS = 12
 #: Names of undeclared sign under roots for which both signs are tried, and points with each.
 MOST_SIGNS, POINTS = 3, 4
-#: Verdicts with which a motion is stable, and those with which it is so in the first approximation at least.
-_STABLE = (STABLE, ASYMPTOTIC, STABLE_BUT_CYCLIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED)
-_LINEARLY_STABLE = (*_STABLE, GYROSCOPIC)
+#: Verdicts of a motion that is stable; the last is about the first approximation only.
+_LINEARLY_STABLE = (
+    STABLE,
+    ASYMPTOTIC,
+    STABLE_BUT_CYCLIC,
+    ASYMPTOTIC_BUT_CYCLIC,
+    ASYMPTOTIC_BUT_TURNED,
+    GYROSCOPIC,
+)
 _MOTION = ("velocity", "acceleration")
 
 
@@ -146,6 +153,8 @@ class Derived(Protocol):
     def linearisation(self) -> Linearisation: ...
     @property
     def stability(self) -> Stability: ...
+    @property
+    def trials(self) -> Trials: ...
 
 
 @dataclass(frozen=True)
@@ -631,14 +640,10 @@ def _moving(derived: Derived, x: Polynomial) -> bool:
 
 @dataclass(frozen=True)
 class _Multiple:
-    """``factor`` (None for 1) = ``top`` / ``bottom``, the ``difference`` claimed - factor*derived, and its verdict.
+    """``difference`` = claimed - factor*derived, whether it vanishes, and where the factor makes no sense."""
 
-    ``cleared`` is the difference without denominators.
-    """
-
-    factor: Formula | None
-    difference: Polynomial | None
-    cleared: Polynomial
+    factor: Formula
+    difference: Polynomial
     verdict: tuple[str, str]
     remark: str
 
@@ -648,7 +653,7 @@ def _up_to_multiple(
 ) -> ClaimResult:
     """What has only to vanish, against the multiple of the derived one that comes closest; ``own`` is for 1 times."""
     multiple = _multiple(derived, result.claim, claimed, truth)
-    if multiple is None or multiple.factor is None or multiple.difference is None:
+    if multiple is None:
         return _differing(derived, result, symbols, own)
     found = replace(result, factor=multiple.factor, remark=multiple.remark)
     outcome, where = multiple.verdict
@@ -661,10 +666,11 @@ def _up_to_multiple(
 
 
 def _multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth: Polynomial) -> _Multiple | None:
-    """claimed - factor*derived with the fewest products of velocities (powers of the variable), then terms.
+    """claimed - factor*derived in the fewest products of velocities (powers of the variable).
 
     The candidates are 1 and the quotients of coefficients: of the coordinate's own acceleration (of the highest power)
-    first, then of the others.  None where 1 does best, or everything is too long.
+    first, then of the others; the first of the best is taken.  For an equation the quotient of the whole is another, if
+    there is one without accelerations.  None where 1 does best, or everything is too long.
     """
     ring = derived.ring
     if claimed.is_zero() or truth.is_zero():
@@ -672,20 +678,23 @@ def _multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth: Polyno
     above, below = _over_common_denominator(ring, claimed, truth)
     first, second = dict(_places(ring, claim, above)), dict(_places(ring, claim, below))
     keys = sorted(first.keys() & second.keys(), key=partial(_importance, ring, claim))
-    best: tuple[tuple[int, int], tuple[Polynomial, Polynomial], Polynomial] | None = None
-    for top, bottom in [(ring.one, ring.one), *((first[key], second[key]) for key in keys[:MOST_FACTORS])]:
+    best: tuple[int, tuple[Polynomial, Polynomial], Polynomial] | None = None
+    candidates = [(ring.one, ring.one), *((first[key], second[key]) for key in keys[:MOST_FACTORS])]
+    if not claim.variable:
+        candidates.append((above, below))
+    for top, bottom in candidates:
         try:
             common = ring.common_factor(top, bottom)
             shorter = ring.quotient(top, common), ring.quotient(bottom, common)
-            if shorter[0] is None or shorter[1] is None:
+            if any(x is None or _accelerations(ring, x) for x in shorter):
                 continue
             left = ring.reduce(ring.times(above, shorter[1]) - ring.times(below, shorter[0]))
         except NoClosedForm:
             continue
-        cost = (0, 0) if ring.is_zero(left) else (len(list(_places(ring, claim, left))), len(left))
+        cost = 0 if ring.is_zero(left) else len(list(_places(ring, claim, left)))
         if best is None or cost < best[0]:
             best = (cost, (shorter[0], shorter[1]), left)
-        if cost == (0, 0):
+        if not cost:
             break
     if best is None or best[1][0] == best[1][1]:
         return None
@@ -695,9 +704,12 @@ def _multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth: Polyno
         difference = ring.reduce(claimed - ring.times(truth, factor))
     except (NoClosedForm, SingularPoint):
         return None
-    return _Multiple(
-        Formula(ring, factor), difference, left, _decided(derived, left), _exceptions(derived, top, bottom)
-    )
+    return _Multiple(Formula(ring, factor), difference, _decided(derived, left), _exceptions(derived, top, bottom))
+
+
+def _accelerations(ring: Ring, x: Polynomial) -> bool:
+    degrees = x.degrees()
+    return any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind == "acceleration")
 
 
 def _over_common_denominator(ring: Ring, first: Polynomial, second: Polynomial) -> tuple[Polynomial, Polynomial]:
@@ -898,7 +910,7 @@ def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynom
     scene, ring, equations = derived.scene, derived.ring, derived.equations
     result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, derived.system.velocities):
-        return replace(result, outcome=FAILS, remark="it does not hold any velocity")
+        return replace(result, outcome=FAILS, remark="it contains no velocity")
     outcome = EXACT
     for outcome in (EXACT, RELATIONS):
         if outcome == RELATIONS:
@@ -913,10 +925,17 @@ def _first_integral(derived: Derived, claim: Claim, about: str, claimed: Polynom
             found, where = _conserved_where(derived, equations, claimed)
             return replace(result, outcome=outcome if found == EXACT else NUMERICAL, where=where)
     rate = total_rate(scene, claimed)
-    parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
-    parts += [x.polynomial for x in equations.forcing]
-    example = against_constancy(derived.system, ring, derived.programs, rate, _names_in(derived, parts))
     difference = _rate_of(derived, equations, claimed)
+    if difference is None:
+        parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
+        parts += [x.polynomial for x in equations.forcing]
+    else:
+        parts = [difference.polynomial]
+    used = _names_in(derived, parts)
+    timely = ["t", *(item.name for item in derived.system.prescribed)]
+    if any(ring.dependencies(x, timely) for x in parts):
+        used.add("t")
+    example = against_constancy(derived.system, ring, derived.programs, rate, used)
     remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
     return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
 
@@ -964,7 +983,8 @@ def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
     for x in values:
         found |= set(ring.dependencies(x, wanted))
         found |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
-    made_of = {item.name: names(item.value) for item in (*system.relations, *system.notation)}
+    made_of = {item.name: names(item.value) for item in system.relations}
+    made_of |= {item.name: names(item.value) for item in system.notation}
     pending = list(found)
     while pending:
         new = made_of.get(pending.pop(), set()) - found
@@ -997,7 +1017,7 @@ def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomi
 
 
 def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """Looks for the inequality among the conditions of problem 6, factors of known sign apart; then for what refutes it.
+    """Looks for the inequality among those of problem 6, factors of known sign apart, then for a counterexample.
 
     Sufficient conditions of one place may be refuted together even where each is one of those of problem 6.
     """
@@ -1023,38 +1043,55 @@ def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
                 for what, found, relation in known:
                     if same(wanted, found, relation == "!="):
                         equal = strict == (relation in ("<", ">", "!="))
-                        return replace(result, remark=what + ("" if equal else ", but for the case of equality"))
+                        note = what + ("" if equal else ", but for the case of equality")
+                        if claim.role == SUFFICIENT:
+                            note += "; no parameters that were tried refute that those of its place are sufficient"
+                        return replace(result, remark=note)
             kind = "" if claim.relation == "!=" else derived.signs.condition(wanted).kind
         except NoClosedForm:
             if own:
                 raise
             break
-        if kind == "always":
+        if kind == "always" and claim.role != SUFFICIENT:
             return replace(result, remark="it follows from the declared signs and assumptions")
         if kind == "never":
             return replace(result, outcome=FAILS, remark="with the declared signs and assumptions it never holds")
     refuted = None if claim.role == SUFFICIENT else _contradicted(derived, claim, result)
     if refuted is not None:
         return refuted
-    remark = "it is not one of the conditions of problem 6 as they stand there, and no parameters refute it"
+    remark = "it is not one of the conditions of problem 6 as they stand there; no parameters that were tried refute it"
     return replace(result, outcome=UNDECIDED, remark=remark)
 
 
 def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult | None:
     """The claim refuted by parameters: stable without it, or (where it is to be sufficient) unstable with it."""
-    system, sufficient = derived.system, claim.role == SUFFICIENT
+    sufficient = claim.role == SUFFICIENT
     together = [claim]
     if sufficient and claim.place:
-        alike = (
-            one for one in system.claims if (one.kind, one.role, one.place) == (claim.kind, claim.role, claim.place)
-        )
-        together = list(alike)
-    energy = derived.energy
-    conserved = conserves_energy(derived.parameters_scene, energy)
-    verdict_at = ExactVerdicts(
-        derived.parameters_scene, conserved, energy.cyclic, derived.linearisation, derived.equilibrium, derived.signs
-    )
-    symbols = Symbols(system)
+        shared = (claim.kind, claim.role, claim.place)
+        together = [one for one in derived.system.claims if (one.kind, one.role, one.place) == shared]
+    trials = derived.trials
+    if len(together) > 1 and claim.place in trials.known:
+        found = trials.known[claim.place]
+    else:
+        found = _counterexample(derived, together, sufficient)
+        if len(together) > 1:
+            trials.known[claim.place] = found
+    if found is None:
+        return None
+    if sufficient:
+        subject = "it is" if len(together) == 1 else "the conditions of this place together are"
+        remark = f"{subject} not sufficient for stability"
+    else:
+        in_first = dict(found.shows)["the motion"] == GYROSCOPIC
+        remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
+    return replace(result, outcome=FAILS, remark=remark, counterexample=found)
+
+
+def _counterexample(derived: Derived, together: Sequence[Claim], sufficient: bool) -> Counterexample | None:
+    """Parameters that refute these conditions; None where none are found, or the formulas are too long."""
+    symbols = Symbols(derived.system)
+    environment = derived.parameters_scene.environment
 
     def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
         found = []
@@ -1063,29 +1100,14 @@ def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimR
             sides = [one.equals, one.right]
             lower = symbols.lowering(numbers, values, symbols.occurring(sides))
             left, right = (lower(symbols.opened(side)) for side in sides)
-            found.append((f"{text(one.equals)} - ({text(one.right)})", left - right, one.relation))
+            found.append((text(subtract(one.equals, one.right)), left - right, one.relation))
         return found
 
-    solved = {name: value.polynomial for name, value in derived.equilibrium.solved}
-    words = (UNSTABLE,) if sufficient else _LINEARLY_STABLE
-    mass_matrix = derived.linearisation.M
-    best = None
-    for example, verdict in against_condition(
-        system, derived.ring, mass_matrix, solved, verdict_at, claimed, sufficient, words
-    ):
-        if best is None or verdict.word in _STABLE:
-            best = example
-        if sufficient or verdict.word in _STABLE:
-            break
-    if best is None:
+    try:
+        claimed(derived.ring, environment)  # its budgets end what would be too long as numbers, too
+        return derived.trials.counterexample(claimed, sufficient, (UNSTABLE,) if sufficient else _LINEARLY_STABLE)
+    except NoClosedForm:
         return None
-    if sufficient:
-        alone = "it is" if len(together) == 1 else "the conditions of this place together are"
-        remark = f"{alone} not sufficient for stability"
-    else:
-        in_first = dict(best.shows)["the motion"] == GYROSCOPIC
-        remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
-    return replace(result, outcome=FAILS, remark=remark, counterexample=best)
 
 
 def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str, Polynomial, str]]:

@@ -31,14 +31,13 @@ class ClaimLine:
 def claim_line(result: ClaimResult) -> ClaimLine:
     """The outcome in words; ``word`` is held, refuted or undecided."""
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
-    outcome = result.outcome
-    if result.outcome == SCALED:
-        outcome = f"differs by the factor {_long(result.factor)}" if result.factor is not None else outcome
-    elif result.outcome == FACTOR and result.factor is not None:
+    outcome = result.outcome + (f" {result.where}" if result.where else "")
+    if result.factor is not None and result.outcome == SCALED:
+        outcome = f"differs by the factor {_long(result.factor)}"
+    elif result.factor is not None and result.outcome == FACTOR:
         outcome += f": claimed = {_long(result.factor)} times derived"
     elif result.factor is not None:
         outcome += f" (compared with {_long(result.factor)} times derived)"
-    outcome += f" {result.where}" if result.where else ""
     if result.value:
         claimed = result.claim.printed or text(result.claim.equals)
         outcome += f" ({result.value})" if result.holds else f": claimed {claimed}, derived {result.value}"

@@ -7,7 +7,6 @@ Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,29 +16,37 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.system import System
+from mbsym.numerics.between import between
 from mbsym.numerics.simulate import Trajectory
-from mbsym.report.drawing import BLUE, GREY, RED, saved, styled
+from mbsym.report.drawing import BLUE, GREY, RED, saved, styled, thinned
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
 HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
 
-#: Curves over time are thinned to their extremes in so many intervals; planes with more points become pixels.
-INTERVALS, MOST_POINTS = 2_000, 20_000
+#: Planes with more points become pixels.
+MOST_POINTS = 20_000
 
 #: Rounding of one double, and where the drift's axis ends: what is exactly zero is drawn there.
 ROUNDING, FLOOR = 2.0**-53, 1e-18
 
+#: A curve in a plane turns by no more than this from one drawn point to the next, unless they are so close (as parts
+#: of the picture's size); an interval is cut into so many parts at most.
+CORNER, CLOSE, MOST_PIECES = np.radians(4), 2e-3, 24
 
-def figures(found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True) -> dict[str, bytes]:
+
+def figures(
+    found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True, rates: Any = None
+) -> dict[str, bytes]:
     """Every figure in every format, by file name.
 
-    ``note`` is written under each title (a trajectory that is not whole must say so); ``conserved`` says whether the
+    ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
+    samples, without them as lines from one to the next.  ``note`` is written under each title (a trajectory that is not whole must say so); ``conserved`` says whether the
     energy ought to be constant, so that what it changes by is an error.  A single state gives no figures.
     """
     if len(found.times) < 2:
         return {}
     with styled():
-        pages = [*_histories(found, note), *_planes(found, note), ("drift", _drift(found, note, conserved))]
+        pages = [*_histories(found, note), *_planes(found, note, rates), ("drift", _drift(found, note, conserved))]
         return {name: content for stem, figure in pages for name, content in saved(stem, figure, formats).items()}
 
 
@@ -85,7 +92,7 @@ def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
         axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
         for row, name in zip(axes, names, strict=True):
             for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
-                axis.plot(*_thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
+                axis.plot(*thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
                 _label(axis, label)
                 axis.yaxis.set_label_coords(-0.14, 0.5)
         for axis in axes[-1]:
@@ -109,20 +116,7 @@ def _span(axis: Any, times: Any) -> None:
         axis.set_xlim(0, times[-1])
 
 
-def _thinned(times: Any, values: Any) -> tuple[Any, Any]:
-    """The least and the greatest value of each interval, in their order: no oscillation is hidden, none is invented."""
-    values = np.asarray(values, dtype=float)
-    if len(times) <= 2 * INTERVALS:
-        return times, values
-    edges = np.linspace(0, len(times), INTERVALS + 1).astype(int)
-    kept = {0, len(times) - 1}
-    for start, end in pairwise(edges):
-        kept |= {start + int(np.argmin(values[start:end])), start + int(np.argmax(values[start:end]))}
-    places = np.array(sorted(kept))
-    return times[places], values[places]
-
-
-def _planes(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[str, Figure]]:
     """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
     system = found.system
     positions, velocities = _labels(system)
@@ -139,15 +133,14 @@ def _planes(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
         for axis in axes[len(names) :]:
             axis.set_visible(False)
         for axis, name in zip(axes, names, strict=False):
-            q = np.asarray(found.states[place[name]], dtype=float)
-            v = np.asarray(found.states[place[name] + len(place)], dtype=float)
+            q, v = _curve(found, place[name], rates)
             label = positions[name]
             if turning.get(name) == 1 and np.ptp(q) > 3 * np.pi:
                 q, v = _wrapped(q, v)
                 label += r"  modulo $2\pi$"
                 axis.set_xlim(-np.pi, np.pi)
                 axis.set_xticks(
-                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi, [r"$-\pi$", r"$-\pi/2$", "0", r"$\pi/2$", r"$\pi$"]
+                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi, ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"]
                 )
             axis.plot(q, v, color=BLUE, linewidth=0.9, rasterized=len(q) > MOST_POINTS)
             axis.plot(q[:1], v[:1], "o", color=RED, markersize=4)
@@ -156,6 +149,22 @@ def _planes(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
             if "modulo" not in label:
                 axis.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10], min_n_ticks=3))
         yield file, figure
+
+
+def _curve(found: Trajectory, i: int, rates: Any) -> tuple[Any, Any]:
+    """q and q' of one coordinate, between the samples too where the curve turns."""
+    state = np.asarray(found.states[[i, i + len(found.states) // 2]], dtype=float)
+    size = np.ptp(state, axis=1)
+    if rates is None or len(found.times) > MOST_POINTS or not np.all(size > 0):
+        return state[0], state[1]
+    with np.errstate(all="ignore"):
+        direction = np.arctan2(rates[i] / size[1], state[1] / size[0])
+        turn = np.abs((np.diff(direction) + np.pi) % (2 * np.pi) - np.pi)
+        chord = np.hypot(*(np.diff(state, axis=1) / size[:, None]))
+        wanted = np.minimum(np.ceil(turn / CORNER), np.ceil(chord / CLOSE))
+    pieces = np.clip(np.nan_to_num(wanted, nan=1.0), 1, MOST_PIECES).astype(int)
+    _, (q, v) = between(found.times, state, rates[i : i + 1], pieces)
+    return q, v
 
 
 def _wrapped(q: Any, v: Any) -> tuple[Any, Any]:
@@ -171,7 +180,7 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     axis = figure.subplots(1, 1)
     axis.set_xlabel("$t$")
     if not conserved:
-        axis.plot(*_thinned(found.times, found.energy), color=BLUE)
+        axis.plot(*thinned(found.times, found.energy), color=BLUE)
         axis.set_title("energy")
         _label(axis, "$h$")
         _span(axis, found.times)
@@ -179,7 +188,7 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     drift = np.maximum(np.abs(np.asarray(found.drift, dtype=float)), FLOOR)
     axis.set_yscale("log")
     # At the start it is zero by definition.
-    axis.plot(*_thinned(found.times[1:], drift[1:]), color=BLUE, linewidth=0.9)
+    axis.plot(*thinned(found.times[1:], drift[1:]), color=BLUE, linewidth=0.9)
     axis.set_ylim(FLOOR, max(float(np.max(drift)), ROUNDING) * 5)
     axis.axhline(ROUNDING, color=GREY, linewidth=0.8, linestyle="--")
     axis.annotate(

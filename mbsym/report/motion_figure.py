@@ -1,7 +1,8 @@
 """The moving system: snapshots of its bodies as lines, darker as time passes, with the paths of the mass centres.
 
 A planar system is drawn in its plane, any other from an elevated point with the direction away from gravity upwards; a
-system whose bodies have no extent as the paths of the tips of its axes.  ``mass-centres`` shows the places over time.
+system whose bodies have no extent as the paths of the tips of its axes, which a body that has no line of its own shows
+besides.  ``mass-centres`` shows the places over time.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.numerics.positions import JOINT, Positions
-from mbsym.report.drawing import pictures
+from mbsym.numerics.positions import AXIS, JOINT, Positions
+from mbsym.report.drawing import pictures, thinned
 
 #: Early and late; the eye reads darker as later, in print too.
 _TIME = LinearSegmentedColormap.from_list("time", ["#c3d3e8", "#5b87bd", "#173a6b"])
@@ -93,11 +94,8 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     flat = view(found.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
     if found.tips:
-        middle = flat[[i for i, p in enumerate(found.points) if p.kind == JOINT]]
-        reach = np.max(np.abs(flat[list(found.tips)] - middle[:, :, :1].mean(axis=0)))
-        still = not found.moving(i for i, p in enumerate(found.points) if p.kind == JOINT)
-        if still:  # the whole sphere on which the tips move
-            low, high = np.array([-1.0, -1.0]) * max(reach, 1.0), np.array([1.0, 1.0]) * max(reach, 1.0)
+        for centre, radius in _spheres(found, flat):  # the whole sphere on which the tips move
+            low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
     spread = np.maximum(high - low, 0.25 * float(np.max(high - low)))
     centre = (low + high) / 2
     low, high = centre - 0.55 * spread, centre + 0.55 * spread
@@ -112,7 +110,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     time = Normalize(float(found.times[0]), float(found.times[-1]))
     if found.tips:
         _tips(axis, found, view, flat, shown, time)
-    else:
+    if found.extended or not found.tips:
         _paths(axis, found, view, flat)
         _bodies(axis, found, flat, shown, time)
     _scale(axis, found, view)
@@ -147,7 +145,7 @@ def _title(found: Positions) -> str:
 def _caption(found: Positions, step: float, end: float) -> list[str]:
     last = float(found.times[-1])
     said = f"t = 0 to {_rounded(last)}" + ("" if last == end else f" (of {_rounded(end)})")
-    if not found.tips:
+    if found.extended or not found.tips:
         said += f", a snapshot every {_rounded(step)}"
     return [said] if found.frame == "0" else [said, f"seen in the frame '{found.frame}'"]
 
@@ -182,7 +180,8 @@ def _paths(axis: Any, found: Positions, view: _View, flat: Any) -> None:
     for place, (body, i) in enumerate(found.centres.items()):
         if i in moving:
             colour = _PATHS[place % len(_PATHS)]
-            axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=body, zorder=2)
+            label = f"mass centre of {body}" if found.tips else body
+            axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=label, zorder=2)
 
 
 def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
@@ -191,9 +190,11 @@ def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: 
         colour = _TIME(time(found.times[k]))
         zorder = 3 + k / len(found.times)
         for pairs, width, dash in ((found.links, 2.0 * thin, "solid"), (found.slides, 1.2, (0, (3, 1.5)))):
-            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs]
+            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in found.tips]
             axis.add_collection(LineCollection(ends, colors=[colour], linewidths=width, linestyles=dash, zorder=zorder))
-        joints = [i for i, point in enumerate(found.points) if i not in found.centres.values()]
+        joints = [
+            i for i, point in enumerate(found.points) if i not in found.centres.values() and point.kind != AXIS
+        ]
         axis.plot(*flat[joints, :, k].T, "o", color=colour, markersize=3.2, markerfacecolor="white", zorder=zorder)
         for place, i in enumerate(found.centres.values()):
             edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
@@ -201,24 +202,36 @@ def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: 
             axis.plot(*flat[i, :, k], "o", color=colour, markeredgecolor=edge, markersize=size, zorder=zorder + 0.01)
 
 
+def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:
+    """(centre on the paper, radius) of the spheres on which the tips of axes move, where these do not move themselves."""
+    joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
+    still = set(joints.values()) - set(found.moving(joints.values()))
+    spheres = []
+    for body, joint in joints.items():
+        own = [i for i in found.tips if found.points[i].body == body]
+        if own and joint in still:
+            radius = float(np.linalg.norm(found.places[own[0], :, 0] - found.places[joint, :, 0]))
+            spheres.append((flat[joint, :, 0], radius))
+    return spheres
+
+
 def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[int], time: Normalize) -> None:
     """Paths of the tips of the axes, dimmed behind the sphere; the axes themselves at the start and at the end."""
     joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
+    around = np.linspace(0, 2 * np.pi, 361)
+    for centre, radius in _spheres(found, flat):
+        circle = centre[:, None] + radius * np.array([np.cos(around), np.sin(around)])
+        axis.plot(*circle, color="#bbbbbb", linewidth=0.8, zorder=1)
+    first = len(found.centres) if found.extended else 0  # colours that no path of a mass centre has
     for body, joint in joints.items():
         own = [i for i in found.tips if found.points[i].body == body]
-        if not own:
-            continue
-        if joint not in found.moving([joint]):
-            around = np.linspace(0, 2 * np.pi, 361)
-            centre = flat[joint, :, 0]
-            axis.plot(centre[0] + np.cos(around), centre[1] + np.sin(around), color="#bbbbbb", linewidth=0.8, zorder=1)
         for i in own:
             number = found.points[i].axis
-            colour = _PATHS[(number - 1) % len(_PATHS)]
+            colour = _PATHS[(first + number - 1) % len(_PATHS)]
             behind = view.depth(found.places[i] - found.places[joint]) < 0
             front = np.where(behind, np.nan, flat[i])
             back = np.where(behind, flat[i], np.nan)
-            whose = f" of {body}" if len(joints) > 1 else " of the body"
+            whose = f" of {body}" if found.extended or len(joints) > 1 else " of the body"
             axis.plot(*front, color=colour, linewidth=1.1, label=f"axis {number}{whose}", zorder=3)
             axis.plot(*back, color=colour, linewidth=0.8, alpha=0.35, zorder=2)
             for k in (shown[0], shown[-1]):
@@ -259,7 +272,7 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
             fontsize=9,
             color="#444444",
         )
-    if found.tips:
+    if found.tips and not found.extended:
         return
     bar = 10.0 ** floor(log10(0.3 * float(high[0] - low[0])))
     bar = max(x * bar for x in (1, 2, 5) if x * bar <= 0.3 * float(high[0] - low[0]))
@@ -288,8 +301,7 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, not
     for axis, (body, i) in zip(grid, rows, strict=True):
         for number in drawn:
             style = ("-", (0, (5, 2)), (0, (1.5, 1.5)))[number - 1]
-            values = found.places[i, number - 1]
-            axis.plot(found.times, values, color=_PATHS[number - 1], linestyle=style, label=f"axis {number}")
+            axis.plot(*thinned(found.times, found.places[i, number - 1]), color=_PATHS[number - 1], linestyle=style, label=f"axis {number}")
         axis.set_title(body, loc="left", fontsize=10, parse_math=False)
         axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)

@@ -5,9 +5,9 @@ becomes a placed tree (one reader for each spelling), the tree becomes a system 
 """
 
 from mbsym.source.document import load, read
-from mbsym.source.render import render
+from mbsym.source.render import render, render_option
 from mbsym.source.schema import json_schema
 from mbsym.source.text_writer import to_text
 from mbsym.source.yaml_writer import to_yaml
 
-__all__ = ["json_schema", "load", "read", "render", "to_text", "to_yaml"]
+__all__ = ["json_schema", "load", "read", "render", "render_option", "to_text", "to_yaml"]

@@ -36,7 +36,7 @@ from mbsym.model.admissibility import (
     surely_negative,
     symbolic_violation,
 )
-from mbsym.model.system import Body, System, velocity_name
+from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import vanishes
 from mbsym.source.reading import Reading
@@ -177,7 +177,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
             return
     tensor = _numeric_tensor(body, values)
     alone = impossible_alone(body.inertia.tensor, signs, values)
-    if alone is not None:
+    if alone is not None and not _is_enough(system, body, alone):
         message = f"no body has this inertia: 0 + 0 is less than the moment of inertia about axis {alone + 1}"
         hint = _rod_hint(text(body.inertia.tensor[alone][alone]), alone)
         reading.complaints.warning("single-moment", message, span, hint)
@@ -193,6 +193,30 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
             own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
             advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
             reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, advice)
+
+
+def _is_enough(system: System, body: Body, index: int) -> bool:
+    """Whether the moment about one axis is all that matters: the body never turns about any other direction.
+
+    From the body up to the inertial frame, turns about this axis keep its direction; a fixed turn about another one
+    loses it, and beyond that nothing may turn.  A Newtonian field acts on the other moments, too.
+    """
+    if any(isinstance(load, NewtonianGravity) for load in system.loads):
+        return False
+    moving = {*system.coordinates, *(one.name for one in system.prescribed)}
+    bodies = {one.name: one for one in system.bodies}
+    kept, part, passed = True, body, 0
+    while passed <= len(bodies):
+        for axis, angle in reversed(list(part.rotation.turns())):
+            if axis == index + 1 and kept:
+                continue
+            if names(angle) & moving:
+                return False
+            kept = False
+        if part.attached_to not in bodies:
+            return True
+        part, passed = bodies[part.attached_to], passed + 1
+    return False
 
 
 def _rod_hint(moment: str, axis: int) -> str:

@@ -26,7 +26,7 @@ from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
 from mbsym.source.placed import Mapping, Node, Scalar
 from mbsym.source.reading import Fields, Reading
-from mbsym.source.scope import NUMBER, Allowed, did_you_mean
+from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
 from mbsym.source.settings import read_comparisons
 
 _CONSTANTS = ("parameter", "notation", "abbreviation")
@@ -70,11 +70,31 @@ def _claims(item: Node, bodies: list[str], coordinates: tuple[str, ...], reading
     fields = reading.fields(item, "a claim", CLAIM, hint)
     node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
     word = None if node is None else reading.word(node, "a claim", _KINDS)
+    if word is None and isinstance(node, Scalar):
+        word = closest(" ".join(node.text.lower().split()), _KINDS)  # as it was meant: what else is wrong with it?
     if word is None:
+        _check_names(fields, reading)
         return []
     kind = _KINDS[word]
     one = _Reader(kind, CLAIMS[kind], fields, bodies, coordinates, reading)
     return one.conditions() if one.kind.inequality else [one.single()]
+
+
+def _check_names(fields: Fields, reading: Reading) -> None:
+    """Of a claim of unknown kind: complain about names that no claim could hold."""
+    scope = reading.scope
+    given = fields.get("variable")
+    variable = given.text if isinstance(given, Scalar) and given.text not in scope.kinds else ""
+    if variable:
+        scope.kinds[variable] = "variable"
+    allowed = Allowed("a claim", (*_PLACES, "acceleration", "variable"))
+    for key in ("equals", "at"):
+        fields.expression(key, allowed)
+    condition = fields.get("that")
+    if isinstance(condition, Scalar) and condition.text.strip():
+        read_comparisons(condition, reading, allowed)
+    if variable:
+        del scope.kinds[variable]
 
 
 @dataclass(slots=True)

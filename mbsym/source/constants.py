@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -48,11 +49,15 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         return Parameter(name, span=span)
     if scalar.text.lower() in SIGNS:
         return Parameter(name, scalar.text.lower(), span=span)
-    value = parse_expression(scalar.text, Complaints(), scalar.place)
+    refused = Complaints()
+    value = parse_expression(scalar.text, refused, scalar.place, named=False)
     number = rational(value)
     if number is None:
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
-        hint = close or f"write a number or one of: {', '.join(SIGNS)}"
+        unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)
+        if unit is not None and "*pi" in unit:  # which is a number, but not of those that stand alone
+            unit = re.sub("write (.*?)(?: or .*)?$", r"write {value: \1}", unit)
+        hint = close or unit or f"write a number or one of: {', '.join(SIGNS)}"
         message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)

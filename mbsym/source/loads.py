@@ -33,7 +33,32 @@ from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import ALIASES, LOADS, POINT
 from mbsym.source.placed import Entry, Mapping, Node, Sequence
 from mbsym.source.reading import MAX_SHOWN, ZERO_VECTOR, Fields, Reading
-from mbsym.source.scope import DISSIPATION, FORCE, POTENTIAL, Allowed, did_you_mean
+from mbsym.source.scope import DISSIPATION, FORCE, POTENTIAL, Allowed, closest
+
+#: A kind of load that resembles a known one as much (1: equal) is a slip of the pen.
+_MISSPELT = 0.75
+
+#: Other words for loads, and the kind that is meant.
+_MEANT = {
+    word: meant
+    for meant, words in {
+        "'damper'": "friction, viscous friction, dashpot, damping, viscous damping, viscous damper, linear damper, "
+        "torsional damper, rotational damper, shock absorber, drag",
+        "'spring'": "elastic, elastic force, elasticity, torsion spring, torsional spring, rotational spring, "
+        "linear spring, stiffness",
+        "'rayleigh'": "dissipation, dissipation function, dissipative function, rayleigh function, "
+        "rayleigh dissipation function",
+        "'uniform gravity' or 'newtonian gravity'": "gravity, gravitation, weight, gravitational force, gravity force",
+        "'uniform gravity'": "constant gravity, homogeneous gravity, uniform gravitation, earth gravity",
+        "'newtonian gravity'": "central gravity, gravity gradient, gravity-gradient, newtonian gravitation, "
+        "newtonian field, central field, point gravity",
+        "'torque'": "moment, couple, motor, actuator, control torque, moment of force",
+        "'force'": "point force, applied force, external force, follower force, thrust, load",
+        "'potential'": "potential energy, potential function, energy",
+        "'generalized force'": "generalized, control, control force, nonconservative force",
+    }.items()
+    for word in words.split(", ")
+}
 
 
 @dataclass(slots=True)
@@ -88,9 +113,14 @@ def _read_load(item: Node, bodies: list[str], reading: Reading) -> Load | None:
     entry: Entry = item.entries[0]
     kind = ALIASES.get(entry.key.text, entry.key.text)
     if kind not in LOADS:
-        hint = did_you_mean(entry.key.text, LOADS) or f"the kinds are: {', '.join(LOADS)}"
+        misspelt = closest(kind, LOADS, _MISSPELT)
+        other = _MEANT.get(" ".join(kind.lower().split()))
+        kinds = f"kinds of load are: {', '.join(LOADS)}"
+        hint = f"did you mean '{misspelt}'?" if misspelt else f"did you mean {other}? The {kinds}" if other else f"the {kinds}"
         reading.error("unknown-load", f"unknown kind of load {ascii_safe(entry.key.text)}", entry.key.span, hint)
-        return None
+        if misspelt is None:
+            return None
+        kind = misspelt  # its data are read as if it were, for what else may be wrong with them
     return _READERS[kind](_Load(kind, entry.key.span, entry.value, bodies, reading))
 
 

@@ -25,6 +25,17 @@ def render(complaint: Complaint, text: str, filename: str) -> str:
     return "\n".join(parts)
 
 
+def render_option(complaint: Complaint, text: str, option: str) -> str:
+    """One complaint about a value on the command line, which stands in no file; ``text`` is that line."""
+    parts = [f"{_escaped(option)}: {complaint.severity}[{complaint.code}]: {_escaped(complaint.message)}"]
+    if complaint.span is not None:
+        before, piece, after = _window(normalised(text).split("\n")[0], complaint.span)
+        parts += [f"  | {before}{piece}{after}".rstrip(), f"  | {' ' * len(before)}{'^' * max(1, len(piece))}"]
+    if complaint.hint:
+        parts.append(f"  hint: {_escaped(complaint.hint)}")
+    return "\n".join(parts)
+
+
 def _underlined(span: Span, lines: list[str]) -> list[str]:
     if not 1 <= span.line <= len(lines):
         return []

@@ -152,9 +152,17 @@ class Scope:
             return f"it cannot be a name: {reason[0]}" + (f"; {reason[1]}" if reason[1] else "")
         if not allowed.kinds:
             return "a number is wanted here"
+        if allowed.kinds == ("coordinate",):
+            return listed("the coordinates are", self.of_kind("coordinate"))
         if "abbreviation" in allowed.kinds:
             return "declare it under 'abbreviations' or 'parameters'"
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
+
+
+def listed(what: str, words: Iterable[str], most: int = 20) -> str | None:
+    """``what: a, b, c``, cut where there are too many; None where there are none."""
+    known = list(words)
+    return f"{what}: {', '.join(known[:most])}{', ...' if len(known) > most else ''}" if known else None
 
 
 def _enumerated(words: list[str]) -> str:
@@ -169,11 +177,11 @@ def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
     return None
 
 
-def closest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that a word resembles, if there is one."""
+def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The known word that a word resembles (1: is equal to) more than ``cutoff``, if there is one."""
     candidates = list(known)[:200]
     same = [one for one in candidates if one.lower() == word.lower()]
-    close = same or get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=0.6)
+    close = same or get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=cutoff)
     return close[0] if close else None
 
 

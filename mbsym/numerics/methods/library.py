@@ -9,7 +9,6 @@ import warnings
 from typing import Any
 
 import numpy as np
-from scipy import integrate
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
@@ -98,12 +97,19 @@ class LibraryRun:
 
 
 class Library:
-    """A method of ``scipy.integrate``."""
+    """A method of ``scipy.integrate``, by the name of its class there."""
 
-    def __init__(self, name: str, solver: Any, order: int | None, implicit: bool = False) -> None:
-        self.solver = solver
-        title = f"SciPy's {solver.__name__}" + (", for stiff systems" if implicit else "")
+    def __init__(self, name: str, solver: str, order: int | None, implicit: bool = False) -> None:
+        self._solver = solver
+        title = f"SciPy's {solver}" + (", for stiff systems" if implicit else "")
         self.traits = Traits(name, title, order, fixed=False, implicit=implicit)
+
+    @property
+    def solver(self) -> Any:
+        """The class; importing SciPy takes half a second, which only those who use it shall pay."""
+        from scipy import integrate
+
+        return getattr(integrate, self._solver)
 
     def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> LibraryRun:
         """A run in float64.  Raises Unusable for another arithmetic."""
@@ -113,9 +119,9 @@ class Library:
 
 
 METHODS = (
-    Library("scipy-rk45", integrate.RK45, 5),
-    Library("scipy-dop853", integrate.DOP853, 8),
-    Library("lsoda", integrate.LSODA, None, implicit=True),
-    Library("radau", integrate.Radau, 5, implicit=True),
-    Library("bdf", integrate.BDF, None, implicit=True),
+    Library("scipy-rk45", "RK45", 5),
+    Library("scipy-dop853", "DOP853", 8),
+    Library("lsoda", "LSODA", None, implicit=True),
+    Library("radau", "Radau", 5, implicit=True),
+    Library("bdf", "BDF", None, implicit=True),
 )

@@ -332,10 +332,10 @@ def _driver(dynamics: Dynamics, method: Symplectic, scalar: str) -> Library:
     return once(dynamics, ("midpoint", method.name, scalar), make)
 
 
-def without_potential(dynamics: Dynamics) -> tuple[str, ...]:
+def without_potential(system: System) -> tuple[str, ...]:
     """The loads that have no force function, in words."""
     found = []
-    for load in dynamics.system.loads:
+    for load in system.loads:
         if KINDS[type(load)].force_function is None:
             words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(load).__name__).lower()
             found.append(words)
@@ -365,7 +365,7 @@ class Symplectic:
 
     def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> MidpointRun:
         """A run in (q, p).  Raises Unusable where a load has no force function."""
-        loads = without_potential(dynamics)
+        loads = without_potential(dynamics.system)
         if loads:
             raise Unusable(
                 f"{self.name} is for conservative systems; these loads have no potential: {', '.join(loads)}"

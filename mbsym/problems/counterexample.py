@@ -1,0 +1,330 @@
+"""Numbers at which a claim fails: found at random, then decided exactly or by rigorous balls.
+
+Parameters are rational numbers of the declared signs that keep the relations and the assumptions, and with which the
+masses and inertias are those of bodies.  For a first integral
+
+    dI/dt = sum (dI/dq q' + dI/dq' q'') + (dI/dt at fixed q, q'),    q'' = M^-1 f,
+
+is enclosed at a state, in a ball that does not contain zero.  A condition is compared with the verdict of problem 6 at
+the same parameters, which is exact.  The search is the same on every run.
+
+Source: admissible inertias as in ``mbsym.model.admissibility``.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from itertools import count
+from typing import Any
+
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.base import Algebra, Lowering, NotRational, SingularPoint
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import is_number, names
+from mbsym.formulas.formula import Matrix
+from mbsym.mechanics.oracle import State
+from mbsym.mechanics.programs import Programs, accelerated
+from mbsym.model.admissibility import NumberTensor, inertia_violation, number_of, offset_violation
+from mbsym.model.system import Body, System, rational, velocity_name
+from mbsym.problems.stability_theory import Verdict
+
+#: Random numbers are the same on every run.
+SEED = 1788
+#: Parameters, and states, that are tried.
+SAMPLES, STATES = 400, 40
+#: Verdicts of problem 6 that are asked for, at those parameters where they could refute a condition.
+VERDICTS = 100
+#: What the comparison of one inequality with numbers counts for, in the measure of the ring's work.
+WORK_OF_A_TRIAL = 500
+#: Working precision of balls, in bits; a value is shown to so many digits.
+PRECISION, DIGITS_SHOWN = 256, 12
+
+
+@dataclass(frozen=True)
+class Counterexample:
+    """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value)."""
+
+    at: tuple[tuple[str, str], ...]
+    shows: tuple[tuple[str, str], ...]
+
+
+# --- parameters ---
+
+
+def parameter_samples(system: System, solved: Sequence[str] = ()) -> Iterator[dict[str, Fraction]]:
+    """Values for the parameters that are free: those that were given first, then numbers near them, and any numbers.
+
+    Parameters on the left of a relation, and ``solved`` ones, are left out: they follow.
+    """
+    source = random.Random(SEED)
+    dependent = {relation.name for relation in system.relations} | set(solved)
+    free = [parameter for parameter in system.parameters if parameter.name not in dependent]
+    for number in range(SAMPLES):
+        values = {}
+        for parameter in free:
+            given = rational(parameter.value)
+            value = Fraction(source.randint(1, 12), source.choice((1, 1, 2, 3, 4)))
+            if given is not None and (number == 0 or (given and number % 2 == 0)):
+                values[parameter.name] = given if number == 0 else given * Fraction(source.randint(10, 40), 20)
+            else:
+                flipped = parameter.sign in ("negative", "nonpositive")
+                either = parameter.sign not in ("positive", "nonnegative") and source.randrange(3) == 0
+                values[parameter.name] = -value if flipped or either else value
+        yield values
+
+
+def completed(
+    system: System,
+    numbers: Algebra,
+    free: Mapping[str, Fraction],
+    further: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None,
+) -> dict[str, Any]:
+    """Values of all parameters and of the description's own symbols, in ``numbers``; ``further`` are solved ones.
+
+    Raises SingularPoint where an assumption or a declared sign does not hold or no body has such an inertia,
+    NotRational where a relation gives an irrational number to an algebra of rational ones, and KeyError where a
+    number is missing (an exact one for pi, say).
+    """
+    values: dict[str, Any] = {"pi": arb.pi()} if isinstance(numbers, Balls) else {}
+    values |= {name: numbers.number(value) for name, value in free.items()}
+    _follow(system, numbers, values)
+    if further is not None:
+        values |= further(values)
+        _follow(system, numbers, values)
+    for parameter in system.parameters:
+        if not _has_sign(values[parameter.name], parameter.sign):
+            raise SingularPoint("a declared sign does not hold")
+    for symbol in system.notation:
+        values[symbol.name] = Lowering(numbers, values)(symbol.value)
+    lower = Lowering(numbers, values)
+    for one in system.assumptions:
+        if not holds(lower(one.left) - lower(one.right), one.relation):
+            raise SingularPoint("an assumption does not hold")
+    exact = {name: Fraction(int(x.p), int(x.q)) for name, x in values.items() if isinstance(x, fmpq)} | dict(free)
+    if not all(_is_body(body, exact) for body in system.bodies):
+        raise SingularPoint("no body has this inertia")
+    return values
+
+
+def _follow(system: System, numbers: Algebra, values: dict[str, Any]) -> None:
+    """Adds what the relations give, as far as what they need is there."""
+    waiting = [item for item in system.relations if item.name not in values]
+    while ready := [item for item in waiting if names(item.value) <= values.keys()]:
+        for item in ready:
+            values[item.name] = Lowering(numbers, values)(item.value)
+        waiting = [item for item in waiting if item.name not in values]
+
+
+def holds(gap: Any, relation: str) -> bool:
+    """Whether ``gap relation 0``; of a ball, whether this is certain."""
+    return bool({"<": gap < 0, "<=": gap <= 0, ">": gap > 0, ">=": gap >= 0, "!=": gap != 0}[relation])
+
+
+def _has_sign(value: Any, sign: str) -> bool:
+    relation = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}.get(sign)
+    return relation is None or holds(value, relation)
+
+
+def _is_body(body: Body, values: Mapping[str, Fraction]) -> bool:
+    """False where the numbers exclude it; tensors of which some moments were left out as 0 are not looked at."""
+    if body.inertia is None or any(is_number(body.inertia.tensor[k][k], 0) for k in range(3)):
+        return True
+    rows = [[number_of(entry, values) for entry in row] for row in body.inertia.tensor]
+    mass, *centre = (number_of(entry, values) for entry in (body.mass, *body.mass_centre))
+    if any(entry is None for row in rows for entry in row):
+        return True
+    tensor: NumberTensor = tuple(tuple(row) for row in rows)  # type: ignore[assignment]
+    if inertia_violation(tensor) is not None:
+        return False
+    if body.inertia.about != "joint" or mass is None or any(entry is None for entry in centre):
+        return True
+    return offset_violation(tensor, mass, (centre[0], centre[1], centre[2])) is None  # type: ignore[arg-type]
+
+
+# --- conditions ---
+
+
+@dataclass
+class Trial:
+    """Exact parameter ``values`` (notation included), and the verdict of problem 6 there once it is asked for."""
+
+    values: Mapping[str, Any]
+    verdict: Verdict | None = None
+
+
+class Trials:
+    """Parameters at which claimed conditions are tried: made once for all claims of a description.
+
+    At each the mass matrix of the first approximation is positive definite.  ``verdict_at`` gives the verdict of
+    problem 6 at exact parameters; ``solved`` are the parameters that follow from the conditions of problem 4.
+    ``known`` remembers what was found for conditions that are taken together, by their place.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        ring: Ring,
+        mass_matrix: Matrix,
+        solved: Mapping[str, Polynomial],
+        verdict_at: Callable[[Mapping[str, Fraction]], Verdict],
+    ) -> None:
+        self.system, self.ring, self.solved = system, ring, solved
+        self.numbers = Rationals({}, {})
+        self.known: dict[str, Counterexample | None] = {}
+        self._mass_matrix, self._verdict_at = mass_matrix, verdict_at
+        self._made: list[Trial] = []
+        self._coming = self._trials()
+
+    def __iter__(self) -> Iterator[Trial]:
+        for k in count():
+            if k == len(self._made):
+                more = next(self._coming, None)
+                if more is None:
+                    return
+                self._made.append(more)
+            yield self._made[k]
+
+    def verdict(self, trial: Trial) -> Verdict:
+        """The verdict of problem 6 at these parameters."""
+        if trial.verdict is None:
+            parameters = {name: trial.values[name] for name in self.system.parameter_names}
+            trial.verdict = self._verdict_at({name: Fraction(int(x.p), int(x.q)) for name, x in parameters.items()})
+        return trial.verdict
+
+    def counterexample(
+        self,
+        claimed: Callable[[Algebra, Mapping[str, Any]], Sequence[tuple[str, Any, str]]],
+        sufficient: bool,
+        words: Sequence[str],
+    ) -> Counterexample | None:
+        """Parameters at which the claim is contradicted and problem 6 finds one of ``words``, the first if possible.
+
+        ``claimed`` gives (text, left - right, relation) of every inequality.  A necessary condition is contradicted
+        where one of them fails, sufficient ones where all hold.
+        """
+        asked, best = 0, None
+        for trial in self:
+            if asked == VERDICTS:
+                break
+            try:
+                gaps = claimed(self.numbers, trial.values)
+            except (NotRational, SingularPoint, ZeroDivisionError):
+                continue
+            except KeyError:  # sines of constant angles and the like
+                break
+            self.ring.spend(WORK_OF_A_TRIAL * len(gaps))
+            if all(holds(gap, relation) for _, gap, relation in gaps) is not sufficient:
+                continue
+            asked += 1
+            verdict = self.verdict(trial)
+            if verdict.word not in words or (best is not None and verdict.word == words[-1]):
+                continue
+            word = verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+            at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
+            shows = tuple((text, str(gap)) for text, gap, _ in gaps)
+            best = Counterexample(at, (*shows, ("the motion", word)))
+            if verdict.word != words[-1] or len(words) == 1:
+                break
+        return best
+
+    def _trials(self) -> Iterator[Trial]:
+        numbers = self.numbers
+        for free in parameter_samples(self.system, tuple(self.solved)):
+            try:
+                values = completed(self.system, numbers, free, partial(_solved, self.ring, numbers, self.solved))
+                carry = Carrier(self.ring, numbers, values)
+                if _is_positive_definite([[carry(x) for x in row] for row in self._mass_matrix.polynomials]):
+                    yield Trial(values)
+            except (NotRational, SingularPoint, ZeroDivisionError):
+                continue
+            except KeyError:
+                return
+
+
+def _solved(
+    ring: Ring, numbers: Algebra, solved: Mapping[str, Polynomial], values: Mapping[str, Any]
+) -> dict[str, Any]:
+    carry = Carrier(ring, numbers, values)
+    return {name: carry(x) for name, x in solved.items()}
+
+
+def _is_positive_definite(rows: list[list[Any]]) -> bool:
+    """All leading minors positive, by elimination in exact numbers."""
+    rows = [list(row) for row in rows]
+    for k, pivot in enumerate(rows):
+        if not pivot[k] > 0:
+            return False
+        for row in rows[k + 1 :]:
+            ratio = row[k] / pivot[k]
+            for j in range(k, len(rows)):
+                row[j] -= ratio * pivot[j]
+    return True
+
+
+# --- states ---
+
+
+def rate_at_states(
+    system: System, ring: Ring, programs: Programs, rate: Polynomial, negative: Sequence[str] = ()
+) -> Iterator[tuple[dict[str, Fraction], Any]]:
+    """(numbers by name, dI/dt as a ball) at states of t = 0; ``rate`` is dI/dt with q'' as it stands.
+
+    Coordinates are positive but for those in ``negative`` (which may hold parameters of undeclared sign, too).
+    """
+    source = random.Random(SEED)
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        for free, _ in zip(parameter_samples(system), range(STATES), strict=False):
+            chosen = dict(free)
+            for name in system.coordinates:
+                chosen[name] = Fraction(source.randint(1, 6), 4)
+                chosen[velocity_name(name)] = Fraction(source.choice((-1, 1)) * source.randint(1, 6), 2)
+            chosen |= {name: -abs(chosen[name]) for name in negative if name in chosen}
+            try:
+                values = _state(system, chosen)
+                moving = accelerated(system, State(Balls(values), values), programs)
+                value = Carrier(ring, moving.numbers, moving.values)(rate)
+            except (NotRational, SingularPoint, ZeroDivisionError, KeyError):
+                continue
+            if value.is_finite():
+                yield chosen, value
+    finally:
+        ctx.prec = keep
+
+
+def _state(system: System, chosen: Mapping[str, Fraction]) -> dict[str, Any]:
+    """Balls for every name at t = 0; the prescribed quantities start where they were told to."""
+    exact = Balls({})
+    parameters = {name: value for name, value in chosen.items() if name in system.parameter_names}
+    values = completed(system, exact, parameters) | {"t": arb(0)}
+    values |= {name: exact.number(value) for name, value in chosen.items()}
+    for moved in system.prescribed:
+        values[moved.name] = arb(0) if moved.initial is None else Lowering(exact, values)(moved.initial)
+    return values
+
+
+def against_constancy(
+    system: System, ring: Ring, programs: Programs, rate: Polynomial, used: Container[str]
+) -> Counterexample | None:
+    """A state at which dI/dt is certainly not zero; only the numbers of ``used`` names are told."""
+    for chosen, value in rate_at_states(system, ring, programs, rate):
+        if not value.contains(0):
+            at = tuple((name, str(number)) for name, number in [*chosen.items(), ("t", 0)] if name in used)
+            return Counterexample(at, (("dI/dt", shown(value)),))
+    return None
+
+
+def shown(value: Any) -> str:
+    """A dozen digits, zero where nothing but rounding is left."""
+    if value.contains(0):
+        return "0"
+    written = str(value.mid().str(DIGITS_SHOWN, radius=False))
+    mantissa, mark, exponent = written.partition("e")
+    return (mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa) + mark + exponent

@@ -1,0 +1,347 @@
+"""Claims that do not hold: factors, what a difference is compared with, counterexamples, and signs under roots.
+
+Expectations are computed by hand, or at numbers by the plain formulas in the test.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import subprocess
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED, at_values
+from test_claims import PENDULUM, analysed, judged
+
+import mbsym
+from mbsym.problems.claims import (
+    DIFFERS,
+    EXACT,
+    FACTOR,
+    FAILS,
+    NUMERICAL,
+    RELATIONS,
+    SCALED,
+    UNDECIDED,
+    ClaimResult,
+)
+from mbsym.report.claims import claim_line
+from mbsym.report.latex_report import render as latex
+from mbsym.report.results_json import results
+from mbsym.source.text_writer import to_text
+from mbsym.source.yaml_writer import to_yaml
+from mbsym_cli.main import main
+
+#: T = m (r'^2 + r^2 phi'^2)/2 and U = mu m / |r|.
+KEPLER = """
+mbsym: 1
+name: Kepler
+parameters: {m: positive, mu: positive, s: real, n: negative}
+bodies:
+  - name: planet
+    attached to: 0
+    rotation: {axes: [3], angles: [phi]}
+    connection point: [r*cos(phi), r*sin(phi), 0]
+    coordinates: [r, phi]
+    mass: m
+loads:
+  - newtonian gravity: {constant: mu, centre: 0, about: planet, order: exact}
+"""
+EQUATION = "claim: equation of motion, of: theta, equals: "
+#: Two pendulums side by side: the conditions of stability are k1 > 0 and k2 > 0.
+SPRINGS = """
+mbsym: 1
+name: Two springs
+parameters: {m: positive, k1: real, k2: real}
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+  - {name: b, attached to: 0, connection point: [y, 0, 0], coordinates: [y], mass: m}
+loads:
+  - spring: {coordinate: x, stiffness: k1}
+  - spring: {coordinate: y, stiffness: k2}
+motion: {x: 0, y: 0}
+"""
+
+
+def shown(claim: str, text: str = PENDULUM) -> tuple[str, str, tuple[str, ...]]:
+    line = claim_line(judged(claim, text=text))
+    return line.word, line.outcome, line.lines
+
+
+# --- factors ---
+
+
+def test_a_wrong_factor_never_reads_as_holding() -> None:
+    """2 T for T, and the opposite direction cosine: errors; the terminal, results.json and the appendix agree."""
+    claims = (
+        "claim: kinetic energy, equals: Io*theta_dot**2",
+        "claim: direction cosine, of: bob, entry: [2, 1], equals: sin(theta)",
+        EQUATION + "theta_ddot + w2*sin(theta)",  # the control: here a factor is immaterial
+    )
+    analysis = analysed(*claims)
+    lines = [claim_line(result) for result in analysis.claims]
+    assert [line.outcome for line in lines] == [
+        "differs by the factor 2",
+        "differs by the factor -1",
+        "holds up to a factor: claimed = 1/(m*l**2 + J) times derived",
+    ]
+    assert [line.word for line in lines] == ["refuted", "refuted", "held"]
+    written = results(analysis, range(1, 8))["claims"]
+    assert [(one["word"], one["outcome"], one["factor"]) for one in written] == [
+        ("refuted", SCALED, "2"),
+        ("refuted", SCALED, "-1"),
+        ("held", FACTOR, "1/(m*l**2 + J)"),
+    ]
+    for one in written:
+        assert ("holds" in one["outcome"]) == (one["word"] == "held")
+    table = latex(analysis, range(1, 8))
+    assert r"\textbf{differs by the factor 2}" in table
+    assert table.count("holds up to a factor") == 1
+
+
+@pytest.mark.parametrize(
+    ("claim", "factor", "remark"),
+    [
+        (EQUATION + "(theta_ddot + w2*sin(theta))*cos(theta)", "cos(theta)/(m*l**2 + J)", "where cos(theta) is not 0"),
+        (EQUATION + "theta_dot*(theta_ddot + w2*sin(theta))", "theta_dot/(m*l**2 + J)", "where theta_dot is not 0"),
+        (EQUATION + "(m - l)*(Io*theta_ddot + m*g*l*sin(theta))", "m - l", "where m - l is not 0"),
+        (EQUATION + "-m*(Io*theta_ddot + m*g*l*sin(theta))", "-m", ""),
+    ],
+)
+def test_a_factor_that_may_vanish_is_told(claim: str, factor: str, remark: str) -> None:
+    result = judged(claim)
+    assert (result.outcome, str(result.factor), result.remark, result.holds) == (FACTOR, factor, remark, True)
+
+
+# --- what a difference is compared with ---
+
+
+@pytest.mark.parametrize(
+    ("claim", "factor", "parts"),
+    [
+        # Divided by Io = J + m l^2 and with the wrong sign: w2 sin - (-w2 sin) = 2 w2 sin too little.
+        (EQUATION + "theta_ddot - w2*sin(theta)", "1/(m*l**2 + J)", {"1": "-2*m*l*g*sin(theta)/(m*l**2 + J)"}),
+        # The true equation times 1/Io, and 3 theta' too much: nothing else is wrong.
+        (EQUATION + "theta_ddot + w2*sin(theta) + 3*theta_dot", "1/(m*l**2 + J)", {"theta_dot": "3"}),
+        # Scaled by -2/m.
+        (EQUATION + "-2/m*(Io*theta_ddot + m*g*l*sin(theta)) + theta_dot**2", "-2/m", {"theta_dot**2": "1"}),
+        # As it stands, only the inertia is wrong: it is not scaled.
+        (EQUATION + "m*l**2*theta_ddot + m*g*l*sin(theta)", None, {"theta_ddot": "-J"}),
+        (EQUATION + "Io*theta_ddot - m*g*l*sin(theta)", None, {"1": "-2*m*l*g*sin(theta)"}),
+    ],
+)
+def test_a_difference_is_what_is_wrong_and_no_more(claim: str, factor: str | None, parts: dict[str, str]) -> None:
+    result = judged(claim)
+    assert result.outcome == DIFFERS
+    assert (None if result.factor is None else str(result.factor)) == factor
+    assert {str(part.factor): str(part.difference) for part in result.parts} == parts
+
+
+def test_a_polynomial_is_compared_with_the_multiple_that_agrees() -> None:
+    result = judged("claim: characteristic polynomial, variable: p, equals: p**2 + p/3 + w2")
+    assert (result.outcome, str(result.factor)) == (DIFFERS, "1/(m*l**2 + J)")
+    assert [(part.power, str(part.difference)) for part in result.parts] == [(1, "1/3")]
+    line = claim_line(result)
+    assert line.outcome == "differs (compared with 1/(m*l**2 + J) times derived)"
+    assert line.lines == ("at p**1: claimed - factor*derived = 1/3",)
+    # A root too many is no factor that may be dropped.
+    assert judged("claim: characteristic polynomial, variable: p, equals: p*(p**2 + w2)").outcome == DIFFERS
+
+
+# --- first integrals ---
+
+
+def test_a_refuted_integral_shows_its_rate_and_a_state() -> None:
+    claim = "claim: first integral, equals: theta_dot**2 + 2*w2*cos(theta)"
+    word, outcome, lines = shown(claim)
+    assert (word, outcome) == ("refuted", "does not hold")
+    # theta'' = -w2 sin(theta), so d/dt (theta'^2 + 2 w2 cos theta) = -4 w2 sin(theta) theta'.
+    assert lines[0] == "dI/dt on the equations of motion = -4*m*l*g*theta_dot*sin(theta)/(m*l**2 + J)"
+    assert lines[1].startswith("for example at m = 1, l = 2, J = 1/2, g = 981/100, theta = ")
+    result = judged(claim)
+    assert result.counterexample is not None
+    at = {name: float(Fraction(value)) for name, value in result.counterexample.at}
+    ((what, value),) = result.counterexample.shows
+    w2 = at["m"] * at["g"] * at["l"] / (at["J"] + at["m"] * at["l"] ** 2)
+    assert what == "dI/dt"
+    assert float(value) == pytest.approx(-4 * w2 * math.sin(at["theta"]) * at["theta_dot"], rel=1e-11)
+    assert "det" not in latex(analysed(claim), range(1, 8)).partition("section*{Claims}")[2]
+    # The control: the integral itself has neither.
+    right = judged("claim: first integral, equals: theta_dot**2 - 2*w2*cos(theta)")
+    assert (right.outcome, right.counterexample, right.difference) == (EXACT, None, None)
+
+
+def test_where_the_rate_is_too_long_there_is_still_a_state() -> None:
+    """Six coordinates: no closed form of M^-1 f; that x_A' is not constant is seen at the state that is told."""
+    text = (SHIPPED / "tethered-satellites.yaml").read_text(encoding="utf-8").partition("\nclaims:")[0]
+    (result,) = mbsym.loads(text + "\nclaims:\n  - {claim: first integral, equals: x_A_dot}\n", (3,)).claims
+    assert (result.outcome, result.difference) == (FAILS, None)
+    assert result.counterexample is not None
+    state = ", ".join(f"{name}: {value}" for name, value in result.counterexample.at)
+    rate = dict(result.counterexample.shows)["dI/dt"]
+    value = f"{{claim: value, of: x_A_ddot, state: {{{state}}}, equals: {rate}}}"
+    (again,) = mbsym.loads(f"{text}\nclaims:\n  - {value}\n", (3,)).claims
+    assert again.holds
+    assert float(rate) != 0
+
+
+def test_a_counterexample_keeps_relations_and_given_numbers() -> None:
+    """k = m g l: with k in the claim, k is what the relation gives, and the claim holds on it."""
+    claim = "claim: first integral, equals: Io*theta_dot**2 {} 2*k*cos(theta)"
+    assert judged(claim.format("-")).outcome == RELATIONS
+    result = judged(claim.format("+"))
+    assert result.outcome == FAILS
+    at = {name: float(Fraction(value)) for name, value in result.counterexample.at}
+    k = at["m"] * at["g"] * at["l"]
+    # d/dt (Io theta'^2 + 2 k cos) = 2 theta' (Io theta'' - k sin) = -4 k sin(theta) theta'.
+    expected = -4 * k * math.sin(at["theta"]) * at["theta_dot"]
+    assert float(dict(result.counterexample.shows)["dI/dt"]) == pytest.approx(expected, rel=1e-11)
+
+
+# --- conditions ---
+
+
+def conditions(*claims: str, text: str = SPRINGS) -> list[ClaimResult]:
+    return list(analysed(*(f"claim: condition, {one}" for one in claims), text=text).claims)
+
+
+def test_conditions_are_refuted_by_parameters() -> None:
+    """Stable exactly for k1 > 0 and k2 > 0."""
+    stronger, other = conditions("that: k1 > k2", "that: k1 + k2 > 1")
+    for result, fails in ((stronger, lambda a, b: a <= b), (other, lambda a, b: a + b <= 1)):
+        assert (result.outcome, result.refuted) == (FAILS, True)
+        assert result.remark == "it is not necessary for stability"
+        at = {name: Fraction(value) for name, value in result.counterexample.at}
+        assert at["k1"] > 0
+        assert at["k2"] > 0
+        assert fails(at["k1"], at["k2"])
+    assert dict(stronger.counterexample.shows)["the motion"].startswith("stable")
+    line = claim_line(stronger)
+    assert (line.word, line.outcome) == ("refuted", "does not hold: it is not necessary for stability")
+    assert line.lines[0].startswith("for example at m = ")
+    # The controls: conditions that are right, and one that is weaker than what is needed.
+    for result in conditions("that: k1 > 0", "as: necessary, that: 3*k2 > 0"):
+        assert result.outcome == EXACT
+    (weaker,) = conditions("as: necessary, that: k1 + k2 > 0")
+    assert (weaker.outcome, weaker.refuted, weaker.counterexample) == (UNDECIDED, False, None)
+
+
+def test_sufficient_conditions_of_one_place_count_together() -> None:
+    alone, *both = conditions(
+        "as: sufficient, that: k1 > 0, place: one",
+        "as: sufficient, that: k1 > 0, place: two",
+        "as: sufficient, that: k2 > 0, place: two",
+    )
+    assert (alone.outcome, alone.remark) == (FAILS, "it is not sufficient for stability")
+    at = {name: Fraction(value) for name, value in alone.counterexample.at}
+    assert at["k1"] > 0 > at["k2"]
+    assert dict(alone.counterexample.shows)["the motion"].startswith("unstable")
+    assert [result.outcome for result in both] == [EXACT, EXACT]
+    (stronger,) = conditions("as: sufficient, that: k1 > 1 - k2*0")
+    assert stronger.refuted
+    # Stronger than needed is no error in a sufficient condition, and an error in a necessary one.
+    text = SPRINGS.replace("k2: real", "k2: positive")
+    assert conditions("as: sufficient, that: k1 > k2", text=text)[0].outcome == UNDECIDED
+    assert conditions("as: necessary, that: k1 > k2", text=text)[0].outcome == FAILS
+
+
+def test_a_counterexample_is_a_body_and_keeps_assumptions() -> None:
+    """In orbit C < A + B for every body: C < 3*A + 3*B cannot be refuted by moments that no body has."""
+    path = SHIPPED / "gravity-gradient.yaml"
+    text = path.read_text(encoding="utf-8").replace("assumptions:\n  - A + B > C\n  - B + C > A\n  - C + A > B\n", "")
+    assert "assumptions" not in text
+    fine, wrong = conditions("that: A + B >= C", "that: C > 7*A", text=text)
+    assert not fine.refuted
+    values = {name: Fraction(value) for name, value in wrong.counterexample.at}
+    assert values["A"] + values["B"] >= values["C"]
+    assert values["nu"] == values["omega0"] ** 2 * values["R"] ** 3
+    verdict = at_values(path, **dict(wrong.counterexample.at)).stability.numerical
+    assert verdict is not None
+    assert verdict.word.startswith("stable")
+
+
+def test_a_motion_stable_in_first_approximation_only_is_told_as_that() -> None:
+    """K > 0 is sufficient, not necessary: gyroscopic forces stabilise without it in the first approximation."""
+    text = (SHIPPED / "orbital-gyrostat.yaml").read_text(encoding="utf-8").partition("\nclaims:")[0]
+    (necessary,) = conditions("as: necessary, that: B - A + h > 0", text=text)
+    assert necessary.outcome == FAILS
+    assert necessary.remark == "it is not necessary for stability in the first approximation"
+    assert dict(necessary.counterexample.shows)["the motion"] == "gyroscopically stabilised only"
+    (either,) = conditions("that: B - A + h > 0", text=text)
+    assert either.outcome == EXACT
+
+
+def test_the_role_of_a_condition_is_written_and_read() -> None:
+    analysis = analysed("claim: condition, as: sufficient, that: J > m")
+    for written in (to_yaml(analysis.system), to_text(analysis.system)):
+        assert [claim.role for claim in mbsym.loads(written).system.claims] == ["sufficient"]
+    with pytest.raises(Exception, match="role of a condition"):
+        analysed("claim: condition, as: nice, that: J > m")
+    with pytest.raises(Exception, match="'as'"):
+        analysed("claim: kinetic energy, as: necessary, equals: 0")
+
+
+# --- signs under roots ---
+
+
+@pytest.mark.parametrize(
+    ("claim", "outcome", "where"),
+    [
+        ("equation of motion, of: r, equals: m*(r_ddot - r*phi_dot**2 + mu/r**2)", EXACT, "r > 0"),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**2", FACTOR, "r > 0"),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 - mu/r**2", DIFFERS, ""),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**3", DIFFERS, ""),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu*r/sqrt(r**2)**3", FACTOR, ""),
+        ("equation of motion, of: phi, equals: r*phi_ddot + 2*r_dot*phi_dot", FACTOR, ""),
+        ("force function, equals: mu*m/r", EXACT, "r > 0"),
+        ("force function, equals: -mu*m/r", DIFFERS, ""),  # true for r < 0 only: a wrong sign
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/r", EXACT, "r > 0"),
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/sqrt(r**2)", EXACT, ""),
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 4*mu/r", FAILS, ""),
+        ("first integral, equals: r**2*phi_dot", EXACT, ""),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(s**2)/s", EXACT, "s > 0"),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: -m/2*sqrt(n**2)/n", EXACT, ""),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(n**2)/n", SCALED, ""),  # by -1
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(exp(s)**2)/exp(s)", NUMERICAL, ""),
+    ],
+)  # fmt: skip
+def test_what_holds_for_one_sign_is_told_to(claim: str, outcome: str, where: str) -> None:
+    result = judged(f"claim: {claim}", text=KEPLER)
+    assert result.outcome == outcome
+    name = where.partition(" ")[0]
+    assert result.where == (f"for {where} (it does not for {name} < 0)" if where else "")
+
+
+def test_the_restriction_is_in_every_report(tmp_path: Path) -> None:
+    path = tmp_path / "kepler.yaml"
+    path.write_text(KEPLER + "claims:\n  - {claim: force function, equals: mu*m/r}\n", encoding="utf-8")
+    words = ["run", str(path), "--out", str(tmp_path / "out"), "--problems", "1-3", "--format", "json,latex"]
+    done = CliRunner().invoke(main, words, catch_exceptions=False)
+    assert "force function: holds exactly for r > 0 (it does not for r < 0)" in done.stdout
+    (written,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["claims"]
+    assert (written["word"], written["where"]) == ("held", "for r > 0 (it does not for r < 0)")
+    assert "holds exactly for r" in (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
+
+
+# --- the appendix ---
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
+def test_the_appendix_with_refuted_claims_compiles(tmp_path: Path) -> None:
+    analysis = analysed(
+        EQUATION + "theta_ddot - w2*sin(theta) + 3*theta_dot, place: eq. (2) & 50 %",
+        "claim: characteristic polynomial, variable: lam, equals: lam**2 + lam + w2",
+        "claim: first integral, equals: theta_dot*cos(theta)",
+        "claim: condition, that: J - m > 0, place: 'p. 5, #3'",
+        "claim: kinetic energy, equals: Io*theta_dot**2",
+    )
+    (tmp_path / "report.tex").write_text(latex(analysis, range(1, 8)), encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "Overfull" not in done.stdout
