@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, Expression, Name, walk
+from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, walk
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
 from mbsym.source.scope import did_you_mean, listed
@@ -76,7 +76,7 @@ def _read(
         found[name] = value
 
 
-def numbers(
+def given_numbers(
     file: Path, system: System, settings: Sequence[str], options: Options
 ) -> tuple[Scenario | None, Mapping[str, Expression]]:
     """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``."""
@@ -87,9 +87,10 @@ def numbers(
         return scenario(system, assigned.values), assigned.values
     except Incomplete as error:
         contradictions(file, error.lack, assigned, options)
-        names = [shown for shown in error.lack.names if _unread(shown.split(" ")[0], assigned)]
-        if names:
-            options.complaints.append(missing(file, names))
+        unread = _unread(system, assigned)
+        lacking = [shown for shown in error.lack.names if shown.split(" ")[0] not in unread]
+        if lacking:
+            options.complaints.append(missing(file, lacking))
         return None, assigned.values
 
 
@@ -102,9 +103,12 @@ def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options)
             options.complaints.append(render_option(Complaint(one.code, one.text), "", str(file)))
 
 
-def _unread(name: str, assigned: Assigned) -> bool:
-    """Whether nothing was said about a name; where its value was refused, it does not lack one."""
-    return name not in assigned.texts or name in assigned.values
+def _unread(system: System, assigned: Assigned) -> set[str]:
+    """Names whose value was refused, and what follows from them through relations: these do not lack one."""
+    found = assigned.texts.keys() - assigned.values.keys()
+    for _ in system.relations:
+        found |= {one.name for one in system.relations if names(one.value) & found}
+    return found
 
 
 class _Places:
@@ -128,16 +132,12 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
         if name in (item.name, velocity_name(item.name)):
             from mbsym.expressions.tree import text
 
-            hint = f"its rate is {text(item.rate)}: set what that is made of"
-            complaints.error("misplaced-name", f"'{name}' is a prescribed motion and has no value to set", span, hint)
+            rate = f"its rate is {text(item.rate)}: set what that is made of"
+            complaints.error("misplaced-name", f"'{name}' is a prescribed motion and has no value to set", span, rate)
             return False
     if name in (item.name for item in system.notation):
         complaints.error("misplaced-name", f"'{name}' is notation: it follows from the parameters", span)
         return False
-    hint = did_you_mean(name, _settable(system)) or _choices(_settable(system))
+    hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
     complaints.error("unknown-name", f"there is nothing called {ascii_safe(name)} to set", span, hint)
     return False
-
-
-def _choices(names: Iterable[str]) -> str | None:
-    return listed("these have values", names)

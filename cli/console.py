@@ -62,7 +62,7 @@ def counted(n: int, one: str, many: str) -> str:
 
 
 def numbers(text: str, complain: Callable[[str, str, str], None]) -> tuple[int, ...]:
-    """``1-5``, ``1,3,5`` or ``6`` as problem numbers; ``complain(code, message, hint)`` hears of each part that is none."""
+    """``1-5``, ``1,3,5`` or ``6`` as problem numbers; ``complain(code, message, hint)`` hears of what is none."""
     found: set[int] = set()
     usual = "write for example 1-5 or 1,3,6"
     for part in (part.strip() for part in text.split(",")):

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.assignments import assignments
+from mbsym_cli.assignments import assignments, contradictions
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, console, counted, read_description
+from mbsym_cli.lacking import missing
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -24,14 +26,6 @@ if TYPE_CHECKING:
 #: How the first word of a verdict is coloured.
 _COLOURS = {"asymptotically": "green", "stable": "green", "gyroscopically": "yellow", "unstable": "red"}
 
-#: Verdicts that would not fit into a table.
-_SHORTER = {
-    "stable with respect to the other variables; the cyclic coordinates drift": "stable (cyclic drift)",
-    "asymptotically stable with respect to the other variables; the cyclic coordinates drift": (
-        "asymptotically stable (cyclic drift)"
-    ),
-    "stable in first approximation only, critical": "critical (first approximation)",
-}
 #: Longer equations of a family are cut; --json has them whole.
 _LONGEST = 100
 
@@ -39,9 +33,15 @@ _LONGEST = 100
 @click.command("equilibria")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
-@click.option("--within", default=10.0, show_default=True, help="Where lengths are looked for, if not solved exactly.")
+@click.option(
+    "--within",
+    default="10",
+    metavar="X",
+    show_default=True,
+    help="Where lengths are looked for, if not solved exactly.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
-def command(file: Path, settings: tuple[str, ...], within: float, as_json: bool) -> None:
+def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -> None:
     """List all relative equilibria of FILE: constant coordinates, steady turns as given, prescribed motions running.
 
     Needs a number for every parameter, from the description (values:) or from --set, taken exactly.  Where the
@@ -58,20 +58,18 @@ def command(file: Path, settings: tuple[str, ...], within: float, as_json: bool)
       mbsym equilibria systems/double-pendulum.yaml --set m2=3/2 --json
     """
     system = read_description(file)
-    if system is None:
+    asked = Options()
+    values = {} if system is None else _values(file, system, settings, asked)
+    reach = asked.number("--within", within, most=1e6)
+    if asked.refused(None if system is None else file) or system is None or reach is None:
         sys.exit(BAD_INPUT)
-    values = _values(file, system, settings)
-    if values is None:
-        sys.exit(BAD_INPUT)
-    if not 0 < within <= 1e6:
-        raise click.BadParameter("a positive length, at most 1e6", param_hint="--within")
     from mbsym.algebra.base import NoClosedForm, SingularPoint
     from mbsym.problems.equilibria import equilibria
 
     started = time.perf_counter()
     try:
         with console(stderr=True).status(f"{file.name}: relative equilibria"):
-            found = equilibria(system, values, within)
+            found = equilibria(system, values, reach)
     except (NoClosedForm, SingularPoint) as reason:
         print(f"{file}: no equilibria listed: {reason}", file=sys.stderr)
         sys.exit(FAILED)
@@ -84,54 +82,37 @@ def command(file: Path, settings: tuple[str, ...], within: float, as_json: bool)
     sys.exit(OK)
 
 
-def _values(file: Path, system: System, settings: tuple[str, ...]) -> dict[str, Fraction] | None:
-    """Exact numbers of the parameters, or None after every complaint."""
+def _values(file: Path, system: System, settings: tuple[str, ...], asked: Options) -> dict[str, Fraction]:
+    """Exact numbers of the parameters; every complaint joins those of ``asked``."""
     from mbsym.expressions.tree import substitute
     from mbsym.mechanics.rest import given_values, missing_values
     from mbsym.model.system import rational
+    from mbsym.numerics.scenario import Incomplete, Lack, scenario
 
-    given, complaints = assignments(settings, system)
-    for name in given:
-        if name not in system.parameter_names:
-            complaints.append(
-                f"--set {name}: error[misplaced-name]: equilibria are what is looked for; set parameters only"
-            )
-    signs = {item.name: item.sign for item in system.parameters}
+    assigned = assignments(settings, system, asked)
+    known = {item.name: item.value for item in system.parameters if item.value is not None} | dict(assigned.values)
     overrides: dict[str, Fraction] = {}
-    if not complaints:
-        known = {item.name: item.value for item in system.parameters if item.value is not None} | given
-        for name, expression in given.items():
-            value = rational(substitute(expression, {k: v for k, v in known.items() if k != name}))
-            if value is None:
-                complaints.append(
-                    f"--set {name}: error[not-rational]: an exact rational number is needed, for example 3/2"
-                )
-            elif not _agrees(value, signs[name]):
-                complaints.append(f"--set {name}: error[sign-contradiction]: '{name}' is declared {signs[name]}")
-            else:
-                overrides[name] = value
-    for line in complaints:
-        print(line, file=sys.stderr)
-    if complaints:
-        return None
+    for name, expression in assigned.values.items():
+        if name not in system.parameter_names:
+            hint = "set parameters only"
+            assigned.complain(name, "misplaced-name", "equilibria are what is looked for", asked, hint)
+            continue
+        value = rational(substitute(expression, {k: v for k, v in known.items() if k != name}))
+        if value is None:
+            hint = f"write for example {name}=3/2"
+            assigned.complain(name, "not-rational", "an exact rational number is needed", asked, hint)
+        else:
+            overrides[name] = value
+    try:
+        scenario(system, {name: assigned.values[name] for name in overrides}, state=False)
+    except Incomplete as error:
+        of_settings = tuple(one for one in error.lack.contradictions if one.name in assigned.texts)
+        contradictions(file, Lack((), of_settings), assigned, asked)
     values = given_values(system, overrides)
-    missing = missing_values(system, values)
-    if missing:
-        print(f"{file}: error[missing-value]: no number for {', '.join(missing)}", file=sys.stderr)
-        example = " ".join(f"--set {name}=1" for name in missing[:3]) + (" ..." if len(missing) > 3 else "")
-        print(f"  hint: {example}, or in the file  values: {{{missing[0]}: 1, ...}}", file=sys.stderr)
-        return None
+    names = [name for name in missing_values(system, values) if name not in assigned.texts]
+    if names:
+        asked.complaints.append(missing(file, names, "number"))
     return values
-
-
-def _agrees(value: Fraction, sign: str) -> bool:
-    return {
-        "positive": value > 0,
-        "nonnegative": value >= 0,
-        "negative": value < 0,
-        "nonpositive": value <= 0,
-        "nonzero": value != 0,
-    }.get(sign, True)
 
 
 # --- the table -------------------------------------------------------------------------------------------------------
@@ -159,6 +140,8 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
     from rich.table import Table
     from rich.text import Text
 
+    from mbsym.report.verdicts import short_verdict
+
     columns = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
     others = any(x.coordinates_of for x in listed)
     boxes = any(x.proof != "exact" for x in listed)
@@ -177,7 +160,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
         colour = _COLOURS.get(one.verdict.word.split(" ")[0], "yellow")
         cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
         if judged:
-            cells += [Text(_SHORTER.get(one.verdict.word, one.verdict.word), style=colour), one.verdict.theorem]
+            cells += [Text(short_verdict(one.verdict.word), style=colour), one.verdict.theorem]
         cells += [one.proof] if boxes else []
         cells += [one.coordinates_of] if others else []
         table.add_row(*cells)
@@ -201,6 +184,8 @@ def _text(item: CoordinateValue) -> str:
 def _show_family(number: int, family: EquilibriumFamily) -> None:
     from rich.text import Text
 
+    from mbsym.report.verdicts import short_verdict
+
     out = console()
     angles = f"; angles of {family.coordinates_of}" if family.coordinates_of else ""
     title = (
@@ -211,16 +196,18 @@ def _show_family(number: int, family: EquilibriumFamily) -> None:
         shown = equation if len(equation) <= _LONGEST else f"{equation[:_LONGEST]} ..."
         out.print(Text(f"    {shown} = 0"))
     sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
-    out.print(Text(f"    for example {sample}: {family.verdict.word}"))
+    out.print(Text(f"    for example {sample}: {short_verdict(family.verdict.word)}"))
 
 
 def _show_summary(found: Equilibria) -> None:
     from rich.text import Text
 
+    from mbsym.report.verdicts import short_verdict
+
     out = console()
     count = counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
     words = Counter(one.verdict.word for one in found.equilibria)
-    kinds = "; ".join(f"{n} {_SHORTER.get(word, word)}" for word, n in words.items())
+    kinds = "; ".join(f"{n} {short_verdict(word)}" for word, n in words.items())
     families = f", {counted(len(found.families), 'family', 'families')}" if found.families else ""
     out.print(Text.assemble((count + families, "bold"), f": {kinds}" if kinds else ""))
     twice = {one.described for one in found.equilibria if one.described > 1}

@@ -9,16 +9,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.assignments import assignments, number
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, counted, read_description, status
+from mbsym_cli.assignments import given_numbers
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, read_description, status
 from mbsym_cli.files import obstacle, write_whole
-from mbsym_cli.lacking import lacking
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from mbsym.expressions.tree import Expression
     from mbsym.numerics.extremes import Extremes
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.sequences import Ranking
+
+
+#: Columns of a table that does not go to a terminal.
+WIDE = 400
 
 
 @click.command("extremes")
@@ -56,30 +62,21 @@ def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str,
 def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool, budget: str, quiet: bool) -> int:
     """Reads everything, complains about everything, then measures."""
     from mbsym.algebra.base import NoClosedForm, SingularPoint
-    from mbsym.numerics.scenario import Incomplete, scenario
 
     system = read_description(file)
-    if system is None:
-        return BAD_INPUT
-    overrides, complaints = assignments(settings, system)
-    seconds, more = number(budget, "--budget")
-    complaints += more
-    if complaints or seconds is None:
-        print("\n".join(complaints), file=sys.stderr)
-        print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+    asked = Options()
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
+    seconds = asked.number("--budget", budget)
+    if asked.refused(None if system is None else file) or given is None or seconds is None:
         return BAD_INPUT
     reason = "" if sequences else obstacle(folder)
     if reason:
         print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
         return FAILED
     try:
-        given = scenario(system, overrides)
         if sequences:
             return _rank(file, given, quiet)
-        return _measure(file, folder, given, overrides, seconds, quiet)
-    except Incomplete as error:
-        print(lacking(file, error.lack), file=sys.stderr)
-        return BAD_INPUT
+        return _measure(file, folder, given, dict(overrides), seconds, quiet)
     except (NoClosedForm, SingularPoint) as error:
         print(f"{file}: the equations have no program: {error}", file=sys.stderr)
     except OSError as error:
@@ -107,11 +104,12 @@ def _measure(
 
 
 def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quiet: bool) -> None:
-    from rich.table import Table
+    from rich.console import Console
     from rich.text import Text
 
     from mbsym.numerics.extremes import sentences
     from mbsym.report.extremes_tables import tables
+    from mbsym.report.verdicts import short_verdict
 
     out = console()
     if not quiet:
@@ -120,18 +118,30 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
             "  fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question"
         )
         for columns, rows in tables(found):
-            shown = Table(box=None, padding=(0, 1), header_style="bold cyan")
-            for name in columns:
-                shown.add_column(name, justify="left" if name in ("extreme", "stability") else "right", no_wrap=True)
-            for row in rows:
-                shown.add_row(*row)
-            out.print(shown)
+            # Where nobody's screen is the limit, every line is as long as it must be.
+            (out if out.is_terminal else Console(width=WIDE, highlight=False)).print(_table(columns, rows))
     for sentence in sentences(found):
-        out.print(Text(f"- {sentence}"))
+        out.print(Text(f"- {short_verdict(sentence)}"))
     for reason in found.left_out:
         out.print(Text(f"- left out: {reason}", style="yellow"))
     if not quiet:
         out.print(Text.assemble("  files in ", (str(folder), "bold"), ": ", ", ".join(names)))
+
+
+def _table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """Names, verdicts and titles fold where the terminal is narrow; numbers never do."""
+    from rich.table import Table
+
+    shown = Table(box=None, padding=(0, 1), header_style="bold cyan")
+    for place, name in enumerate(columns):
+        if name in ("extreme", "stability"):
+            shown.add_column(name, overflow="fold")
+        else:
+            width = max(len(row[place]) for row in rows)
+            shown.add_column(name, justify="right", overflow="fold", min_width=width)
+    for row in rows:
+        shown.add_row(*row)
+    return shown
 
 
 def _rank(file: Path, given: Scenario, quiet: bool) -> int:

@@ -43,7 +43,7 @@ class Request:
 @click.option("--problems", "-p", default="1-7", show_default=True, help="1-5 or 1,3,6.")
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
-@click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms for one closed formula.")
+@click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
@@ -90,7 +90,7 @@ def command(
     if asked.complaints or budget is None:
         for path in paths:
             read_description(path)
-        asked.refused(*paths)
+        asked.refused()
         sys.exit(BAD_INPUT)
     width = max(len(path.name) for path in paths)
     request = Request(chosen, kinds, budget, quiet, strict_claims, ledger, brief, width)

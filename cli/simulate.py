@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from mbsym_cli.assignments import assignments, number
+from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import (
     BAD_INPUT,
     BROKEN_DOWN,
@@ -22,16 +22,14 @@ from mbsym_cli.console import (
     INTERRUPTED,
     OK,
     console,
-    counted,
     read_description,
     status,
 )
 from mbsym_cli.files import alone, obstacle, write_whole
-from mbsym_cli.lacking import lacking
+from mbsym_cli.options import Options
 from mbsym_cli.simulation_summary import broken, note, print_summary
 
 if TYPE_CHECKING:
-    from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.invariants import Invariant
@@ -52,6 +50,9 @@ SMOOTHER = 8
 
 #: No arithmetic here is finer, and nothing coarser is a solution.
 FINEST, COARSEST = 1e-19, 0.1
+
+#: A first try of a fixed step is the whole time divided by this.
+TRIAL_STEPS = 10_000
 
 #: A run shorter than this many seconds is repeated more finely, to see how good it is.
 SOON_DONE = 2.0
@@ -76,28 +77,31 @@ class Request:
     whole: bool = False
 
 
-class Refused(Exception):
-    """What was asked for cannot be done; the message is for the user."""
+@dataclass(frozen=True)
+class Flags:
+    """The options without a value."""
+
+    invariants: bool
+    estimate: bool | None
+    quiet: bool
+    whole: bool
 
 
-def _formats(context: click.Context, parameter: click.Parameter, value: str) -> tuple[str, ...]:
-    chosen = tuple(dict.fromkeys(part.strip() for part in value.split(",") if part.strip()))
-    if not chosen or set(chosen) - set(FORMATS):
-        raise click.BadParameter(f"choose from {', '.join(FORMATS)}, separated by commas")
-    return chosen
+class Unsuited(Exception):
+    """A method that turned out not to apply here; the message says why."""
 
 
 @click.command("simulate")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--time", "-t", "end", required=True, metavar="T", help="Simulate from 0 to T (60, 2*pi, 1e3).")
+@click.option("--time", "-t", "end", metavar="T", help="Simulate from 0 to T (60, 2*pi, 1e3).  [required]")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
-@click.option("--samples", type=int, metavar="N", help="Rows of the table.  [default: 2001, more for fast motion]")
+@click.option("--samples", metavar="N", help="Rows of the table.  [default: 2001, more for fast motion]")
 @click.option("--every", metavar="DT", help="A row every DT instead.")
 @click.option("--method", "-m", default="auto", show_default=True, help="auto or one of those above.")
 @click.option("--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10 in float64]")
 @click.option("--step", metavar="H", help="Length of a step, for methods of fixed step.")
-@click.option("--arithmetic", type=click.Choice(ARITHMETIC), default="float64", show_default=True)
-@click.option("--step-limit", type=click.IntRange(1, 10**12), default=10_000_000, show_default=True)
+@click.option("--arithmetic", metavar=f"[{'|'.join(ARITHMETIC)}]", default="float64", show_default=True)
+@click.option("--step-limit", metavar="N", default="10000000", show_default=True)
 @click.option("--invariants", is_flag=True, help="Add the first integrals of problem 7 as columns.")
 @click.option(
     "--estimate/--no-estimate",
@@ -105,24 +109,24 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str) -> 
     help="Repeat the run more finely to estimate its error.  [default: if the run was short]",
 )
 @click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
-@click.option("--format", "-f", "formats", default="csv,svg,png", callback=_formats, show_default=True)
+@click.option("--format", "-f", "formats", default="csv,svg,png", show_default=True)
 @click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     file: Path,
-    end: str,
+    end: str | None,
     settings: tuple[str, ...],
-    samples: int | None,
+    samples: str | None,
     every: str | None,
     method: str,
     tolerance: str | None,
     step: str | None,
     arithmetic: str,
-    step_limit: int,
+    step_limit: str,
     invariants: bool,
     estimate: bool | None,
     whole: bool,
-    formats: tuple[str, ...],
+    formats: str,
     out: Path | None,
     quiet: bool,
 ) -> None:
@@ -150,57 +154,43 @@ def command(
       mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4 --format csv --out top
     """
+    texts = {
+        "--time": end,
+        "--samples": samples,
+        "--every": every,
+        "--method": method,
+        "--tolerance": tolerance,
+        "--step": step,
+        "--arithmetic": arithmetic,
+        "--step-limit": step_limit,
+        "--format": formats,
+    }
+    folder = out if out is not None else Path("reports") / file.stem
     try:
-        sys.exit(
-            _command(
-                file,
-                out if out is not None else Path("reports") / file.stem,
-                settings,
-                {"--time": end, "--every": every, "--tolerance": tolerance, "--step": step},
-                Request(
-                    0.0,
-                    samples,
-                    None,
-                    method,
-                    None,
-                    None,
-                    step_limit,
-                    arithmetic,
-                    formats,
-                    invariants,
-                    estimate,
-                    quiet,
-                    whole,
-                ),
-            )
-        )
+        sys.exit(_command(file, folder, settings, texts, Flags(invariants, estimate, quiet, whole)))
     except KeyboardInterrupt:
         print(f"{file}: interrupted; what has been written is whole", file=sys.stderr)
         sys.exit(INTERRUPTED)
 
 
-def _command(
-    file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], request: Request
-) -> int:
+def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], flags: Flags) -> int:
     """Reads everything, complains about everything, then simulates."""
     system = read_description(file)
-    if system is None:
-        return BAD_INPUT
-    request, overrides, complaints = _read(system, settings, texts, request)
-    if not complaints:
-        complaints = _contradictions(system, request, texts)
-    if complaints:
-        print("\n".join(complaints), file=sys.stderr)
-        print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+    asked = Options()
+    given = None if system is None else given_numbers(file, system, settings, asked)[0]
+    request = _read(system, texts, flags, asked)
+    refused = asked.refused(None if system is None else file)
+    if refused or given is None:
         return BAD_INPUT
     reason = obstacle(folder)
     if reason:
         print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
         return FAILED
     try:
-        return _simulate(file, system, folder, overrides, request)
-    except Refused as reason:
-        print(f"{file}: {reason}", file=sys.stderr)
+        return _simulate(file, given, folder, request)
+    except Unsuited as error:
+        asked.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
+        asked.refused(file)
         return BAD_INPUT
     except OSError as error:
         print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
@@ -213,79 +203,118 @@ def _command(
     return FAILED
 
 
-def _read(
-    system: System, settings: Sequence[str], texts: Mapping[str, str | None], request: Request
-) -> tuple[Request, dict[str, Expression], list[str]]:
-    """The assignments and the numbers of the options; every complaint at once."""
-    overrides, complaints = assignments(settings, system)
-    numbers: dict[str, float | None] = {}
-    for option, text in texts.items():
-        numbers[option] = None
-        if text is not None:
-            numbers[option], more = number(text, option)
-            complaints += more
-    request = replace(
-        request,
-        end=numbers["--time"] or 0.0,
-        every=numbers["--every"],
-        tolerance=numbers["--tolerance"],
-        step=numbers["--step"],
+def _read(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Request:
+    """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
+    from mbsym.numerics.methods.table import METHODS
+
+    end = asked.number("--time", texts["--time"])
+    if texts["--time"] is None:
+        asked.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+    every = asked.number("--every", texts["--every"])
+    tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
+    step = asked.number("--step", texts["--step"])
+    why = ", the start and the end of a trajectory"
+    samples = asked.whole("--samples", texts["--samples"], 2, 10**18, why)
+    method = asked.word("--method", (texts["--method"] or "").lower(), ("auto", *METHODS), "method")
+    arithmetic = asked.word("--arithmetic", texts["--arithmetic"] or "", ARITHMETIC, "arithmetic")
+    step_limit = asked.whole("--step-limit", texts["--step-limit"], 1, 10**12)
+    formats = asked.words("--format", texts["--format"] or "", FORMATS, "format")
+    if texts["--samples"] is not None and texts["--every"] is not None:
+        asked.complain("--every", "conflicting-options", "--samples and --every exclude each other")
+    elif system is not None:
+        _check_rows(system, end, every, samples, asked)
+    if step is not None and end is not None and step > end:
+        asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
+    request = Request(
+        end or 0.0,
+        samples,
+        every,
+        method or "auto",
+        tolerance,
+        step,
+        step_limit or 1,
+        arithmetic or "float64",
+        formats,
+        flags.invariants,
+        flags.estimate,
+        flags.quiet,
+        flags.whole,
     )
-    return request, overrides, complaints
+    if method is not None:
+        _check_method(system, request, texts, asked)
+    return request
 
 
-def _contradictions(system: System, request: Request, texts: Mapping[str, str | None]) -> list[str]:
-    """Options that exclude each other, or are out of bounds."""
+def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
     from mbsym.report.trajectory_csv import most_rows
 
-    found = []
+    rows, option = samples, "--samples"
+    if every is not None:
+        rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
     most = most_rows(system)
-    rows = request.samples
-    if request.every is not None:
-        rows = int(min(ceil(request.end / request.every), 10**18)) + 1
-        if request.samples is not None:
-            found.append("--samples and --every exclude each other")
-    if request.samples is not None and request.samples < 2:
-        found.append(f"--samples: {request.samples}: a trajectory has at least 2 samples, its start and its end")
     if rows is not None and rows > most:
         hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
-        found.append(
-            f"{'--every' if request.every is not None else '--samples'}: {rows} rows are too many\n  hint: {hint}"
-        )
-    if request.tolerance is not None and not FINEST <= request.tolerance <= COARSEST:
-        found.append(f"--tolerance: {texts['--tolerance']}: choose between {FINEST:g} and {COARSEST:g}")
-    if request.step is not None and request.step > request.end:
-        found.append(f"--step: {texts['--step']}: longer than the whole time")
-    if request.step is not None and request.tolerance is not None:
-        found.append("--step and --tolerance exclude each other\n  hint: a method takes one or the other")
-    return found
+        asked.complain(option, "too-large", f"{rows} rows are too many", hint)
 
 
-def _simulate(file: Path, system: System, folder: Path, overrides: Mapping[str, Expression], request: Request) -> int:
+def _check_method(system: System | None, request: Request, texts: Mapping[str, str | None], asked: Options) -> None:
+    """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
+    from mbsym.numerics.methods.symplectic import without_potential
+    from mbsym.numerics.methods.table import METHODS
+
+    name = request.method
+    has_step, has_tolerance = texts["--step"] is not None, texts["--tolerance"] is not None
+    if has_step and has_tolerance:
+        hint = "a method takes one or the other"
+        asked.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
+    fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
+    if name == "auto":
+        if has_step and not has_tolerance:
+            hint = f"--step goes with a method of fixed step, for example --method rk4 (also {fixed})"
+            asked.complain("--step", "conflicting-options", "--method auto chooses its steps by a tolerance", hint)
+        return
+    traits = METHODS[name].traits
+    if request.arithmetic not in traits.scalars:
+        able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
+        message = f"{name} does not compute in {request.arithmetic}"
+        asked.complain("--arithmetic", "conflicting-options", message, f"these do: {able or 'none'}")
+    if traits.fixed and has_tolerance and not has_step:
+        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
+        asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
+    elif traits.fixed and not has_step:
+        many = f"--step {request.end / TRIAL_STEPS:.2g}" if request.end else "--step H"
+        hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
+        asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
+    if not traits.fixed and has_step and not has_tolerance:
+        hint = f"leave --step out, give a --tolerance, or take a method of fixed step: {fixed}"
+        asked.complain("--step", "conflicting-options", f"{name} chooses its steps by a --tolerance", hint)
+    loads = without_potential(system) if traits.conservative and system is not None else ()
+    if loads:
+        message = f"{name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
+        asked.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
+
+
+def _simulate(file: Path, given: Scenario, folder: Path, request: Request) -> int:
     from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.methods.interface import Unusable
     from mbsym.numerics.reduced import reduced
-    from mbsym.numerics.scenario import Incomplete, scenario
 
     try:
-        numbers = scenario(system, overrides)
-    except Incomplete as error:
-        print(lacking(file, error.lack), file=sys.stderr)
-        return BAD_INPUT
-    try:
         with status(request.quiet, f"{file.name}: compiling"):
-            further = _integrals(system, request)
-            dynamics = Dynamics(numbers, further[1]) if further else Dynamics(numbers)
+            further = _integrals(given.system, request)
+            dynamics = Dynamics(given, further[1]) if further else Dynamics(given)
             chosen = _chosen(dynamics, request, None if request.whole else reduced(dynamics))
     except SingularPoint as error:
-        print(f"{file}: singular at these values: {error}; nothing was written.", file=sys.stderr)
+        print(f"{file}: error[singular]: singular at these values: {error}", file=sys.stderr)
+        print(f"{file}: nothing was written.", file=sys.stderr)
         return BROKEN_DOWN
     except (NoClosedForm, NotRational) as error:
-        print(f"{file}: there is no program for these equations: {error}", file=sys.stderr)
+        print(f"{file}: error[no-program]: there is no program for these equations: {error}", file=sys.stderr)
+        print(f"{file}: nothing was written.", file=sys.stderr)
         return FAILED
     except Unusable as error:
-        raise Refused(f"this method cannot be used here: {error}") from None
+        raise Unsuited(str(error)) from None
     return _integrate(file, folder, dynamics, chosen, request, further[0] if further else ())
 
 
@@ -316,38 +345,16 @@ def _chosen(dynamics: Dynamics, request: Request, resting: Reduced | None) -> Ch
     taken = resting if resting is not None and resting.proved else None
     integrated = dynamics if taken is None else taken.dynamics
     tolerance = request.tolerance or TOLERANCE[request.arithmetic]
-    name = request.method.lower()
-    if name == "auto":
-        if request.step is not None:
-            raise Refused("--step needs a method of fixed step, for example --method rk4")
+    if request.method == "auto":
         choice = choose(integrated, tolerance, request.end, request.arithmetic)
         method, why, measured, frequency = choice.method, choice.why, choice.measured, choice.frequency
-    elif name in METHODS:
-        method, why, measured, frequency = METHODS[name], "as asked for", "", rates(integrated)[1]
     else:
-        raise Refused(_unknown_method(request.method, METHODS))
+        method, why, measured, frequency = METHODS[request.method], "as asked for", "", rates(integrated)[1]
     traits = method.traits
-    if request.arithmetic not in traits.scalars:
-        able = [key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars]
-        raise Refused(f"{name} does not compute in {request.arithmetic}; these do: {', '.join(able) or 'none'}")
-    if traits.fixed and request.step is None:
-        raise Refused(f"{name} takes steps of one length: give it, for example --step {request.end / 1e4:.2g}")
-    if traits.fixed and request.tolerance is not None:
-        raise Refused(f"{name} takes a --step, not a --tolerance")
-    if not traits.fixed and request.step is not None:
-        raise Refused(f"{name} chooses its steps by a --tolerance; --step is for methods of fixed step")
     setting = Setting(None if traits.fixed else tolerance, request.step, request.step_limit)
     if taken is not None:
         method = taken.method(method)
     return Chosen(method, why, measured, setting, _times(request, frequency, dynamics.system), frequency, resting)
-
-
-def _unknown_method(name: str, known: Mapping[str, Method]) -> str:
-    from mbsym.expressions.parser import ascii_safe
-    from mbsym.source.scope import did_you_mean
-
-    close = did_you_mean(name, known)
-    return f"unknown method {ascii_safe(name)}; " + (close or f"choose from auto, {', '.join(known)}")
 
 
 def _times(request: Request, frequency: float, system: System) -> Any:
@@ -393,7 +400,7 @@ def _integrate(
         with _progress(request.quiet, file.name, request.end) as watch:
             found = simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
     except Unusable as error:
-        raise Refused(f"this method cannot be used here: {error}") from None
+        raise Unsuited(str(error)) from None
     conserved = energy_status(dynamics)
     further, drifts = _further(dynamics, found, integrals)
     estimated = None
@@ -520,7 +527,9 @@ def _write(
     listed = [path.name for path in written]
     write(
         "simulation.json",
-        simulation_json(found, dynamics.scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed),
+        simulation_json(
+            found, dynamics.scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed
+        ),
     )
     # Figures and tables of an earlier simulation would contradict simulation.json.
     for path in sorted(folder.iterdir()):

@@ -102,7 +102,11 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
     state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
     hints = {
         BLOW_UP: "the motion leaves every bound in finite time; is a sign of the forces right?",
-        SINGULAR: "start elsewhere, or choose other angles: these ones have no meaning there",
+        SINGULAR: (
+            "a coordinate loses its meaning in this state: a distance has shrunk to zero (a collision, a fall to the "
+            "centre), or angles are singular (a pole; other angles help); or a mass is zero. Start elsewhere or stop "
+            "earlier"
+        ),
         STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }

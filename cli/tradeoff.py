@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.assignments import assignments, number
+from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import (
     BAD_INPUT,
     BROKEN_DOWN,
@@ -18,12 +18,11 @@ from mbsym_cli.console import (
     INTERRUPTED,
     OK,
     console,
-    counted,
     read_description,
     status,
 )
 from mbsym_cli.files import obstacle, write_whole
-from mbsym_cli.lacking import lacking
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -48,7 +47,6 @@ class Request:
     end: float
     target: float
     budget: float
-    methods: tuple[str, ...]
     fidelity: bool
     every_row: bool
     quiet: bool
@@ -56,7 +54,7 @@ class Request:
 
 @click.command("tradeoff")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--time", "-t", "end", required=True, metavar="T", help="Simulate from 0 to T (60, 2*pi).")
+@click.option("--time", "-t", "end", metavar="T", help="Simulate from 0 to T (60, 2*pi).  [required]")
 @click.option("--target", default="1e-9", show_default=True, metavar="X", help="The error that is good enough.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--methods", "-m", default="all", show_default=True, help="Some of them, separated by commas.")
@@ -73,7 +71,7 @@ class Request:
 @click.option("--quiet", "-q", is_flag=True, help="Print only the recommendation.")
 def command(
     file: Path,
-    end: str,
+    end: str | None,
     target: str,
     settings: tuple[str, ...],
     methods: str,
@@ -98,61 +96,41 @@ def command(
       mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
     """
     folder = out if out is not None else Path("reports") / file.stem
-    chosen = tuple(dict.fromkeys(part.strip().lower() for part in methods.split(",") if part.strip()))
-    texts = {"--time": end, "--target": target, "--budget": budget}
+    texts = {"--time": end, "--target": target, "--methods": methods, "--budget": budget}
     try:
-        sys.exit(_command(file, folder, settings, texts, Request(0, 0, 0, chosen, fidelity, all_rows, quiet)))
+        sys.exit(_command(file, folder, settings, texts, Request(0, 0, 0, fidelity, all_rows, quiet)))
     except KeyboardInterrupt:
         print(f"{file}: interrupted", file=sys.stderr)
         sys.exit(INTERRUPTED)
 
 
-def _command(file: Path, folder: Path, settings: Sequence[str], texts: dict[str, str], request: Request) -> int:
+def _command(
+    file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], request: Request
+) -> int:
     """Reads everything, complains about everything, then measures."""
-    from mbsym.numerics.scenario import Incomplete, scenario
+    from mbsym.numerics.methods.table import METHODS
 
     system = read_description(file)
-    if system is None:
+    asked = Options()
+    given = None if system is None else given_numbers(file, system, settings, asked)[0]
+    end = asked.number("--time", texts["--time"])
+    if texts["--time"] is None:
+        asked.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+    target = asked.number("--target", texts["--target"], FINEST, COARSEST)
+    names = asked.words("--methods", texts["--methods"] or "", tuple(METHODS), "method", every="all")
+    budget = asked.number("--budget", texts["--budget"])
+    if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
-    overrides, complaints = assignments(settings, system)
-    numbers = {}
-    for option, text in texts.items():
-        numbers[option], more = number(text, option)
-        complaints += more
-    target = numbers["--target"]
-    if target is not None and not FINEST <= target <= COARSEST:
-        complaints.append(f"--target: {texts['--target']}: choose between {FINEST:g} and {COARSEST:g}")
-    chosen, unknown = _methods(request.methods)
-    complaints += unknown
-    if complaints:
-        print("\n".join(complaints), file=sys.stderr)
-        print(f"{file}: {counted(len(complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
-        return BAD_INPUT
-    read = (numbers["--time"] or 0.0, target or 0.0, numbers["--budget"] or 0.0)
-    request = Request(*read, request.methods, request.fidelity, request.every_row, request.quiet)
+    request = replace(request, end=end or 0.0, target=target or 0.0, budget=budget or 0.0)
     reason = obstacle(folder)
     if reason:
         print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
         return FAILED
     try:
-        return _measure(file, folder, scenario(system, overrides), chosen, request)
-    except Incomplete as error:
-        print(lacking(file, error.lack), file=sys.stderr)
-        return BAD_INPUT
+        return _measure(file, folder, given, [METHODS[name] for name in names], request)
     except OSError as error:
         print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
     return FAILED
-
-
-def _methods(names: Sequence[str]) -> tuple[list[Method], list[str]]:
-    """The methods by name, and a complaint for each that there is not."""
-    from mbsym.numerics.methods.table import METHODS
-
-    if names in ((), ("all",)):
-        return list(METHODS.values()), []
-    unknown = [name for name in names if name not in METHODS]
-    complaints = [f"--methods: there is no method {name}; there are {', '.join(METHODS)}" for name in unknown]
-    return [METHODS[name] for name in names if name in METHODS], complaints
 
 
 def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], request: Request) -> int:

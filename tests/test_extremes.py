@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from fractions import Fraction as F
 from math import cos, isfinite, log10, sqrt
 from pathlib import Path
@@ -362,6 +363,32 @@ def test_the_command_writes_everything(tmp_path: Path) -> None:
     names = {"extremes.csv", "extremes.json", "extremes.svg", "extremes.png"}
     assert {path.name for path in tmp_path.iterdir()} == names
     assert "Rates from 1e-8 to 1e8" in done.output
+
+
+@pytest.mark.parametrize("width", [80, 110])
+def test_numbers_stay_whole_on_a_narrow_terminal(whole: Any, width: int) -> None:
+    from rich.console import Console
+
+    from mbsym_cli.extremes import _table
+
+    for columns, rows in tables(whole):
+        out = io.StringIO()
+        Console(file=out, width=width, force_terminal=True, color_system=None).print(_table(columns, rows))
+        lines = out.getvalue().splitlines()
+        assert "…" not in out.getvalue()
+        assert max(map(len, lines)) <= width
+        for row in rows:
+            cells = [cell for cell in row[1 : len(columns) - (columns[-1] == "stability")] if cell]
+            pattern = r"\s+".join(map(re.escape, cells))
+            assert any(re.search(pattern, line) for line in lines), cells
+
+
+def test_without_a_terminal_every_row_is_one_line(tmp_path: Path) -> None:
+    done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
+    rows = [line for line in done.output.splitlines() if "times 1e-12 to 1e12" in line]
+    assert rows
+    assert all(re.search(r"\d+\*? / \d+", line) for line in rows)
+    assert "…" not in done.output
 
 
 def test_missing_values_are_listed(tmp_path: Path) -> None:

@@ -161,6 +161,48 @@ def test_a_body_without_extent_shows_its_axes() -> None:
     assert {point.kind for point in found.points} == {JOINT, AXIS}
 
 
+DAMPED = """\
+mbsym: 1
+name: Satellite with a ball in a tube
+parameters: {A: 3, C: 5, mu: 0.1, b: 0.6, k: 0.3}
+bodies:
+  - name: platform
+    attached to: 0
+    rotation: {axes: [3, 1, 2], angles: [phi, alpha, beta]}
+    mass: 100
+    inertia about: mass centre
+    inertia: [A, A, C]
+  - {name: ball, attached to: platform, connection point: [b, 0, z], mass: mu, coordinates: [z]}
+loads:
+  - spring: {coordinate: z, stiffness: k}
+initial: {alpha: 0.1, beta: 0.05, phi: 0, z: 0.01}
+"""
+
+
+def test_a_body_that_carries_others_shows_its_axes_where_nothing_else_shows_them(tmp_path: Path) -> None:
+    """Directions by another library; a body with a line of its own, or in plane motion, needs no axes."""
+    (tmp_path / "damped.yaml").write_text(DAMPED, encoding="utf-8")
+    angles = np.array([[0.3, 0.5, -0.4], [1.1, -0.7, 2.0]])
+    found = along(
+        scenario_of(tmp_path / "damped.yaml"), [0.0, 1.0], phi=angles[:, 0], alpha=angles[:, 1], beta=angles[:, 2]
+    )
+    assert found.extended
+    tips = {found.points[i].axis: found.places[i] for i in found.tips}
+    assert {found.points[i].body for i in found.tips} == {"platform"}
+    for k, triple in enumerate(angles):
+        rows = Rotation.from_euler("ZXY", triple).as_matrix().T
+        for axis in (1, 2, 3):
+            length = np.linalg.norm(tips[axis][:, k])
+            assert length > 0.6
+            assert np.allclose(tips[axis][:, k] / length, rows[axis - 1], rtol=0, atol=1e-14)
+    assert set(motion_figures(found, ["svg"])) == {"motion.svg", "mass-centres.svg"}
+    flat = along(scenario_of(tmp_path / "damped.yaml"), [0.0, 1.0], phi=[0, 1], alpha=[0, 0], beta=[0, 0], z=[0, 0])
+    assert flat.plane == 3
+    assert flat.tips == ()
+    lined = along(scenario_of(SHIPPED / "satellite.yaml"), [0.0, 1000.0])
+    assert lined.tips == ()
+
+
 def test_a_picture_ends_before_its_paths_fill_it() -> None:
     times = np.linspace(0, 100, 5001)
     found = along(scenario_of(SHIPPED / "simple-pendulum.yaml"), times, theta=np.sin(times))

@@ -20,12 +20,25 @@ from conftest import SHIPPED, precision
 from flint import arb, fmpq
 
 import mbsym
+import mbsym_cli
+from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Formula
-from mbsym.report.conditions import Reference, Shown, Statement
-from mbsym.report.latex_report import LINE, broken
+from mbsym.problems.stability_theory import (
+    ASYMPTOTIC_BUT_CYCLIC,
+    GYROSCOPIC,
+    STABLE,
+    STABLE_BUT_CYCLIC,
+    UNDECIDED,
+    UNSTABLE,
+    Requirement,
+)
+from mbsym.report.conditions import Reference, Shown, Statement, statements
+from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken
+from mbsym.report.latex_report import label as latex_label
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
+from mbsym.report.verdicts import SHORT, short_verdict
 
 #: Names that are reserved in some language, or look alike in another; forces of many kinds; a comment-closing name.
 NASTY = """
@@ -328,6 +341,92 @@ def test_what_was_shown_is_recognised_with_either_sign():
     assert shown.reference(Statement("b", Formula(ring, -p), "!=")) == Reference("b", "a", "!=")
     assert shown.reference(Statement("b", Formula(ring, 2 * p), ">")) is None
     assert shown.reference(Statement("b", None, ">")) is None
+
+
+CART = """
+mbsym: 1
+name: Cart with a double pendulum
+parameters: {M: positive, m1: positive, m2: positive, l1: positive, l2: positive, g: positive,
+             c0: nonnegative, c1: nonnegative, c2: nonnegative, k: positive}
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], mass: M, coordinates: [x]}
+  - {name: rod 1, attached to: cart, rotation: {axes: [3], angles: [th1]}, mass centre: [0, -l1, 0], mass: m1}
+  - name: rod 2
+    attached to: rod 1
+    connection point: [0, -l1, 0]
+    rotation: {axes: [3], angles: [th2 - th1]}
+    mass centre: [0, -l2, 0]
+    mass: m2
+    coordinates: [th2]
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - spring: {coordinate: x, stiffness: k}
+  - damper: {coordinate: x, coefficient: c0}
+  - rayleigh: c1*th1_dot**2/2 + c2*(th2_dot - th1_dot)**2/2
+motion: {x: 0, th1: 0, th2: 0}
+"""
+
+
+def test_very_long_conditions_are_counted_and_are_in_the_other_files():
+    analysis = mbsym.loads(CART)
+    (part,) = analysis.stability.subsystems
+    text = TARGETS["latex"].render(analysis, (6,)).replace("\n", " ")
+    assert len(text) < 20_000
+    found = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]
+    where = dict(zip(found["condition_labels"][0], found["conditions"], strict=True))
+    for label in ("Hurwitz minor 5", "Hurwitz minor 3"):
+        (requirement,) = [r for r in part.theory.requirements if r.label == label]
+        size = len(requirement.condition.polynomial)
+        counted = re.search(
+            rf"\\text{{{label}}} \\colon\\quad \\text{{\((\d+) terms, of degree (\d+); ([a-z. ]+)\)}} > 0", text
+        )
+        assert counted, label
+        assert int(counted[1]) == size > LONGEST_CONDITION
+        assert int(counted[2]) == requirement.condition.polynomial.total_degree()
+        assert counted[3] == "in full in results.json"
+        assert len(re.findall(" [+-] ", where[label])) > LONGEST_CONDITION
+    # What the appendix refers to is all there: the same number at a point.
+    values = state_of(analysis, random.Random(3))
+    point = {key: arb(fmpq(v.numerator, v.denominator)) for key, v in values.items()}
+    with precision(200):
+        wanted = float(part.ring.evaluate(requirement.condition.polynomial, point))
+    names = {key: float(value) for key, value in values.items()}
+    assert close(eval(where["Hurwitz minor 3"].removesuffix(" > 0"), {}, names), wanted)
+    assert r"a_{5} \colon\\quad M" in text  # a short one is written
+    assert r"Verdict: \textbf{depends on the parameters}; see the cases." in text
+    assert "undecided" not in text
+
+
+def test_parts_of_a_condition_have_names_of_their_own():
+    """g f^2 > 0 is g > 0 and f != 0; a reference by name must say which."""
+    ring = analysis_of("heavy-top.yaml").ring
+    m, g = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
+    for label, opposite in (("a3", False), ("-(a3)", True)):
+        whole = (m - g) * (m - 2 * g) ** 2
+        condition = Condition("inequality", m - g, nonzero=(m - 2 * g,))
+        required = Requirement(label, -whole if opposite else whole, condition)
+        first, second = statements(ring, [required])
+        assert (first.formula.polynomial, first.relation) == (m - g, ">")
+        assert (second.formula.polynomial, second.relation) == (m - 2 * g, "!=")
+        assert first.label == ("-(a3, without squares)" if opposite else "a3, without squares")
+        assert second.label == "a3, squared factor"
+    alone = Requirement("a3", m - g, Condition("inequality", m - g))
+    assert [item.label for item in statements(ring, [alone])] == ["a3"]
+    assert latex_label("a3 of factor 2, squared factor") == r"a_{3}^{(2)}\text{, squared factor}"
+
+
+def test_a_verdict_has_one_short_form():
+    assert short_verdict(STABLE_BUT_CYCLIC) == "stable (cyclic drift)"
+    assert short_verdict(f"a border, {ASYMPTOTIC_BUT_CYCLIC} below") == (
+        "a border, asymptotically stable (cyclic drift) below"
+    )
+    assert len(set(SHORT.values())) == len(SHORT)
+    words = [STABLE, GYROSCOPIC, UNSTABLE, UNDECIDED]
+    assert [short_verdict(word) for word in words] == words
+    for name in ("run", "equilibria", "extremes"):
+        assert not [long for long in SHORT if long in (Path(mbsym_cli.__file__).parent / f"{name}.py").read_text()]
+    (line,) = summary(analysis_of("satellite-with-damper.yaml"), (6,), []).problems
+    assert not [text for text in line.lines for long in SHORT if long in text]
 
 
 def test_a_number_stands_in_front_of_a_matrix():

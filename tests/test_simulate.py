@@ -9,7 +9,9 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
+from io import BytesIO
 from math import isclose, pi, sqrt
 from pathlib import Path
 from typing import Any
@@ -19,7 +21,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED, parsed
+from matplotlib.figure import Figure
+from PIL import Image
 
+from mbsym.numerics.between import accelerations, between
 from mbsym.numerics.choice import choose, rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.invariants import CHANGING, CONSERVED, energy_status
@@ -27,7 +32,7 @@ from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import least_pivot, simulate
-from mbsym.report.figures import figures
+from mbsym.report.figures import CORNER, _curve, figures
 from mbsym.report.trajectory_csv import columns, trajectory_csv
 from mbsym.source import load
 from mbsym_cli import files
@@ -259,16 +264,79 @@ def test_a_winding_angle_is_drawn_modulo_a_turn() -> None:
 
 
 def test_thinning_keeps_the_extremes() -> None:
-    from mbsym.report.figures import _thinned
+    from mbsym.report.drawing import thinned
 
     times = np.linspace(0, 1, 100_000)
     values = np.sin(40_000 * times)
     values[12_345] = 7.0
-    shown_times, shown = _thinned(times, values)
+    shown_times, shown = thinned(times, values)
     assert len(shown) < 5_000
     assert shown.max() == 7.0
     assert shown.min() < -0.999
     assert np.all(np.diff(shown_times) > 0)
+
+
+def test_between_samples_the_curve_is_exact_to_degree_five() -> None:
+    """q = t^5 - 2 t^3 + t: a quintic is its own Hermite interpolant, whatever the intervals."""
+    q = np.polynomial.Polynomial([0.25, 1, 0, -2, 0, 1])
+    times = np.array([0.0, 0.3, 1.0, 1.1])
+    states, rates = np.array([q(times), q.deriv()(times)]), q.deriv(2)(times)[None]
+    finer, found = between(times, states, rates, [2, 5, 1])
+    assert len(finer) == 9
+    assert np.allclose(finer[:3], [0, 0.15, 0.3])
+    assert np.allclose(found, [q(finer), q.deriv()(finer)], rtol=0, atol=1e-14)
+    assert np.array_equal(found[:, [0, 2, 7, 8]], states)
+    # Negative control: with accelerations that are wrong it is not.
+    assert not np.allclose(between(times, states, 1.1 * rates, [2, 5, 1])[1], [q(finer), q.deriv()(finer)], atol=1e-4)
+
+
+def test_what_cannot_be_rounded_is_joined_by_straight_lines() -> None:
+    times = np.array([0.0, 1.0, 2.0, 3.0])
+    states = np.array([[0.0, 1.0, 3.0, 4.0], [1.0, 1.0, 1.0, 1.0]])  # from 1 to 3 at speed 1 in time 1: no smooth curve
+    _, found = between(times, states, np.array([[0.0, 0.0, 0.0, np.nan]]), [4, 4, 4])
+    assert np.allclose(found[0], [0, 0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.25, 3.5, 3.75, 4], rtol=0, atol=1e-14)
+    assert np.allclose(found[1], 1)
+
+
+def test_phase_planes_have_no_corners() -> None:
+    """An ellipse of 20 samples: 18 degrees at each of them, drawn with turns of a few degrees, and on the ellipse."""
+    times = np.linspace(0, 2 * pi, 21)
+    dynamics = dynamics_of(DOUBLE)
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), times[:2])
+    found = replace(found, times=times, states=np.array([np.cos(times), 0 * times, -np.sin(times), 0 * times]))
+    q, v = _curve(found, 0, np.array([-np.cos(times), 0 * times]))
+    assert np.max(np.abs(np.hypot(q, v) - 1)) < 1e-5
+    steps = np.unwrap(np.arctan2(np.diff(v), np.diff(q)))
+    assert np.max(np.abs(np.diff(steps))) < 2 * CORNER
+    plain = np.unwrap(np.arctan2(*np.diff(_curve(found, 0, None))[::-1]))
+    assert np.max(np.abs(np.diff(plain))) > 4 * CORNER
+
+
+def test_accelerations_are_those_of_the_equations() -> None:
+    """A pendulum has (J + m l^2) theta'' = -m g l sin(theta) - b theta'; m = 1, l = 0.5, J = 0.1, b = 0.05."""
+    dynamics = dynamics_of(SHIPPED / "simple-pendulum.yaml")
+    states = np.array([[0.3, -1.2], [0.5, 0.1]])
+    wanted = (-9.81 * 0.5 * np.sin(states[0]) - 0.05 * states[1]) / 0.35
+    assert np.allclose(accelerations(dynamics, [0.0, 1.0], states), [wanted], rtol=1e-14, atol=0)
+
+
+def test_numbers_along_axes_are_plain_text() -> None:
+    from mbsym.report.drawing import _Numbers, _Powers, saved, styled
+
+    assert [_Powers()(x) for x in (1e-3, 1.0, 1e12)] == ["10⁻³", "10⁰", "10¹²"]
+    with styled():
+        figure = Figure(figsize=(3, 2), layout="constrained")
+        axis = figure.subplots()
+        axis.plot([0, 2e-5], [1e6, 3e6])
+        images = saved("plain", figure, ["svg", "png"])
+        assert isinstance(axis.xaxis.get_major_formatter(), _Numbers)
+        labels = [label.get_text() for label in axis.get_xticklabels()]
+        assert "0.5" in labels
+        assert not any("$" in label for label in labels)
+        assert axis.xaxis.get_offset_text().get_text().startswith("$")
+    with Image.open(BytesIO(images["plain.png"])) as image:
+        assert image.size == (450, 300)
+    assert ElementTree.fromstring(images["plain.svg"]).get("width") == "216pt"
 
 
 # --- what is missing or wrong ---

@@ -242,10 +242,20 @@ def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path
     assert [row["model"] for row in models] == ["as described", "linearised"]
 
 
+def test_every_series_looks_different() -> None:
+    from mbsym.report.tradeoff_figure import _DASHES, _INSIDE, _styles
+
+    styles = _styles(METHODS)
+    assert len({colour for colour, _ in styles.values()}) == len(METHODS)
+    assert len({str(_DASHES[scalar]) for scalar in _DASHES}) == len(set(_INSIDE.values())) == 3
+    many = _styles(f"method {i}" for i in range(50))
+    assert len(set(many.values())) == 50
+
+
 def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:
     found = run(SYSTEMS / "double-pendulum.yaml", "--time", "soon", "--target", 2, "-s", "l3=1", "-m", "euler")
     assert found.exit_code == 2
-    for word in ("soon", "--target: 2", "l3", "euler", "nothing was written"):
+    for word in ("soon", "--target: error[bad-number]: choose between", "l3", "euler", "4 errors; nothing was written"):
         assert word in found.output
 
 

@@ -100,10 +100,14 @@ _DEGREES = ("deg", "degs", "degree", "degrees")
 _RADIANS = ("rad", "rads", "radian", "radians")
 
 #: Units behind a number, which mean nothing here; some are names of quantities just as well.
-_UNITS = frozenset(
-    "kg g mg lb lbs m mm cm km um ft s ms us sec min h hr Hz kHz N kN mN Nm Pa kPa MPa J kJ W kW rpm "
-    "second seconds minute minutes hour hours meter meters metre metres gram grams kilogram kilograms "
-    "newton newtons".split()
+_UNITS = tuple(
+    unit
+    for units in (
+        "kg g mg lb lbs m mm cm km um ft s ms us sec min h hr Hz kHz N kN mN Nm Pa kPa MPa J kJ W kW rpm",
+        "second seconds minute minutes hour hours meter meters metre metres gram grams kilogram kilograms",
+        "newton newtons",
+    )
+    for unit in units.split()
 )
 
 _DECIMAL_COMMA = re.compile(r"(?<![\w.,])([0-9]+),([0-9]+)(?![\w.,])")
@@ -124,9 +128,7 @@ class _Refused(Exception):
     """Internal: this expression is given up; the complaint is already recorded."""
 
 
-def parse_expression(
-    text: str, complaints: Complaints, span_of: SpanOf, named: bool = True
-) -> Expression | None:
+def parse_expression(text: str, complaints: Complaints, span_of: SpanOf, named: bool = True) -> Expression | None:
     """The tree of an expression, or None with at least one complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which

@@ -173,7 +173,8 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             follows = numbers.value(f"the relation of {relation.name}", relation.value)
             own = numbers.known[relation.name]
             if abs(follows - own) > AGREEMENT * max(abs(follows), abs(own)):
-                text = f"{relation.name} = {float(own):.12g} contradicts its relation, which gives {float(follows):.12g}"
+                text = f"{relation.name} = {float(own):.12g} contradicts its relation, which gives "
+                text += f"{float(follows):.12g}"
                 numbers.contradictions.append(Contradiction("conflicting-values", relation.name, text))
     for parameter in system.parameters:
         found = numbers.known.get(parameter.name)

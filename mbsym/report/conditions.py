@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability_theory import Case, Requirement
+from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stability_theory import UNDECIDED, Case, Requirement
 
 
 @dataclass(frozen=True)
@@ -32,15 +33,31 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
             continue
         condition = requirement.condition
         note = "holds: the kinetic energy is positive definite" if requirement.by_mass else ""
+        # g f^2 > 0 is g > 0 and f != 0: two polynomials, which must not have one name.
+        several = condition.kind == "inequality" or len(condition.nonzero) > 1
         if condition.kind == "inequality":
-            yield Statement(requirement.label, Formula(ring, condition.polynomial), requirement.relation, note)
+            label = _part(requirement.label, "without squares") if condition.nonzero else requirement.label
+            yield Statement(label, Formula(ring, condition.polynomial), requirement.relation, note)
         elif condition.kind == "unwritten":
             yield Statement(requirement.label, None, requirement.relation, "too long to be written out")
         elif condition.kind == "never":
             never = Formula(ring, requirement.polynomial)
             yield Statement(requirement.label, None, requirement.relation, "never holds", never)
-        for polynomial in condition.nonzero:
-            yield Statement(requirement.label, Formula(ring, polynomial), "!=", note)
+        for number, polynomial in enumerate(condition.nonzero, 1):
+            which = f"squared factor {number}" if len(condition.nonzero) > 1 else "squared factor"
+            label = _part(_bare(requirement.label), which) if several else requirement.label
+            yield Statement(label, Formula(ring, polynomial), "!=", note)
+
+
+def _bare(label: str) -> str:
+    """v4 for -(v4)."""
+    return label[2:-1] if label.startswith("-(") and label.endswith(")") else label
+
+
+def _part(label: str, which: str) -> str:
+    """v4, squared factor; -(v4, without squares)."""
+    bare = _bare(label)
+    return f"{bare}, {which}" if bare == label else f"-({bare}, {which})"
 
 
 def _alternative(ring: Ring, requirement: Requirement) -> Statement:
@@ -81,6 +98,16 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
         for case in found
         if not case.never
     ]
+
+
+def depends(part: SubsystemStability) -> bool:
+    """Whether nothing is proved because it is different for different parameters."""
+    return part.theory.verdict.word == UNDECIDED and bool(cases(part.ring, part.theory.cases))
+
+
+def whole_depends(found: Stability) -> bool:
+    """Whether nothing is proved of the whole because that of a subsystem depends on the parameters."""
+    return found.verdict.word == UNDECIDED and any(map(depends, found.subsystems))
 
 
 @dataclass(frozen=True)

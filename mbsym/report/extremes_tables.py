@@ -12,6 +12,7 @@ from typing import Any
 from mbsym.numerics.digits import FULL
 from mbsym.numerics.extremes import Extremes, Row, sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.report.verdicts import short_verdict
 
 HEADER = (
     "kind",
@@ -128,14 +129,6 @@ def _cell(rows: Sequence[Row]) -> str:
 def _verdicts(own: Sequence[Any]) -> str:
     if not own:
         return ""
-    words = list(dict.fromkeys(_short(v.judged.exact.word) for v in own))
+    words = list(dict.fromkeys(short_verdict(v.judged.exact.word) for v in own))
     wrong = sum(v.judged.wrong(FLOAT64) for v in own)
     return ", ".join(words) + (f" (float64 wrong {wrong} of {len(own)})" if wrong else "")
-
-
-def _short(word: str) -> str:
-    return (
-        word.split(";")[0]
-        .replace("gyroscopically stabilised only", "gyroscopic")
-        .replace("stable with respect to the other variables", "stable but cyclic")
-    )

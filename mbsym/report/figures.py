@@ -40,7 +40,8 @@ def figures(
     """Every figure in every format, by file name.
 
     ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
-    samples, without them as lines from one to the next.  ``note`` is written under each title (a trajectory that is not whole must say so); ``conserved`` says whether the
+    samples, without them as lines from one to the next.  ``note`` is written under each title (a trajectory that is
+    not whole must say so); ``conserved`` says whether the
     energy ought to be constant, so that what it changes by is an error.  A single state gives no figures.
     """
     if len(found.times) < 2:
@@ -140,7 +141,8 @@ def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[s
                 label += r"  modulo $2\pi$"
                 axis.set_xlim(-np.pi, np.pi)
                 axis.set_xticks(
-                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi, ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"]
+                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi,
+                    ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"],
                 )
             axis.plot(q, v, color=BLUE, linewidth=0.9, rasterized=len(q) > MOST_POINTS)
             axis.plot(q[:1], v[:1], "o", color=RED, markersize=4)

@@ -18,11 +18,12 @@ from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.spectrum import Spectrum, numbers
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
-from mbsym.report.conditions import Reference, Shown, cases, provided, statements
+from mbsym.report.conditions import Reference, Shown, cases, depends, provided, statements, whole_depends
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
 from mbsym.report.latex_description import call, expression, load_in_words
 from mbsym.report.programs import programs_of
+from mbsym.report.verdicts import DEPENDS
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -33,6 +34,8 @@ WIDEST = 40
 LINE = 400
 #: Longer formulas are left to the machine-readable files: nobody reads them, and TeX's memory is finite.
 LONGEST = 6000
+#: Conditions with more terms than this are counted instead of written: what they say, they say in results.json.
+LONGEST_CONDITION = 150
 
 
 def _exact(value: Fraction) -> str:
@@ -63,6 +66,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "row": row,
             "entries": entries,
             "sum": polynomial,
+            "condition": condition,
             "eigenvalues": eigenvalues,
             "label": label,
             "refer": refer,
@@ -92,6 +96,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        depends=depends,
+        whole_depends=whole_depends,
+        DEPENDS=DEPENDS,
         claims=analysis.claims,
         repair=repair,
         checks=analysis.checks,
@@ -150,7 +157,10 @@ def label(words: str) -> str:
     opposite = re.fullmatch(r"-\((.*)\)", words)
     if opposite is not None:
         return "-" + label(opposite[1])
-    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", words)
+    bare, comma, part = words.partition(", ")
+    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    if match is not None and comma:
+        return label(bare) + f"\\text{{, {escaped(part)}}}"
     if match is None:
         return f"\\text{{{escaped(words)}}}"
     raised = f"^{{({match[4]})}}" if match[4] else ""
@@ -165,6 +175,16 @@ def formula(value: Formula) -> str:
     if value.terms > LONGEST:
         return f"\\text{{({value.terms} terms: see the machine-readable files)}}"
     return latex_text(value.ring, value.polynomial, breaks=True)
+
+
+def condition(value: Formula, in_json: bool = True) -> str:
+    """A polynomial of problem 6; a long one is only counted, and ``in_json`` tells where it is."""
+    written = "" if value.terms > LONGEST else formula(value)
+    if written and len(re.findall(r" [+-] ", written)) < LONGEST_CONDITION:
+        return written
+    degree = max(map(sum, value.polynomial.monoms()))
+    where = "; in full in results.json" if in_json else ""
+    return f"\\text{{({value.terms} terms, of degree {degree}{where})}}"
 
 
 def width(latex: str) -> float:
@@ -253,7 +273,10 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
         if coefficient.is_zero:
             continue
         raised = "" if power == 0 else f" {variable}" if power == 1 else f" {variable}^{{{power}}}"
-        text = formula(coefficient)
+        text = condition(coefficient)
+        if text.startswith("\\text"):
+            written.append(" \\penalty0 " + ("+ " if written else "") + text + raised)
+            continue
         shape = present(coefficient.ring, coefficient.polynomial)
         if raised and text in ("1", "-1"):
             text = text[:-1]

@@ -192,9 +192,7 @@ def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: 
         for pairs, width, dash in ((found.links, 2.0 * thin, "solid"), (found.slides, 1.2, (0, (3, 1.5)))):
             ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in found.tips]
             axis.add_collection(LineCollection(ends, colors=[colour], linewidths=width, linestyles=dash, zorder=zorder))
-        joints = [
-            i for i, point in enumerate(found.points) if i not in found.centres.values() and point.kind != AXIS
-        ]
+        joints = [i for i, point in enumerate(found.points) if i not in found.centres.values() and point.kind != AXIS]
         axis.plot(*flat[joints, :, k].T, "o", color=colour, markersize=3.2, markerfacecolor="white", zorder=zorder)
         for place, i in enumerate(found.centres.values()):
             edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
@@ -301,7 +299,12 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, not
     for axis, (body, i) in zip(grid, rows, strict=True):
         for number in drawn:
             style = ("-", (0, (5, 2)), (0, (1.5, 1.5)))[number - 1]
-            axis.plot(*thinned(found.times, found.places[i, number - 1]), color=_PATHS[number - 1], linestyle=style, label=f"axis {number}")
+            axis.plot(
+                *thinned(found.times, found.places[i, number - 1]),
+                color=_PATHS[number - 1],
+                linestyle=style,
+                label=f"axis {number}",
+            )
         axis.set_title(body, loc="left", fontsize=10, parse_math=False)
         axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)

@@ -16,11 +16,12 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.spectrum import RootNumbers, Spectrum, numbers
-from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stability import Stability
 from mbsym.problems.stability_theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
 from mbsym.report.claims import ClaimLine, claim_line
-from mbsym.report.conditions import Statement, cases, provided, statements
+from mbsym.report.conditions import Statement, depends, provided, statements, whole_depends
 from mbsym.report.results_json import statement_text
+from mbsym.report.verdicts import DEPENDS, short_verdict
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -122,15 +123,14 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
     for part in found.subsystems:
         items = list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
-        if _depends(part) and items:
+        if depends(part) and items:
             necessary = part.theory.method == EVEN_METHOD and part.theory.kind != "conservative"
-            verdict = f"depends on the parameters; {'necessary ' if necessary else ''}conditions:"
+            verdict = f"{DEPENDS}; {'necessary ' if necessary else ''}conditions:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         for item in items:
             yield f"  {_condition(item)}"
     if len(found.subsystems) > 1:
-        depends = found.verdict.word == UNDECIDED and any(map(_depends, found.subsystems))
-        yield f"whole system: {'depends on the parameters' if depends else _verdict(found.verdict)}"
+        yield f"whole system: {DEPENDS if whole_depends(found) else _verdict(found.verdict)}"
     if presumed:
         yield f"all this {presumed}"
     if found.numerical is not None:
@@ -156,11 +156,6 @@ def root_text(root: RootNumbers) -> str:
     return text + times
 
 
-def _depends(part: SubsystemStability) -> bool:
-    """Whether nothing is proved because it is different for different parameters."""
-    return part.theory.verdict.word == UNDECIDED and bool(cases(part.ring, part.theory.cases))
-
-
 def _condition(item: Statement) -> str:
     if item.label == UNWRITTEN:
         return f"a condition is {item.note}"
@@ -172,7 +167,7 @@ def _condition(item: Statement) -> str:
 
 
 def _verdict(verdict: Any) -> str:
-    return verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+    return short_verdict(verdict.word) + (f" ({verdict.theorem})" if verdict.theorem else "")
 
 
 def _clause(sentence: str) -> str:

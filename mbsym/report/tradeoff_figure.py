@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import isfinite
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,20 +14,15 @@ from mbsym.numerics.fidelity import RESOLVED, ModelError
 from mbsym.numerics.tradeoff import Measured, Tradeoff
 from mbsym.report.drawing import GREY, RED, pictures
 
+#: Dark and light colours, and markers: what looks alike in the one differs in the other.
 _COLOURS = (
-    "#1f5fa8",
-    "#d9822b",
-    "#2e8b57",
-    "#8e5ea2",
-    "#17a2b8",
-    "#8c564b",
-    "#c2478f",
-    "#6b6b00",
-    "#444444",
-    "#00897b",
+    *("#1f5fa8", "#d9822b", "#2e8b57", "#8e5ea2", "#17a2b8", "#8c564b", "#c2478f"),
+    *("#444444", "#e8b98a", "#8ccba0", "#c0a0d8", "#a8a8a8", "#e89ac8", "#7fb0e8"),
 )
-_DASHES = {"float64": "-", "float32": ":", "extended": "--"}
-_MARKS = {"float64": "o", "float32": "s", "extended": "^"}
+_MARKS = ("o", "D", "v", "P", "X", "*", "<", ">")
+#: Arithmetic: the line, and the inside of the marker.
+_DASHES: dict[str, Any] = {"float64": "-", "float32": (0, (1, 1.6)), "extended": (0, (5, 2))}
+_INSIDE = {"float64": "full", "float32": "none", "extended": "left"}
 
 #: Errors beyond this are no solutions and are not drawn.
 WORST = 10.0
@@ -48,16 +44,17 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
     for row in found.rows:
         if isfinite(row.error) and row.error < WORST:
             ladders.setdefault((row.candidate.method.traits.name, row.candidate.scalar), []).append(row)
-    methods = list(dict.fromkeys(name for name, _ in ladders))
+    styles = _styles(dict.fromkeys(name for name, _ in ladders))
     for (name, scalar), rows in ladders.items():
         label = name if scalar == "float64" else f"{name}, {scalar}"
         axes.plot(
             [max(row.error, 1e-17) for row in rows],
             [row.seconds for row in rows],
-            _DASHES[scalar],
-            marker=_MARKS[scalar],
-            markersize=3.5,
-            color=_COLOURS[methods.index(name) % len(_COLOURS)],
+            linestyle=_DASHES[scalar],
+            marker=styles[name][1],
+            fillstyle=_INSIDE[scalar],
+            markersize=4.5,
+            color=styles[name][0],
             label=label,
         )
     front = sorted((row for row in found.rows if row.front and row.error < WORST), key=lambda row: row.error)
@@ -85,8 +82,14 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
         _line(axes, found.smallest_judged, GREY, "limit of the reference")
     for model in _drawable(models):
         _line(axes, model.error, OLIVE, f"model {model.variant.label}")
-    figure.legend(loc="outside right upper", frameon=False, fontsize=9)
+    # Patterns of lines need some length to be told apart.
+    figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
     return figure
+
+
+def _styles(methods: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """A colour and a marker for each method, no pair of them twice (up to 56 methods)."""
+    return {name: (_COLOURS[i % len(_COLOURS)], _MARKS[i % len(_MARKS)]) for i, name in enumerate(methods)}
 
 
 def _drawable(models: Sequence[ModelError]) -> Iterable[ModelError]:

@@ -37,6 +37,9 @@ _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1
 _CONSTANT_KINDS = ("linear matrix", "subsystem matrix", "characteristic polynomial", "condition")
 _KINDS = {kind.lower(): kind for kind in CLAIMS}
 
+#: A kind that resembles a known one as much (1: equal) is read as that one, after a complaint.
+_MISSPELT = 0.8
+
 
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
@@ -71,7 +74,8 @@ def _claims(item: Node, bodies: list[str], coordinates: tuple[str, ...], reading
     node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
     word = None if node is None else reading.word(node, "a claim", _KINDS)
     if word is None and isinstance(node, Scalar):
-        word = closest(" ".join(node.text.lower().split()), _KINDS)  # as it was meant: what else is wrong with it?
+        # Read as it was meant, for what else may be wrong with it.
+        word = closest(" ".join(node.text.lower().split()), _KINDS, _MISSPELT)
     if word is None:
         _check_names(fields, reading)
         return []

@@ -116,7 +116,8 @@ def _read_load(item: Node, bodies: list[str], reading: Reading) -> Load | None:
         misspelt = closest(kind, LOADS, _MISSPELT)
         other = _MEANT.get(" ".join(kind.lower().split()))
         kinds = f"kinds of load are: {', '.join(LOADS)}"
-        hint = f"did you mean '{misspelt}'?" if misspelt else f"did you mean {other}? The {kinds}" if other else f"the {kinds}"
+        hint = f"did you mean {other}? The {kinds}" if other else f"the {kinds}"
+        hint = f"did you mean '{misspelt}'?" if misspelt else hint
         reading.error("unknown-load", f"unknown kind of load {ascii_safe(entry.key.text)}", entry.key.span, hint)
         if misspelt is None:
             return None

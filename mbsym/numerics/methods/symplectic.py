@@ -35,6 +35,7 @@ from flint import arb, ctx
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
 from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled

@@ -1,0 +1,124 @@
+"""Values of options, read one and all before anything is computed: complaints are collected and printed at once.
+
+Every complaint has one look, ``--option: error[code]: what is wrong``, the guilty piece and a hint where these help.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Iterable
+from pathlib import Path
+
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.tree import CONSTANTS, Name, walk
+from mbsym.source import render_option
+from mbsym.source.scope import closest
+from mbsym_cli.console import counted
+
+#: The text of an option has at most so many characters.
+MAX_LENGTH = 2_000
+
+#: Words that resemble each other as much (1: equal) are taken for slips.
+_MISSPELT = 0.7
+
+
+class Options:
+    """Reads the texts of options; whatever cannot be read is None and one of the ``complaints``."""
+
+    def __init__(self) -> None:
+        self.complaints: list[str] = []
+
+    def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
+        self.complaints.append(render_option(Complaint(code, message, None, hint), "", option))
+
+    def refused(self, file: Path | None = None) -> bool:
+        """Whether there is anything to complain about; then it is printed (of no ``file``: of the options alone)."""
+        if not self.complaints:
+            return False
+        whose = "options" if file is None else file
+        print("\n".join(self.complaints), file=sys.stderr)
+        print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+        return True
+
+    def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:
+        """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""
+        from mbsym.algebra.base import NoClosedForm, SingularPoint
+        from mbsym.numerics.scenario import exact
+
+        if text is None:
+            return None
+        text = " ".join(text.splitlines())
+        complaints = Complaints()
+        value, whole = None, Span(1, 1, max(1, len(text)))
+        if len(text) > MAX_LENGTH:
+            complaints.error("bad-number", "this number is too long")
+        else:
+            value = parse_expression(text, complaints, _place, named=False)
+        if value is not None:
+            for node in walk(value):
+                if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
+                    complaints.error("unknown-name", f"a number is wanted here, not {ascii_safe(node.name)}", node.span)
+        found = None
+        if value is not None and not complaints.errors:
+            try:
+                found = float(exact(value, {}))
+            except (NoClosedForm, SingularPoint) as reason:
+                complaints.error("bad-number", f"it has no value: {reason}", whole)
+            else:
+                within = f"choose between {least:g} and {most:g}" if most is not None and least else None
+                if not found > 0:
+                    complaints.error("bad-number", "it must be positive", whole, within)
+                elif found < least or (most is not None and found > most):
+                    complaints.error("bad-number", within or f"it is at most {most:g}", whole)
+        self.complaints += [render_option(complaint, text, option) for complaint in complaints.sorted()]
+        return None if complaints.errors else found
+
+    def whole(self, option: str, text: str | None, least: int, most: int, why: str = "") -> int | None:
+        """A whole number between bounds; ``why`` says what the lower one is for."""
+        if text is None:
+            return None
+        short = text.strip()
+        digits = short.removeprefix("-").removeprefix("+")
+        if not (digits.isascii() and digits.isdigit() and len(digits) <= 30):
+            self.complain(option, "bad-number", f"a whole number is wanted, not {ascii_safe(text)}")
+            return None
+        value = int(short)
+        if not least <= value <= most:
+            bound = f"at least {least}" if value < least else f"at most {most}"
+            self.complain(option, "bad-number", f"{value} is out of bounds: {bound}{why if value < least else ''}")
+            return None
+        return value
+
+    def word(self, option: str, text: str, choices: Collection[str], what: str) -> str | None:
+        """One of a few words."""
+        if text in choices:
+            return text
+        self._unknown(option, text, choices, what)
+        return None
+
+    def words(self, option: str, text: str, choices: Collection[str], what: str, every: str = "") -> tuple[str, ...]:
+        """Some of a few words, separated by commas, each once; ``every`` stands for all of them."""
+        chosen = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",") if part.strip()))
+        if every and chosen == (every,):
+            return tuple(choices)
+        for name in chosen:
+            if name not in choices:
+                self._unknown(option, name, [*choices, every] if every else choices, what)
+        if not chosen:
+            self.complain(option, f"unknown-{what}", f"there is no {what} in it", _listed(choices, every))
+        return tuple(name for name in chosen if name in choices)
+
+    def _unknown(self, option: str, name: str, choices: Iterable[str], what: str) -> None:
+        known = list(choices)
+        close = closest(name, known, _MISSPELT)
+        hint = f"did you mean '{close}'? There are {', '.join(known)}" if close else _listed(known)
+        self.complain(option, f"unknown-{what}", f"there is no {what} {ascii_safe(name)}", hint)
+
+
+def _listed(choices: Iterable[str], every: str = "") -> str:
+    return f"choose from {', '.join(choices)}" + (f" or {every}" if every else "")
+
+
+def _place(start: int, end: int) -> Span:
+    return Span(1, start + 1, max(1, end - start))

@@ -1,0 +1,295 @@
+"""Options and settings of the commands: every complaint at once, in one style, before anything is computed or written.
+
+--option: error[code]: what is wrong
+  | the value
+  |     ^^^^^
+  hint: what to write instead
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym.expressions.parser import names_apart, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym_cli.console import numbers
+from mbsym_cli.main import main
+from mbsym_cli.options import Options
+
+SYSTEMS = Path(__file__).parent.parent / "systems"
+DOUBLE = SYSTEMS / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
+DAMPED = """
+mbsym: 1
+name: Damped oscillator
+parameters: {m: positive, k: positive, c: nonnegative, e: real}
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+relations: {e: k/m}
+values: {m: 1, k: 4, c: 1/10}
+initial: {x: 1}
+"""
+KEPLER = """
+mbsym: 1
+name: Kepler problem
+parameters: {m: positive, mu: positive}
+bodies:
+  - {name: planet, attached to: 0, connection point: [r*cos(phi), r*sin(phi), 0], mass: m, coordinates: [r, phi]}
+loads:
+  - potential: -mu*m/r
+values: {m: 1, mu: 1}
+initial: {r: 1, phi: 0}
+"""
+
+
+def mbsym(*words: Any) -> Result:
+    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+
+
+def described(folder: Path, text: str) -> Path:
+    path = folder / "system.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def heads(done: Result) -> list[str]:
+    """The first lines of all complaints about options; what else is printed must be their rest, or the count."""
+    found = []
+    for line in done.stderr.splitlines():
+        if re.match(r"--[a-z-]+: error\[[a-z-]+\]: ", line):
+            found.append(line)
+        else:
+            assert re.match(r"  \| |  hint: |.*\d errors?; nothing was written\.$", line), line
+    return found
+
+
+def codes(done: Result) -> list[tuple[str, str]]:
+    return [re.findall(r"--[a-z-]+(?=:)|(?<=error\[)[a-z-]+", line)[:2] for line in heads(done)]  # type: ignore[misc]
+
+
+SETTINGS = ("--set", "theta1=pi", "--set", "m1=-1", "--set", "zz=2", "--set", "l1=cs(q)", "--set", "g=30deg")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("simulate", "--time", 1), ("tradeoff", "--time", 1), ("extremes",), ("equilibria",)],
+    ids=lambda words: words[0],
+)
+def test_settings_are_complained_about_in_one_round_and_in_the_same_words(words: Any, tmp_path: Path) -> None:
+    out = () if words[0] == "equilibria" else ("--out", tmp_path / "out")
+    settings = [word for word in SETTINGS if words[0] != "equilibria" or word != "theta1=pi"]
+    if words[0] == "equilibria":
+        settings = settings[1:]
+    done = mbsym(words[0], DOUBLE, *words[1:], *settings, *out)
+    assert done.exit_code == 2
+    assert heads(done) == [
+        "--set: error[unknown-name]: there is nothing called 'zz' to set",
+        "--set: error[unknown-function]: unknown function 'cs'",
+        "--set: error[unknown-name]: unknown name 'q'",
+        "--set: error[bad-expression]: an operator is missing before 'deg'",
+        "--set: error[sign-contradiction]: m1 = -1, but it is declared positive",
+    ]
+    assert "  | m1=-1\n  | ^^^^^\n" in done.stderr
+    assert "  | l1=cs(q)\n  |       ^\n" in done.stderr
+    assert "angles are in radians: write 30*pi/180 or pi/6" in done.stderr
+    assert done.stderr.endswith("double-pendulum.yaml: 5 errors; nothing was written.\n")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_value_that_was_refused_is_not_missing_as_well(tmp_path: Path) -> None:
+    path = described(tmp_path, DAMPED.replace("values: {m: 1, k: 4, c: 1/10}", "values: {m: 1}"))
+    done = mbsym("simulate", path, "--time", 1, "--set", "k=3 N", "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert "no value for c\n" in done.stderr
+    assert "2 errors" in done.stderr
+
+
+def test_a_relation_that_is_broken_by_a_setting_is_said_of_the_setting(tmp_path: Path) -> None:
+    path = described(tmp_path, DAMPED)
+    done = mbsym("simulate", path, "--time", 1, "--set", "e=5", "--set", "c=-1", "--out", tmp_path / "out")
+    assert heads(done) == [
+        "--set: error[conflicting-values]: e = 5 contradicts its relation, which gives 4",
+        "--set: error[sign-contradiction]: c = -1, but it is declared nonnegative",
+    ]
+    fine = mbsym("simulate", path, "--time", 1, "--set", "e=4", "--set", "c=0", "-f", "csv", "--out", tmp_path / "out")
+    assert fine.exit_code == 0, fine.output
+
+
+def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
+    words = ["--time", "20s", "--method", "rk5", "--set", "Q=3", "--set", "theta1=30deg", "--tolerance", "-1"]
+    words += ["--format", "jpg", "--samples", "0", "--step-limit", "x", "--arithmetic", "float16"]
+    done = mbsym("simulate", DOUBLE, *words, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert sorted(map(tuple, codes(done))) == [
+        ("--arithmetic", "unknown-arithmetic"),
+        ("--format", "unknown-format"),
+        ("--method", "unknown-method"),
+        ("--samples", "bad-number"),
+        ("--set", "bad-expression"),
+        ("--set", "unknown-name"),
+        ("--step-limit", "bad-number"),
+        ("--time", "bad-expression"),
+        ("--tolerance", "bad-number"),
+    ]
+    assert "did you mean 'rk45'?" in done.stderr
+    assert "units are not used: write numbers only" in done.stderr
+    assert done.stderr.endswith("9 errors; nothing was written.\n")
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_description_is_read_even_if_the_options_are_wrong(tmp_path: Path) -> None:
+    path = described(tmp_path, DAMPED.replace("mass: m", "mass: mm"))
+    for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "8")):
+        done = mbsym(words[0], path, *words[1:], "--out", tmp_path / "out")
+        assert done.exit_code == 2
+        assert "error[unknown-name]: unknown name 'mm'" in done.stderr
+        assert f"{words[1]}: error[unknown-" in done.stderr
+        assert ("--time: error[missing-option]" in done.stderr) == (words[0] != "run")
+        assert "options: " in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "code", "said"),
+    [
+        ("", ["--method", "rk4"], ("--method", "missing-option"), "--step 0.0002, a 10000th of the time"),
+        ("", ["--method", "rk4", "--tolerance", "1e-6"], ("--tolerance", "conflicting-options"), "give a --step"),
+        ("", ["--step", "1"], ("--step", "conflicting-options"), "rk4"),
+        ("", ["--method", "dop853", "--step", "1"], ("--step", "conflicting-options"), "leave --step out"),
+        ("", ["--step", "1", "--tolerance", "1e-6"], ("--step", "conflicting-options"), "exclude each other"),
+        ("", ["--samples", "3", "--every", "1"], ("--every", "conflicting-options"), "exclude each other"),
+        ("", ["--method", "rk4", "--step", "3"], ("--step", "bad-number"), "longer than the whole time"),
+        ("", ["--method", "radau", "--arithmetic", "float32"], ("--arithmetic", "conflicting-options"), "these do: "),
+        (DAMPED, ["--method", "midpoint", "--step", "1"], ("--method", "unsuitable-method"), "coordinate damper"),
+    ],
+)  # fmt: skip
+def test_methods_that_do_not_fit_are_refused_before_compiling(
+    text: str, words: list[str], code: tuple[str, str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def compiled(*_: object) -> None:
+        raise AssertionError("too late")
+
+    monkeypatch.setattr("mbsym.numerics.dynamics.Dynamics", compiled)
+    path = described(tmp_path, text) if text else DOUBLE
+    done = mbsym("simulate", path, "--time", 2, *words, "--out", tmp_path / "out")
+    assert done.exit_code == 2, done.output
+    assert [tuple(one) for one in codes(done)] == [code]
+    assert said in done.stderr
+    assert "nothing was written" in done.stderr
+
+
+def test_a_method_of_fixed_step_runs_with_its_step(tmp_path: Path) -> None:
+    done = mbsym("simulate", DOUBLE, "--time", 1, "--method", "RK4", "--step", "0.01", "-f", "csv", "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+
+
+def test_each_mistake_of_tradeoff_is_said_once(tmp_path: Path) -> None:
+    words = ["--time", "1", "--methods", "foo,rk5,rk4", "--target", "-1", "--budget", "0", "--out", tmp_path / "out"]
+    done = mbsym("tradeoff", DOUBLE, *words)
+    assert done.exit_code == 2
+    assert heads(done) == [
+        "--target: error[bad-number]: it must be positive",
+        "--methods: error[unknown-method]: there is no method 'foo'",
+        "--methods: error[unknown-method]: there is no method 'rk5'",
+        "--budget: error[bad-number]: it must be positive",
+    ]
+    assert "hint: choose between 1e-15 and 0.1" in done.stderr
+    assert "did you mean 'rk45'?" in done.stderr
+
+
+def test_all_options_of_run_at_once(tmp_path: Path) -> None:
+    done = mbsym("run", DOUBLE, "--problems", "8,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert heads(done) == [
+        "--problems: error[unknown-problem]: there is no problem 8",
+        "--problems: error[bad-range]: the range 5-3 is empty",
+        "--format: error[unknown-format]: there is no format 'pdf'",
+        "--terms: error[bad-number]: -1 is out of bounds: at least 1",
+    ]
+    assert "hint: a range goes upwards: write 3-5" in done.stderr
+    assert "hint: problems are numbered 1 to 7" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "found", "wrong"),
+    [
+        ("1-5", (1, 2, 3, 4, 5), []),
+        (" 6 , 1 - 2,2", (1, 2, 6), []),
+        ("5-3", (), ["bad-range"]),
+        ("0", (), ["unknown-problem"]),
+        ("2,6-9", (2,), ["unknown-problem"]),
+        ("1-999999999", (), ["unknown-problem"]),
+        ("1-99999999999999999999", (), ["bad-number"]),
+        ("", (), ["bad-number"]),
+        ("1,", (1,), ["bad-number"]),
+        ("-", (), ["bad-number"]),
+        ("\u00b2,x", (), ["bad-number", "bad-number"]),
+    ],
+)
+def test_problem_numbers(text: str, found: tuple[int, ...], wrong: list[str]) -> None:
+    heard: list[str] = []
+    assert numbers(text, lambda code, message, hint: heard.append(code)) == found
+    assert heard == wrong
+
+
+def test_equilibria_wants_exact_numbers_and_no_state(tmp_path: Path) -> None:
+    done = mbsym("equilibria", DOUBLE, "--set", "m1=sqrt(2)", "--set", "theta1=1", "--within", "1e9")
+    assert done.exit_code == 2
+    assert [tuple(one) for one in codes(done)] == [
+        ("--set", "not-rational"),
+        ("--set", "misplaced-name"),
+        ("--within", "bad-number"),
+    ]
+    assert mbsym("equilibria", DOUBLE, "--set", "m1=3/2", "--within", "2*pi").exit_code == 0
+
+
+def test_a_fall_to_the_centre_is_no_matter_of_angles_alone(tmp_path: Path) -> None:
+    path = described(tmp_path, KEPLER)
+    done = mbsym("simulate", path, "--time", 3, "-f", "csv", "--no-estimate", "--out", tmp_path / "out")
+    assert done.exit_code == 3, done.output
+    assert "error[singular-mass-matrix]" in done.stderr
+    assert "a distance has shrunk to zero (a collision, a fall to the centre)" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("a*b + sin(c)", ["a", "b", "c"]),
+        ("a*(b + 3 kg) + d", ["a", "b", "d"]),
+        ("some words + b", ["some", "b"]),
+        ("a + \u03b8_dot*b'", ["a"]),
+        ("f(a) + sqrt + pi", ["a", "pi"]),
+        ("a +* b", ["a", "b"]),
+        ("", []),
+    ],
+)
+def test_names_of_what_is_no_expression(text: str, found: list[str]) -> None:
+    assert [one.name for one in names_apart(text, lambda start, end: Span(1, start + 1, end - start), [])] == found
+
+
+@pytest.mark.parametrize("text", ["x+" * 9_999, "(" * 20_000, "\u00e9a+" * 500, "a b " * 5_000, "a" * 20_001])
+def test_long_nonsense_ends(text: str) -> None:
+    complaints = Complaints()
+
+    def place(start: int, end: int) -> Span:
+        return Span(1, start + 1, end - start)
+
+    assert parse_expression(text, complaints, place) is None
+    assert len(names_apart(text, place, complaints.items[:200])) <= 10_000
+
+
+def test_long_values_and_control_characters_are_shown_safely() -> None:
+    asked = Options()
+    assert asked.number("--time", "1" + "+1" * 5_000) is None
+    assert asked.number("--time", "1\x1b[2J") is None
+    assert asked.word("--method", "rk\x1b4" + "x" * 5_000, ("rk4",), "method") is None
+    assert asked.whole("--samples", "9" * 5_000, 1, 5) is None
+    assert len(asked.complaints) == 5  # two characters of the escape sequence
+    assert all(len(line) < 250 and "\x1b" not in line for text in asked.complaints for line in text.splitlines())
