@@ -392,7 +392,7 @@ def test_very_long_conditions_are_counted_and_are_in_the_other_files():
         wanted = float(part.ring.evaluate(requirement.condition.polynomial, point))
     names = {key: float(value) for key, value in values.items()}
     assert close(eval(where["Hurwitz minor 3"].removesuffix(" > 0"), {}, names), wanted)
-    assert r"a_{5} \colon\\quad M" in text  # a short one is written
+    assert r"a_{5} \colon\quad M" in text  # a short one is written
     assert r"Verdict: \textbf{depends on the parameters}; see the cases." in text
     assert "undecided" not in text
 

@@ -279,15 +279,17 @@ def test_thinning_keeps_the_extremes() -> None:
 def test_between_samples_the_curve_is_exact_to_degree_five() -> None:
     """q = t^5 - 2 t^3 + t: a quintic is its own Hermite interpolant, whatever the intervals."""
     q = np.polynomial.Polynomial([0.25, 1, 0, -2, 0, 1])
-    times = np.array([0.0, 0.3, 1.0, 1.1])
+    times = np.array([0.0, 0.3, 0.6, 1.0, 1.1])
     states, rates = np.array([q(times), q.deriv()(times)]), q.deriv(2)(times)[None]
-    finer, found = between(times, states, rates, [2, 5, 1])
-    assert len(finer) == 9
+    finer, found = between(times, states, rates, [2, 5, 3, 1])
+    assert len(finer) == 12
     assert np.allclose(finer[:3], [0, 0.15, 0.3])
     assert np.allclose(found, [q(finer), q.deriv()(finer)], rtol=0, atol=1e-14)
-    assert np.array_equal(found[:, [0, 2, 7, 8]], states)
+    assert np.array_equal(found[:, [0, 2, 7, 10, 11]], states)
     # Negative control: with accelerations that are wrong it is not.
-    assert not np.allclose(between(times, states, 1.1 * rates, [2, 5, 1])[1], [q(finer), q.deriv()(finer)], atol=1e-4)
+    assert not np.allclose(
+        between(times, states, 1.1 * rates, [2, 5, 3, 1])[1], [q(finer), q.deriv()(finer)], atol=1e-4
+    )
 
 
 def test_what_cannot_be_rounded_is_joined_by_straight_lines() -> None:
@@ -318,6 +320,30 @@ def test_accelerations_are_those_of_the_equations() -> None:
     states = np.array([[0.3, -1.2], [0.5, 0.1]])
     wanted = (-9.81 * 0.5 * np.sin(states[0]) - 0.05 * states[1]) / 0.35
     assert np.allclose(accelerations(dynamics, [0.0, 1.0], states), [wanted], rtol=1e-14, atol=0)
+
+
+def test_labels_are_within_the_page(tmp_path: Path) -> None:
+    """Also where the room for labels is measured once; the page's own fonts and style end with it."""
+    from mbsym.report.drawing import fontManager, saved, styled
+    from mbsym.report.figures import _drift, _histories, _planes
+
+    installed = fontManager.ttflist
+    dynamics = dynamics_of(described(tmp_path, chain(2)))
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), np.linspace(0, 3, 50))
+    with styled():
+        pages = [*_histories(found, ""), *_planes(found, ""), ("drift", _drift(found, "", True))]
+        for stem, figure in pages:
+            saved(stem, figure, ["png"])
+            width, height = figure.bbox.size
+            for axes in figure.axes:
+                assert "get_tightbbox" not in vars(axes)
+                label = axes.yaxis.label.get_window_extent()
+                assert 0 <= label.x0 < label.x1 <= axes.bbox.x0, stem
+                assert 0 <= label.y0 < label.y1 <= height
+                below = axes.xaxis.label.get_window_extent()
+                assert below.y0 >= 0
+                assert below.x1 <= width
+    assert fontManager.ttflist is installed
 
 
 def test_numbers_along_axes_are_plain_text() -> None:

@@ -237,7 +237,7 @@ def _positions(system: System, frame: str, values: Any, times: Any) -> Positions
 
 
 def _own_axes(system: System, frame: str, points: Sequence[Point], places: Any) -> dict[str, float]:
-    """How long to draw the axes of bodies that turn by three angles about a point at rest and have no line of their own.
+    """How long to draw the axes of bodies that turn by three angles about a point at rest and have no own line.
 
     Nothing where all motion is in a plane: there the picture says enough.
     """

@@ -10,10 +10,13 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.font_manager import fontManager
 from matplotlib.ticker import LogFormatterMathtext, ScalarFormatter
+from matplotlib.transforms import Bbox
 from PIL import Image
 
 #: Pixels per inch of a PNG.
@@ -66,11 +69,19 @@ def thinned(times: Any, values: Any) -> tuple[Any, Any]:
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Drawn inside, figures have our style, whatever the user's is."""
+    """Drawn inside, figures have our style and matplotlib's own fonts, whatever the user's are."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
-        yield
+        installed = fontManager.ttflist
+        # Every font of every size is looked for among all that are installed, which may be thousands.
+        fontManager.ttflist = [
+            font for font in installed if font.fname.startswith(matplotlib.get_data_path())
+        ] or installed
+        try:
+            yield
+        finally:
+            fontManager.ttflist = installed
 
 
 def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
@@ -90,7 +101,10 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
     # Arranging takes as long as drawing: once for all formats, and not by savefig, which would draw twice.
     engine = figure.get_layout_engine()
     if engine is not None:
-        engine.execute(figure)
+        # Axes that keep their shape end up elsewhere than they are put.
+        free = all(axes.get_aspect() == "auto" and axes.get_box_aspect() is None for axes in figure.axes)
+        with _measured_once(figure.axes if free else []):
+            engine.execute(figure)
         figure.set_layout_engine("none")
     found = {}
     for kind in formats:
@@ -103,6 +117,35 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
             _png(np.asarray(canvas.buffer_rgba()), stream)
         found[f"{stem}.{kind}"] = stream.getvalue()
     return found
+
+
+@contextmanager
+def _measured_once(measured: Sequence[Axes]) -> Iterator[None]:
+    """How far labels reach beyond axes is measured once; arranging would measure it again after moving them.
+
+    So the places of labels must not depend on the size of the axes.
+    """
+    for axes in measured:
+        axes.get_tightbbox = _Measured(axes)  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        for axes in measured:
+            del axes.get_tightbbox
+
+
+class _Measured:
+    def __init__(self, axes: Axes) -> None:
+        self._axes, self._measure = axes, axes.get_tightbbox
+        self._beyond: Any = None
+
+    def __call__(self, *arguments: Any, **options: Any) -> Any:
+        if self._beyond is None:
+            box = self._measure(*arguments, **options)
+            if box is None:
+                return None
+            self._beyond = np.subtract(box.extents, self._axes.bbox.extents)
+        return Bbox.from_extents(*np.add(self._axes.bbox.extents, self._beyond))
 
 
 def _png(pixels: Any, stream: BytesIO) -> None:

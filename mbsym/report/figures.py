@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.transforms import ScaledTranslation
 
 from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
@@ -91,11 +92,12 @@ def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
     for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
         figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
         axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
+        left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
         for row, name in zip(axes, names, strict=True):
             for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
                 axis.plot(*thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
                 _label(axis, label)
-                axis.yaxis.set_label_coords(-0.14, 0.5)
+                axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
         for axis in axes[-1]:
             axis.set_xlabel("$t$")
             _span(axis, found.times)

@@ -201,7 +201,7 @@ def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: 
 
 
 def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:
-    """(centre on the paper, radius) of the spheres on which the tips of axes move, where these do not move themselves."""
+    """(centre on the paper, radius) of the spheres on which tips of axes move, where these are at rest."""
     joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
     still = set(joints.values()) - set(found.moving(joints.values()))
     spheres = []
