@@ -41,7 +41,12 @@ BORDER = "border of stability"
 
 #: Borders are sought between these powers of 2 times the given value, and approached to these distances.
 POWERS = range(-10, 11)
+#: Times this: at round numbers a verdict may be that of a single point, at which roots coincide.
+OFF = Fraction(998, 997)
 APPROACH = tuple(10.0**-k for k in range(2, 15, 2))
+
+#: How far beside an undecided value it is seen whether a border runs through it.
+BESIDE = Fraction(1, 10**15)
 
 #: Eigenvalues nearer to the imaginary axis than this part of the largest are taken to lie on it.
 ON_THE_AXIS = 1e-10
@@ -258,16 +263,20 @@ class LinearModel:
             except (Incomplete, SingularPoint, ValueError, ZeroDivisionError):
                 return UNDECIDED
 
-        words = {k: word(Fraction(2) ** k) for k in POWERS}
+        places = {k: OFF * Fraction(2) ** k for k in POWERS}
+        words = {k: word(place) for k, place in places.items()}
         for k in sorted(POWERS[:-1], key=lambda k: abs(k + 0.5)):
             below, above = words[k], words[k + 1]
             if below != above and UNDECIDED not in (below, above):
-                low, high = Fraction(2) ** k, Fraction(2) ** (k + 1)
+                low, high = places[k], places[k + 1]
                 while high - low > low / 10**20:
                     middle = (low + high) / 2
                     found = word(middle)
                     if found == UNDECIDED:
-                        return middle, middle  # exactly on the border
+                        beside = [word(middle * (1 + sign * BESIDE)) for sign in (-1, 1)]
+                        if len({*beside}) > 1 or beside[0] not in (below, above):
+                            return middle, middle  # exactly on the border
+                        found = beside[0]  # a point inside, at which no theorem decides (roots that coincide)
                     low, high = (middle, high) if found == below else (low, middle)
                 return low, high
         return None
