@@ -138,6 +138,16 @@ motion: {{x: 0, y: 0, z: 0, a: 0, b: 0, c: 0}}
 """
 
 
+def star(arms: int) -> str:
+    """A free body with arms: its momenta are conserved, and no simple multiplier proves the angular one."""
+    bodies = "".join(
+        f"  - {{name: c{i}, attached to: hub, rotation: {{axes: [{i % 3 + 1}], angles: [q{i}]}}, "
+        f"connection point: [0, l, {i}], mass: m, inertia about: mass centre, inertia: [J, J, J]}}\n"
+        for i in range(arms)
+    )
+    return point_of_one_joint("x").replace("J: positive", "J: positive, l: positive").replace("motion:", bodies + "# ")
+
+
 CHAIN = " ".join(f"a{i}" for i in range(61))
 TALL = "sin(" * 45 + "x" + "".join(f"*y) + {'zabcx'[i % 5]}" for i in range(45))
 WIDE = "/".join(f"({'xyzabc'[i % 6]} + {i + 1})" for i in range(70))
@@ -274,9 +284,11 @@ CASES = {
     "no mass": pendulum(mass="0").replace("inertia: [J, J, J]", "inertia: [0, 0, 0]"),
     "no inertia in a coordinate": particle("x0**2", 2, mass="0"),
     "time scale zero": pendulum(more='dimensionless time: "k - k"'),
+    "time scale to a high power": pendulum(more="dimensionless time: (k + l + m + g)**30"),
     # size
     "a tall formula": point_of_one_joint(TALL),
     "a wide formula": point_of_one_joint(WIDE),
+    "forty arms on a free body": star(40),
     "140 divisions": particle("/".join(["(x0 + 1)"] * 140)),
     # names
     "names that mean something elsewhere": pendulum(

@@ -182,3 +182,24 @@ def test_what_is_zero_but_for_rounding_is_shown_as_zero() -> None:
 
     assert _text(CoordinateValue("x", "0", -1.2e-292, False, False)) == "0"
     assert _text(CoordinateValue("x", "0.123456789012", 0.123456789012, False, False)) == "0.12345679"
+
+
+def test_denominators_of_unknown_sign_become_squares() -> None:
+    """m x'' + 2 c x / ((k - a) (k - b)^2) = 0 is stable for c (k - a) > 0; (k - b)^2 is a square already."""
+    description = """
+mbsym: 1
+name: particle
+parameters: {m: positive, k: real, a: real, b: real, c: real}
+bodies:
+  - {name: particle, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - potential: c*x**2/((k - a)*(k - b)**2)
+motion: {x: 0}
+"""
+    (part,) = mbsym.loads(description).stability.subsystems
+    assert str(part.factor) == "(k - a)**2*(k - b)**2"
+    assert str(part.matrices[3].rows[0][0]) == "2*c*(k - a)"
+    for word, k, a in ((STABLE, 1, 3), (UNSTABLE, 3, 1)):
+        (part,) = mbsym.loads(f"{description}values: {{m: 1, b: 7, c: -1, k: {k}, a: {a}}}\n").stability.subsystems
+        assert part.theory.at_point is not None
+        assert part.theory.at_point.verdict.word == word

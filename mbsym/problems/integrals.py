@@ -234,7 +234,7 @@ def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iter
     for state in states:
         carry = Carrier(scene.ring, state.numbers, state.values)
         try:
-            mass = matrix(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
+            mass = matrix(n, n, _mass_at(carry, equations))
             accelerations = mass.solve(matrix(n, 1, [carry(x.polynomial) for x in equations.forcing]))
         except (SingularPoint, ZeroDivisionError):
             continue
@@ -274,28 +274,65 @@ def _simple_multipliers(scene: Scene, equations: Equations, formula: Polynomial)
     fitted to exact values at rational states, so that no formula is inverted.
     """
     ring, names = scene.ring, scene.system.coordinates
-    n = len(names)
     unknowns = [ring.one, *(ring.generator(kind, name) for kind in ("coordinate", "velocity") for name in names)]
     slopes = [ring.velocity_derivative(formula, name) for name in names]
     basis: list[Any] = []
     values: list[Any] = []
     try:
+        if not _depend_on_state_alone(scene, equations, slopes):
+            return None
         for state in rational_states(scene.system, ring, 4 * STATES + len(unknowns)):
-            carry = Carrier(ring, state.numbers, state.values)
-            try:
-                mass = fmpq_mat(n, n, [carry(x.polynomial) for row in equations.mass_matrix for x in row])
-                solved = mass.solve(fmpq_mat(n, 1, [carry(x) for x in slopes]))
-            except (SingularPoint, ZeroDivisionError):
+            solved = _multipliers_at(scene, equations, slopes, state)
+            if solved is None:
                 continue
+            carry = Carrier(ring, state.numbers, state.values)
             basis.append([carry(x) for x in unknowns])
-            values.append([solved[i, 0] for i in range(n)])
+            values.append(solved)
             if len(basis) == len(unknowns):
                 found = fmpq_mat(basis).solve(fmpq_mat(values))
-                columns = [[found[k, i] for k in range(len(unknowns))] for i in range(n)]
+                columns = [[found[k, i] for k in range(len(unknowns))] for i in range(len(names))]
                 return [sum((x * c for x, c in zip(unknowns, column, strict=True)), ring.zero) for column in columns]
     except (NotRational, ZeroDivisionError):
         pass
     return None
+
+
+def _depend_on_state_alone(scene: Scene, equations: Equations, slopes: Sequence[Polynomial]) -> bool:
+    """False if mu differs between two states of equal q and q', but other sines, cosines and parameters.
+
+    At a rational state these are independent numbers, so two solutions spare the fit of large systems.
+    """
+    names = [*scene.system.coordinates, *scene.system.velocities]
+    found: list[list[Any]] = []
+    kept: dict[str, Any] = {}
+    for state in rational_states(scene.system, scene.ring, 4 * STATES):
+        kept = kept or {name: state.values[name] for name in names}
+        same = State(state.numbers, {**state.values, **kept})
+        solved = _multipliers_at(scene, equations, slopes, same)
+        if solved is not None:
+            found.append(solved)
+        if len(found) == 2:
+            return found[0] == found[1]
+    return True
+
+
+def _multipliers_at(scene: Scene, equations: Equations, slopes: Sequence[Polynomial], state: State) -> list[Any] | None:
+    """mu = M^-1 dI/dq' at a rational state; None where that is singular."""
+    carry = Carrier(scene.ring, state.numbers, state.values)
+    n = len(slopes)
+    try:
+        solved = fmpq_mat(n, n, _mass_at(carry, equations)).solve(fmpq_mat(n, 1, [carry(x) for x in slopes]))
+    except (SingularPoint, ZeroDivisionError):
+        return None
+    return [solved[i, 0] for i in range(n)]
+
+
+def _mass_at(carry: Carrier, equations: Equations) -> list[Any]:
+    """The entries of M row by row, each pair of equal ones evaluated once."""
+    rows: list[list[Any]] = []
+    for i, row in enumerate(equations.mass_matrix.polynomials):
+        rows.append([rows[j][i] if j < i else carry(x) for j, x in enumerate(row)])
+    return [x for row in rows for x in row]
 
 
 def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polynomial | None:

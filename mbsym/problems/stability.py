@@ -377,20 +377,34 @@ def _polynomial(
     ring = scene.ring
     given = [[[elimination(x) for x in row] for row in m.polynomials] for m in (part.M, part.D, part.G, part.K, part.N)]
     factor = ring.one
+    powers: list[tuple[Polynomial, int]] = []
     for x in (x for matrix in given for row in matrix for x in row):
-        for bottom, exponent in ring.fraction(ring.reduce(x * factor))[1]:
-            factor = ring.reduce(factor * bottom**exponent)
+        for bottom, exponent in ring.fraction(ring.reduce(ring.times(x, factor)))[1]:
+            powers.append((bottom, exponent))
+            factor = ring.reduce(ring.times(factor, ring.power(bottom, exponent)))
     if signs.sign(factor) != "positive":
-        factor = ring.reduce(factor * factor)  # a square is positive wherever the formulas make sense
-    scaled = [[[ring.fraction(ring.reduce(x * factor))[0] for x in row] for row in matrix] for matrix in given]
+        factor = _even(ring, signs, factor, powers)
+    scaled = [[[ring.fraction(ring.reduce(ring.times(x, factor)))[0] for x in row] for row in m] for m in given]
     common = ring.zero
     for x in (x for matrix in scaled for row in matrix for x in row):
-        common = common.gcd(x)
+        common = ring.common_factor(common, x)
     if not common.is_zero() and not common.is_constant() and signs.sign(common) == "positive":
         scaled = [[[divmod(x, common)[0] for x in row] for row in matrix] for matrix in scaled]
-        factor = ring.reduce(factor * ring.reciprocal(common))
+        factor = ring.reduce(ring.times(factor, ring.reciprocal(common)))
     made = [Matrix.of(ring, matrix) for matrix in scaled]
     return (made[0], made[1], made[2], made[3], made[4]), Formula(ring, factor)
+
+
+def _even(ring: Ring, signs: Signs, factor: Polynomial, powers: Sequence[tuple[Polynomial, int]]) -> Polynomial:
+    """``factor``, the product of the powers, times every one of odd exponent whose sign is open.
+
+    What is left is a product of squares, positive wherever the formulas make sense.
+    """
+    for k, (bottom, _) in enumerate(powers):
+        same = [j for j, (other, _) in enumerate(powers) if other == bottom]
+        if same[0] == k and sum(powers[j][1] for j in same) % 2 and signs.sign(bottom) != "positive":
+            factor = ring.reduce(ring.times(factor, bottom))
+    return factor
 
 
 def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Fraction] | None:
