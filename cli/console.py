@@ -22,9 +22,6 @@ OK, FAILED, BAD_INPUT = 0, 1, 2
 #: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
 BROKEN_DOWN, INTERRUPTED = 3, 130
 
-#: Problems are numbered 1 to this.
-PROBLEMS = 7
-
 
 @cache
 def console(stderr: bool = False) -> Console:
@@ -59,26 +56,3 @@ def read_description(path: Path) -> System | None:
 def counted(n: int, one: str, many: str) -> str:
     """``1 body``, ``4 bodies``."""
     return f"{n} {one if n == 1 else many}"
-
-
-def numbers(text: str, complain: Callable[[str, str, str], None]) -> tuple[int, ...]:
-    """``1-5``, ``1,3,5`` or ``6`` as problem numbers; ``complain(code, message, hint)`` hears of what is none."""
-    found: set[int] = set()
-    usual = "write for example 1-5 or 1,3,6"
-    for part in (part.strip() for part in text.split(",")):
-        first, dash, last = (piece.strip() for piece in part.partition("-"))
-        ends = (first, last) if dash else (first, first)
-        if not all(end.isascii() and end.isdigit() and len(end) < 10 for end in ends):
-            complain("bad-number", f"'{part}' is no problem number", usual)
-            continue
-        low, high = map(int, ends)
-        if low > high:
-            complain("bad-range", f"the range {part} is empty", f"a range goes upwards: write {last}-{first}")
-            continue
-        wrong = [n for n in dict.fromkeys((low, high)) if not 1 <= n <= PROBLEMS]
-        if wrong:
-            message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
-            complain("unknown-problem", message, f"problems are numbered 1 to {PROBLEMS}")
-            continue
-        found.update(range(low, high + 1))
-    return tuple(sorted(found))

@@ -19,6 +19,9 @@ from mbsym_cli.console import counted
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
 
+#: Problems are numbered 1 to this.
+PROBLEMS = 7
+
 #: Words that resemble each other as much (1: equal) are taken for slips.
 _MISSPELT = 0.7
 
@@ -40,6 +43,35 @@ class Options:
         print("\n".join(self.complaints), file=sys.stderr)
         print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return True
+
+    def time(self, text: str | None) -> float | None:
+        """``--time``, without which nothing can be simulated."""
+        if text is None:
+            self.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+        return self.number("--time", text)
+
+    def problems(self, text: str) -> tuple[int, ...]:
+        """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""
+        found: set[int] = set()
+        for part in (part.strip() for part in text.split(",")):
+            first, dash, last = (piece.strip() for piece in part.partition("-"))
+            ends = (first, last) if dash else (first, first)
+            if not all(end.isascii() and end.isdigit() and len(end) < 10 for end in ends):
+                hint = "write for example 1-5 or 1,3,6"
+                self.complain("--problems", "bad-number", f"'{part}' is no problem number", hint)
+                continue
+            low, high = map(int, ends)
+            if low > high:
+                hint = f"a range goes upwards: write {last}-{first}"
+                self.complain("--problems", "bad-range", f"the range {part} is empty", hint)
+                continue
+            wrong = [n for n in dict.fromkeys((low, high)) if not 1 <= n <= PROBLEMS]
+            if wrong:
+                message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
+                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {PROBLEMS}")
+                continue
+            found.update(range(low, high + 1))
+        return tuple(sorted(found))
 
     def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:
         """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, numbers, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, read_description, status
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -81,7 +81,7 @@ def command(
 
     paths = list(_descriptions(files))
     asked = Options()
-    chosen = numbers(problems, lambda code, message, hint: asked.complain("--problems", code, message, hint))
+    chosen = asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
     budget = asked.whole("--terms", terms, 1, 10**12)
     if not paths:

@@ -207,9 +207,7 @@ def _read(system: System | None, texts: Mapping[str, str | None], flags: Flags, 
     """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
     from mbsym.numerics.methods.table import METHODS
 
-    end = asked.number("--time", texts["--time"])
-    if texts["--time"] is None:
-        asked.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+    end = asked.time(texts["--time"])
     every = asked.number("--every", texts["--every"])
     tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
     step = asked.number("--step", texts["--step"])

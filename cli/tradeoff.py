@@ -113,9 +113,7 @@ def _command(
     system = read_description(file)
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
-    end = asked.number("--time", texts["--time"])
-    if texts["--time"] is None:
-        asked.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+    end = asked.time(texts["--time"])
     target = asked.number("--target", texts["--target"], FINEST, COARSEST)
     names = asked.words("--methods", texts["--methods"] or "", tuple(METHODS), "method", every="all")
     budget = asked.number("--budget", texts["--budget"])

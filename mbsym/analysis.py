@@ -42,7 +42,7 @@ from mbsym.problems import (
 )
 from mbsym.problems.checks import Check
 from mbsym.problems.claims import ClaimResult
-from mbsym.problems.counterexample import Trials
+from mbsym.problems.claims.counterexample import Trials
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibria import Equilibria

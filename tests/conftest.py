@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import pytest
 from flint import arb, ctx, fmpq
 
 import mbsym
@@ -22,6 +25,8 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 
+needs_pdflatex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
+
 TESTS = Path(__file__).parent
 SHIPPED = TESTS.parent / "systems"
 OWN = TESTS / "systems"
@@ -30,6 +35,15 @@ OWN = TESTS / "systems"
 def reference(name: str) -> Any:
     """The content of a file of reference data."""
     return json.loads((TESTS / "references" / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def compiled_latex(text: str, folder: Path) -> str:
+    """What pdflatex says of a document, which it has to compile."""
+    (folder / "report.tex").write_text(text, encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:]
+    return done.stdout
 
 
 def parsed(text: str) -> Expression:

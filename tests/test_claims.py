@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED, at_values
+from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -279,7 +277,7 @@ def test_explain_lists_the_kinds_of_claim() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
+@needs_pdflatex
 def test_the_appendix_with_claims_compiles(tmp_path: Path) -> None:
     analysis = analysed(
         "claim: kinetic energy, equals: J*theta_dot**2/2 + w2, place: eq. (1) & 50 %",
@@ -289,11 +287,7 @@ def test_the_appendix_with_claims_compiles(tmp_path: Path) -> None:
         "claim: value, of: theta_ddot, state: initial, equals: 1.23",
         "claim: condition, that: J - m > 0",
     )
-    (tmp_path / "report.tex").write_text(latex(analysis, range(1, 8)), encoding="utf-8")
-    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert "Overfull" not in done.stdout
+    assert "Overfull" not in compiled_latex(latex(analysis, range(1, 8)), tmp_path)
 
 
 # --- hostile ---

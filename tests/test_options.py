@@ -17,7 +17,6 @@ from click.testing import CliRunner, Result
 
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym_cli.console import numbers
 from mbsym_cli.main import main
 from mbsym_cli.options import Options
 
@@ -234,9 +233,9 @@ def test_all_options_of_run_at_once(tmp_path: Path) -> None:
     ],
 )
 def test_problem_numbers(text: str, found: tuple[int, ...], wrong: list[str]) -> None:
-    heard: list[str] = []
-    assert numbers(text, lambda code, message, hint: heard.append(code)) == found
-    assert heard == wrong
+    asked = Options()
+    assert asked.problems(text) == found
+    assert [complaint.split("[")[1].split("]")[0] for complaint in asked.complaints] == wrong
 
 
 def test_equilibria_wants_exact_numbers_and_no_state(tmp_path: Path) -> None:

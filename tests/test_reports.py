@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SHIPPED, precision
+from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
 from flint import arb, fmpq
 
 import mbsym
@@ -212,19 +212,11 @@ def test_results_read_back_to_the_same_polynomials():
 # --- LaTeX ---
 
 
-def compiled(text: str, folder: Path) -> str:
-    (folder / "report.tex").write_text(text, encoding="utf-8")
-    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=120)
-    assert done.returncode == 0, done.stdout[-2000:]
-    return done.stdout
-
-
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
+@needs_pdflatex
 @pytest.mark.parametrize("name", ["satellite.yaml", "nasty"])
 def test_latex_compiles_without_overfull_lines(name, tmp_path):
     analysis = analysis_of(name)
-    log = compiled(TARGETS["latex"].render(analysis, analysis.problems), tmp_path)
+    log = compiled_latex(TARGETS["latex"].render(analysis, analysis.problems), tmp_path)
     if name != "nasty":
         assert "Overfull" not in log
 
@@ -315,7 +307,7 @@ def test_latex_lists_the_loads_and_the_given_motion(tmp_path):
     ):
         assert part in text.replace("\n", " "), part
     if shutil.which("pdflatex") is not None:
-        compiled(text, tmp_path)
+        compiled_latex(text, tmp_path)
 
 
 def test_long_conditions_are_shown_once():

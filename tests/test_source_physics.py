@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import mbsym
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression
@@ -168,3 +169,20 @@ relations: {{w: v}}
     system, complaints = read(text, "x.yaml")
     assert (system is not None) is good
     assert [item.code for item in complaints] == ([] if good else ["relative-velocity"])
+
+
+@pytest.mark.parametrize("number", ["pi/6", "sqrt(2)", "-30*pi/180"])
+def test_a_parameter_may_be_any_number(number: str) -> None:
+    """What stands alone is what {value: ...} says; only a rational number says its own sign."""
+    template = """
+mbsym: 1
+name: incline
+parameters: {{m: positive, g: positive, slope: {slope}}}
+bodies:
+  - {{name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}}
+loads:
+  - uniform gravity: {{acceleration: g, direction: [sin(slope), -cos(slope), 0]}}
+"""
+    short, long = (mbsym.loads(template.format(slope=slope)).system for slope in (number, f"{{value: {number}}}"))
+    assert short == long
+    assert next(one for one in short.parameters if one.name == "slope").value is not None

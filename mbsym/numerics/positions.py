@@ -84,6 +84,11 @@ class Positions:
     extended: bool = False
 
     @property
+    def bodied(self) -> bool:
+        """Whether bodies are drawn as lines and points, not by the tips of their axes alone."""
+        return self.extended or not self.tips
+
+    @property
     def size(self) -> float:
         """The diagonal of the box about all points at all times."""
         return float(np.linalg.norm(np.ptp(self.places, axis=(0, 2))))

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
@@ -86,7 +87,7 @@ def _unpushed(dynamics: Dynamics) -> Collection[str]:
     n, scenario = dynamics.size, dynamics.scenario
     rhs = compiled_kernel(dynamics, "right_hand_side")
     start = np.array([float(x) for x in scenario.state])
-    source = np.random.default_rng(1788)
+    source = np.random.default_rng(SEED)
     moved = source.uniform(-1, 1, (2 * n, STATES)) * (0.5 + np.abs(start[:, None]))
     moved[:, 0] = 0.0
     times = np.concatenate(([0.0], source.uniform(0, 1, STATES - 1)))

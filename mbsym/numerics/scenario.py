@@ -7,7 +7,7 @@ may be left out: a coordinate whose initial position is given and whose velocity
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ from flint import arb, ctx, fmpq
 from mbsym.algebra.base import Lowering, NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.expressions.tree import Expression, names
+from mbsym.model.comparison import has_sign
 from mbsym.model.system import InitialValue, System, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -178,19 +179,9 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
                 numbers.contradictions.append(Contradiction("conflicting-values", relation.name, text))
     for parameter in system.parameters:
         found = numbers.known.get(parameter.name)
-        if found is not None and not _SIGNS[parameter.sign](found):
+        if found is not None and not has_sign(found, parameter.sign):
             text = f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
             numbers.contradictions.append(Contradiction("sign-contradiction", parameter.name, text))
-
-
-_SIGNS: Mapping[str, Callable[[Fraction], bool]] = {
-    "real": lambda x: True,
-    "positive": lambda x: x > 0,
-    "nonnegative": lambda x: x >= 0,
-    "negative": lambda x: x < 0,
-    "nonpositive": lambda x: x <= 0,
-    "nonzero": lambda x: x != 0,
-}
 
 
 def _initial(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:

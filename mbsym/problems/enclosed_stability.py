@@ -23,6 +23,7 @@ from mbsym.problems.stability_theory import (
     KELVIN_CHETAEV,
     LAGRANGE,
     LYAPUNOV,
+    MASS_SINGULAR,
     ROUTH,
     STABLE,
     UNDECIDED,
@@ -34,8 +35,6 @@ from mbsym.problems.stability_theory import (
 )
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
-
-MASS_SINGULAR = "The mass matrix is singular: the coordinates are singular there."
 
 
 def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 200) -> Verdict:

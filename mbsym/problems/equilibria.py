@@ -43,7 +43,6 @@ from mbsym.mechanics.charts import Chart, charts, moments
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.enclosed_stability import MASS_SINGULAR
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
@@ -54,6 +53,7 @@ from mbsym.problems.stability_theory import (
     ASYMPTOTIC_BUT_TURNED,
     CRITICAL,
     GYROSCOPIC,
+    MASS_SINGULAR,
     STABLE,
     STABLE_BUT_CYCLIC,
     UNDECIDED,

@@ -8,10 +8,10 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.states import SEED
 
 #: Starting points of a search from many points.
 STARTS = 400
-_SEED = 1788
 
 
 def turned(value: float, denominator: int = 1) -> float:
@@ -30,7 +30,7 @@ def from_many_points(
     """Where damped Newton iterations from random points end, without repetition; found, not proved."""
     import numpy as np
 
-    source = np.random.default_rng(_SEED)
+    source = np.random.default_rng(SEED)
     n = len(names)
     q = np.array([source.uniform(low, high, STARTS) for low, high in bounds])
     value = _vectorised(ring, [*equations, *(x for row in slopes for x in row)], names)

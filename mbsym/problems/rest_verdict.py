@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import fmpq, fmpq_mpoly_ctx
@@ -13,10 +13,10 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import energy as energies
-from mbsym.problems.enclosed_stability import MASS_SINGULAR, blocks, enclosed_verdict_with_cyclic
+from mbsym.problems.enclosed_stability import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.stability import conserves_energy
-from mbsym.problems.stability_theory import UNDECIDED, LinearSystem, Verdict, combine, verdict_at
+from mbsym.problems.stability_theory import MASS_SINGULAR, UNDECIDED, LinearSystem, Verdict, combine, verdict_at
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,5 @@ def _rational_verdict(
     """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space."""
     turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
-    found = verdict_at(
-        LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned), {}
-    ).verdict
-    return replace(found, explanation=MASS_SINGULAR) if found.explanation == "The mass matrix is singular." else found
+    system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned)
+    return verdict_at(system, {}).verdict

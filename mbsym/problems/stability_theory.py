@@ -69,6 +69,9 @@ KELVIN_CHETAEV = "Kelvin-Chetaev"
 LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
 
+#: Why nothing is claimed where the coordinates themselves are singular, or a part has no mass.
+MASS_SINGULAR = "The mass matrix is singular."
+
 EVEN_METHOD = "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
 HURWITZ_METHOD = "all roots to the left of the imaginary axis: Lienard-Chipart"
 NO_METHOD = "none"
@@ -763,7 +766,7 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     """
     m, d, g, k, n = (_evaluate(matrix, point) for matrix in system.matrices)
     if m.det() == 0:
-        return PointVerdict(Verdict(UNDECIDED, "", "The mass matrix is singular."), (), None)
+        return PointVerdict(Verdict(UNDECIDED, "", MASS_SINGULAR), (), None)
     a = _first_order(m, d + g, k + n)
     characteristic = tuple(a.charpoly().coeffs())
     roots = count_roots(characteristic)
@@ -794,7 +797,7 @@ def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSys
 def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> Verdict:
     a = _first_order(m, d + g, k + n)
     roots = count_roots(a.charpoly().coeffs())
-    massive, stiff, damped = _is_positive(m), _is_positive(k), _is_positive(d)
+    massive, stiff, damped = is_positive(m), is_positive(k), is_positive(d)
     for matrix in (m, d, k):
         inertia(matrix)  # raises where it is not symmetric
     potential, undamped, gyroscopic = _no(n), _no(d), not _no(g)
@@ -890,7 +893,8 @@ def _first_order(m: Numbers, c: Numbers, k: Numbers) -> Numbers:
     return a
 
 
-def _is_positive(matrix: Numbers) -> bool:
+def is_positive(matrix: Numbers) -> bool:
+    """Whether a symmetric rational matrix is positive definite: all leading minors are positive."""
     n, rows = matrix.nrows(), matrix.tolist()
     return all(fmpq_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, n + 1))
 

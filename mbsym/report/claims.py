@@ -9,7 +9,7 @@ from itertools import groupby
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import FACTOR, SCALED, UNDECIDED, ClaimResult, Part
-from mbsym.problems.counterexample import Counterexample
+from mbsym.problems.claims.counterexample import Counterexample
 
 #: Differences longer than this are counted, not printed.
 LONGEST_DIFFERENCE = 400

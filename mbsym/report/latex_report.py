@@ -179,9 +179,13 @@ def formula(value: Formula) -> str:
 
 def condition(value: Formula, in_json: bool = True) -> str:
     """A polynomial of problem 6; a long one is only counted, and ``in_json`` tells where it is."""
-    written = "" if value.terms > LONGEST else formula(value)
-    if written and len(re.findall(r" [+-] ", written)) < LONGEST_CONDITION:
-        return written
+    return counted(value, in_json) or formula(value)
+
+
+def counted(value: Formula, in_json: bool = True) -> str:
+    """How long a polynomial is that nobody would read; "" for any other."""
+    if value.terms <= LONGEST and len(re.findall(r" [+-] ", formula(value))) < LONGEST_CONDITION:
+        return ""
     degree = max(map(sum, value.polynomial.monoms()))
     where = "; in full in results.json" if in_json else ""
     return f"\\text{{({value.terms} terms, of degree {degree}{where})}}"
@@ -273,11 +277,10 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
         if coefficient.is_zero:
             continue
         raised = "" if power == 0 else f" {variable}" if power == 1 else f" {variable}^{{{power}}}"
-        text = condition(coefficient)
-        if text.startswith("\\text"):
-            written.append(" \\penalty0 " + ("+ " if written else "") + text + raised)
+        if length := counted(coefficient):
+            written.append(" \\penalty0 " + ("+ " if written else "") + length + raised)
             continue
-        shape = present(coefficient.ring, coefficient.polynomial)
+        text, shape = formula(coefficient), present(coefficient.ring, coefficient.polynomial)
         if raised and text in ("1", "-1"):
             text = text[:-1]
         elif raised and len(shape.terms) > 1:

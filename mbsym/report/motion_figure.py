@@ -110,7 +110,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     time = Normalize(float(found.times[0]), float(found.times[-1]))
     if found.tips:
         _tips(axis, found, view, flat, shown, time)
-    if found.extended or not found.tips:
+    if found.bodied:
         _paths(axis, found, view, flat)
         _bodies(axis, found, flat, shown, time)
     _scale(axis, found, view)
@@ -145,7 +145,7 @@ def _title(found: Positions) -> str:
 def _caption(found: Positions, step: float, end: float) -> list[str]:
     last = float(found.times[-1])
     said = f"t = 0 to {_rounded(last)}" + ("" if last == end else f" (of {_rounded(end)})")
-    if found.extended or not found.tips:
+    if found.bodied:
         said += f", a snapshot every {_rounded(step)}"
     return [said] if found.frame == "0" else [said, f"seen in the frame '{found.frame}'"]
 
@@ -270,7 +270,7 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
             fontsize=9,
             color="#444444",
         )
-    if found.tips and not found.extended:
+    if not found.bodied:
         return
     bar = 10.0 ** floor(log10(0.3 * float(high[0] - low[0])))
     bar = max(x * bar for x in (1, 2, 5) if x * bar <= 0.3 * float(high[0] - low[0]))

@@ -36,6 +36,7 @@ from mbsym.model.admissibility import (
     surely_negative,
     symbolic_violation,
 )
+from mbsym.model.comparison import holds
 from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import vanishes
@@ -305,17 +306,7 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
             values[notation.name] = value
     for assumption in system.assumptions:
         left, right = number_of(assumption.left, values), number_of(assumption.right, values)
-        if left is None or right is None or _holds(left, assumption.relation, right):
+        if left is None or right is None or holds(left - right, assumption.relation):
             continue
         message = f"the given values break this assumption: {decimal(left)} {assumption.relation} {decimal(right)}"
         reading.complaints.warning("broken-assumption", message, assumption.span)
-
-
-def _holds(left: Fraction, relation: str, right: Fraction) -> bool:
-    return {
-        "<": left < right,
-        "<=": left <= right,
-        ">": left > right,
-        ">=": left >= right,
-        "!=": left != right,
-    }[relation]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import ZERO, Expression
+from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
+from mbsym.model.comparison import has_sign
 from mbsym.model.system import Parameter, Prescribed, rational
 from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGNS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
@@ -40,7 +40,7 @@ def _listed(node: Sequence, reading: Reading) -> list[Parameter]:
 
 
 def _parameter(entry: Entry, reading: Reading) -> Parameter:
-    """A sign word, a number (which says its own sign), or a mapping."""
+    """A sign word, a number (a rational one says its own sign), or a mapping."""
     name, span = entry.key.text, entry.key.span
     if isinstance(entry.value, Mapping):
         return _described(name, span, entry.value, reading)
@@ -51,21 +51,19 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         return Parameter(name, scalar.text.lower(), span=span)
     refused = Complaints()
     value = parse_expression(scalar.text, refused, scalar.place, named=False)
-    number = rational(value)
-    if number is None:
+    if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
         unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)
-        if unit is not None and "*pi" in unit:  # which is a number, but not of those that stand alone
-            unit = re.sub("write (.*?)(?: or .*)?$", r"write {value: \1}", unit)
         hint = close or unit or f"write a number or one of: {', '.join(SIGNS)}"
         message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)
-    return Parameter(name, _sign_of(number), value, span=span)
+    return Parameter(name, _sign_of(value), value, span=span)
 
 
-def _sign_of(value: Fraction) -> str:
-    return "positive" if value > 0 else "negative" if value < 0 else "real"
+def _sign_of(value: Expression | None) -> str:
+    number = rational(value)
+    return "real" if not number else "positive" if number > 0 else "negative"
 
 
 def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
@@ -74,8 +72,7 @@ def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parame
     value = fields.expression("value", NUMBER)
     if reading.errors != errors:
         value = None
-    number = rational(value)
-    sign = _sign(fields, reading) or ("real" if number is None else _sign_of(number))
+    sign = _sign(fields, reading) or _sign_of(value)
     parameter = Parameter(name, sign, value, fields.text("meaning"), span)
     if value is not None:
         _check_sign(parameter, fields.key_span("value"), reading)
@@ -99,19 +96,8 @@ def _sign(fields: Fields, reading: Reading) -> str | None:
 
 def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
     value = rational(parameter.value)
-    if value is not None and not _agrees(value, parameter.sign):
+    if value is not None and not has_sign(value, parameter.sign):
         reading.error("sign-contradiction", f"'{parameter.name}' is declared {parameter.sign}, its value is not", span)
-
-
-def _agrees(value: Fraction, sign: str) -> bool:
-    return {
-        "real": True,
-        "positive": value > 0,
-        "nonnegative": value >= 0,
-        "negative": value < 0,
-        "nonpositive": value <= 0,
-        "nonzero": value != 0,
-    }[sign]
 
 
 def read_values(node: Node | None, parameters: list[Parameter], reading: Reading) -> list[Parameter]:

@@ -21,7 +21,7 @@ from functools import partial
 from itertools import count
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.base import Algebra, Lowering, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
@@ -31,12 +31,12 @@ from mbsym.expressions.tree import is_number, names
 from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
+from mbsym.mechanics.states import SEED
 from mbsym.model.admissibility import NumberTensor, inertia_violation, number_of, offset_violation
+from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
-from mbsym.problems.stability_theory import Verdict
+from mbsym.problems.stability_theory import Verdict, is_positive
 
-#: Random numbers are the same on every run.
-SEED = 1788
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40
 #: Verdicts of problem 6 that are asked for, at those parameters where they could refute a condition.
@@ -94,12 +94,12 @@ def completed(
     """
     values: dict[str, Any] = {"pi": arb.pi()} if isinstance(numbers, Balls) else {}
     values |= {name: numbers.number(value) for name, value in free.items()}
-    _follow(system, numbers, values)
+    follow(system, numbers, values)
     if further is not None:
         values |= further(values)
-        _follow(system, numbers, values)
+        follow(system, numbers, values)
     for parameter in system.parameters:
-        if not _has_sign(values[parameter.name], parameter.sign):
+        if not has_sign(values[parameter.name], parameter.sign):
             raise SingularPoint("a declared sign does not hold")
     for symbol in system.notation:
         values[symbol.name] = Lowering(numbers, values)(symbol.value)
@@ -113,23 +113,13 @@ def completed(
     return values
 
 
-def _follow(system: System, numbers: Algebra, values: dict[str, Any]) -> None:
+def follow(system: System, numbers: Algebra, values: dict[str, Any]) -> None:
     """Adds what the relations give, as far as what they need is there."""
     waiting = [item for item in system.relations if item.name not in values]
     while ready := [item for item in waiting if names(item.value) <= values.keys()]:
         for item in ready:
             values[item.name] = Lowering(numbers, values)(item.value)
         waiting = [item for item in waiting if item.name not in values]
-
-
-def holds(gap: Any, relation: str) -> bool:
-    """Whether ``gap relation 0``; of a ball, whether this is certain."""
-    return bool({"<": gap < 0, "<=": gap <= 0, ">": gap > 0, ">=": gap >= 0, "!=": gap != 0}[relation])
-
-
-def _has_sign(value: Any, sign: str) -> bool:
-    relation = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}.get(sign)
-    return relation is None or holds(value, relation)
 
 
 def _is_body(body: Body, values: Mapping[str, Fraction]) -> bool:
@@ -164,7 +154,6 @@ class Trials:
 
     At each the mass matrix of the first approximation is positive definite.  ``verdict_at`` gives the verdict of
     problem 6 at exact parameters; ``solved`` are the parameters that follow from the conditions of problem 4.
-    ``known`` remembers what was found for conditions that are taken together, by their place.
     """
 
     def __init__(
@@ -177,7 +166,7 @@ class Trials:
     ) -> None:
         self.system, self.ring, self.solved = system, ring, solved
         self.numbers = Rationals({}, {})
-        self.known: dict[str, Counterexample | None] = {}
+        self._known: dict[str, Counterexample | None] = {}
         self._mass_matrix, self._verdict_at = mass_matrix, verdict_at
         self._made: list[Trial] = []
         self._coming = self._trials()
@@ -234,13 +223,19 @@ class Trials:
                 break
         return best
 
+    def once(self, place: str, find: Callable[[], Counterexample | None]) -> Counterexample | None:
+        """What ``find`` gives for the conditions of one place, which are taken together and searched for once."""
+        if place not in self._known:
+            self._known[place] = find()
+        return self._known[place]
+
     def _trials(self) -> Iterator[Trial]:
         numbers = self.numbers
         for free in parameter_samples(self.system, tuple(self.solved)):
             try:
                 values = completed(self.system, numbers, free, partial(_solved, self.ring, numbers, self.solved))
                 carry = Carrier(self.ring, numbers, values)
-                if _is_positive_definite([[carry(x) for x in row] for row in self._mass_matrix.polynomials]):
+                if is_positive(fmpq_mat([[carry(x) for x in row] for row in self._mass_matrix.polynomials])):
                     yield Trial(values)
             except (NotRational, SingularPoint, ZeroDivisionError):
                 continue
@@ -253,19 +248,6 @@ def _solved(
 ) -> dict[str, Any]:
     carry = Carrier(ring, numbers, values)
     return {name: carry(x) for name, x in solved.items()}
-
-
-def _is_positive_definite(rows: list[list[Any]]) -> bool:
-    """All leading minors positive, by elimination in exact numbers."""
-    rows = [list(row) for row in rows]
-    for k, pivot in enumerate(rows):
-        if not pivot[k] > 0:
-            return False
-        for row in rows[k + 1 :]:
-            ratio = row[k] / pivot[k]
-            for j in range(k, len(rows)):
-                row[j] -= ratio * pivot[j]
-    return True
 
 
 # --- states ---

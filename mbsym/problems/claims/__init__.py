@@ -1,0 +1,92 @@
+"""Claims: is what somebody printed right?
+
+A claim says "quantity = formula".  The quantity is derived, the formula is read as it was printed, and
+
+    difference = claimed - derived
+
+is decided in the exact ring: the claim holds exactly (the difference is zero), on the relations between parameters,
+with the same equations of motion (Lagrangians that differ by dF(q, t)/dt, the kernel of the Euler-Lagrange operator),
+or it differs by exactly this.  A difference is split into products of velocities, and where a publication's
+abbreviations were declared, those that explain a part are named: a part that *is* an abbreviation, or an abbreviation
+that would be right with something added.
+
+What only has to vanish (an equation of motion, a characteristic polynomial) may be multiplied by anything that is not
+zero: it holds up to a factor.  Where it does not, it is compared with that multiple of the derived one that agrees with
+it in most places, so that the difference is what is wrong:  claimed - factor*derived.  Of every other quantity a factor
+is an error, and it differs by the factor.
+
+A first integral I is decided by dI/dt = 0 on the equations of motion; one that fails is told its dI/dt, with q''
+replaced by M^-1 f, and a state where this is not zero.  A condition is one that stability in the first approximation
+needs, or one of those that problem 6 finds sufficient ('as' may say which: necessary, or sufficient, and then those of
+one place are taken together).  It is looked for among the conditions of problem 6; it is refuted by parameters at which
+the motion is stable without it, or, as sufficient, unstable with it, both exactly.  A number at a state is compared by
+rigorous balls with the digits that were printed: 1.234 means 1.234 +- 0.0005.
+
+Under roots of squares signs matter: sqrt(r**2) is r for r > 0 only.  What holds only for positive coordinates and
+parameters (those whose sign is not declared) is said to hold for these.
+"""
+
+from __future__ import annotations
+
+from mbsym.model.claims import Claim
+from mbsym.problems.claims.comparison import examined_formula
+from mbsym.problems.claims.conditions import examined_condition
+from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.integrals import examined_integral
+from mbsym.problems.claims.numbers import examined_number
+from mbsym.problems.claims.quantities import derived_quantity
+from mbsym.problems.claims.result import (
+    DIFFERS,
+    DIGITS,
+    EQUIVALENT,
+    EXACT,
+    FACTOR,
+    FAILS,
+    NUMERICAL,
+    RELATIONS,
+    SCALED,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+    Part,
+    title,
+    undecided,
+)
+from mbsym.problems.claims.symbols import Symbols
+
+__all__ = [
+    "DIFFERS",
+    "DIGITS",
+    "EQUIVALENT",
+    "EXACT",
+    "FACTOR",
+    "FAILS",
+    "NUMERICAL",
+    "RELATIONS",
+    "SCALED",
+    "UNDECIDED",
+    "ClaimResult",
+    "Derived",
+    "Part",
+    "Symbols",
+    "examine",
+    "title",
+    "undecided",
+]
+
+
+def examine(derived: Derived, claim: Claim) -> ClaimResult:
+    """One claim against what is derived.
+
+    Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
+    """
+    about = title(claim, derived.system)
+    if claim.is_numerical:
+        return examined_number(derived, claim, about)
+    if claim.right is not None:
+        return examined_condition(derived, claim, about)
+    symbols = Symbols(derived.system)
+    claimed = symbols.polynomial(derived.parameters_scene, claim)
+    if claim.kind == "first integral":
+        return examined_integral(derived, claim, about, in_parameters(derived, claimed))
+    return examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))

@@ -1,0 +1,132 @@
+"""Claimed first integrals: dI/dt on the equations of motion, and a state where it is not zero."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import product as combinations_of
+
+from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import (
+    names,
+)
+from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.motion import relations
+from mbsym.model.claims import Claim
+from mbsym.problems.claims.counterexample import (
+    against_constancy,
+    rate_at_states,
+)
+from mbsym.problems.claims.result import EXACT, FAILS, NUMERICAL, RELATIONS, ClaimResult, Derived
+from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restriction, signs_under_roots
+from mbsym.problems.equations import Equations
+from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
+
+
+def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
+    """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
+    scene, ring, equations = derived.scene, derived.ring, derived.equations
+    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    if not ring.dependencies(claimed, derived.system.velocities):
+        return replace(result, outcome=FAILS, remark="it contains no velocity")
+    outcome = EXACT
+    for outcome in (EXACT, RELATIONS):
+        if outcome == RELATIONS:
+            images = relations(derived.parameters_scene)
+            if not images:
+                break
+            claimed = ring.substitute(claimed, images)
+            equations = _substituted(ring, equations, images)
+        if is_conserved(scene, equations, claimed):
+            if is_proved(scene, equations, claimed):
+                return replace(result, outcome=outcome)
+            found, where = _conserved_where(derived, equations, claimed)
+            return replace(result, outcome=outcome if found == EXACT else NUMERICAL, where=where)
+    rate = total_rate(scene, claimed)
+    difference = _rate_of(derived, equations, claimed)
+    if difference is None:
+        parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
+        parts += [x.polynomial for x in equations.forcing]
+    else:
+        parts = [difference.polynomial]
+    used = _names_in(derived, parts)
+    timely = ["t", *(item.name for item in derived.system.prescribed)]
+    if any(ring.dependencies(x, timely) for x in parts):
+        used.add("t")
+    example = against_constancy(derived.system, ring, derived.programs, rate, used)
+    remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
+    return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
+
+
+def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial) -> tuple[str, str]:
+    """What became of dI/dt = 0 for the signs that are not declared: EXACT or NUMERICAL, and where."""
+    scene, ring = derived.scene, derived.ring
+    found = rate_on_motion(scene, equations, claimed)
+    if found is not None:
+        outcome, where = decided(derived, found[0])
+        if outcome in (EXACT, NUMERICAL):
+            return outcome, where
+    rate = total_rate(scene, claimed)
+    parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
+    _, unknown = signs_under_roots(derived, *parts, *(x.polynomial for x in equations.forcing))
+    for pattern in combinations_of((1, -1), repeat=min(len(unknown), MOST_SIGNS)):
+        negative = [name for name, sign in zip(unknown, pattern, strict=False) if sign < 0]
+        states = rate_at_states(derived.system, ring, derived.programs, rate, negative)
+        if negative and any(not value.contains(0) for _, value in states):
+            return NUMERICAL, restriction(unknown, len(unknown) == 1)
+    return NUMERICAL, "" if len(unknown) <= MOST_SIGNS else restriction(unknown, False)
+
+
+def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> Formula | None:
+    """dI/dt on the equations of motion in lowest terms; None where that is too long."""
+    ring = derived.ring
+    try:
+        found = rate_on_motion(derived.scene, equations, claimed)
+        if found is None:
+            return None
+        common = ring.common_factor(*found)
+        top, bottom = ring.quotient(found[0], common), ring.quotient(found[1], common)
+        if top is None or bottom is None:
+            top, bottom = found
+        return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+    except (NoClosedForm, SingularPoint):
+        return None
+
+
+def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
+    """Coordinates, velocities and parameters in the values, those that relations and notation are made of included."""
+    ring, system = derived.ring, derived.system
+    wanted = [*system.coordinates, *system.velocities]
+    found: set[str] = set()
+    for x in values:
+        found |= set(ring.dependencies(x, wanted))
+        found |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
+    made_of = {item.name: names(item.value) for item in system.relations}
+    made_of |= {item.name: names(item.value) for item in system.notation}
+    pending = list(found)
+    while pending:
+        new = made_of.get(pending.pop(), set()) - found
+        found |= new
+        pending += new
+    return found
+
+
+def _holds(ring: Ring, x: Polynomial, index: int) -> bool:
+    """Whether a generator occurs in x, in what its reciprocals, roots and functions are made of included."""
+    degrees = x.degrees()
+    if degrees[index] > 0:
+        return True
+    inner = (g.argument for k, g in enumerate(ring.generators[: ring.spare]) if degrees[k] > 0)
+    return any(argument is not None and _holds(ring, argument, index) for argument in inner)
+
+
+def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
+    def moved(x: Formula) -> Polynomial:
+        return ring.substitute(x.polynomial, images)
+
+    return replace(
+        equations,
+        mass_matrix=Matrix.of(ring, [[moved(x) for x in row] for row in equations.mass_matrix]),
+        forcing=column(ring, [moved(x) for x in equations.forcing]),
+    )

@@ -1,0 +1,95 @@
+"""What a claim is about, derived: a polynomial of the ring for every kind of claim that is a formula."""
+
+from __future__ import annotations
+
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import (
+    ZERO,
+)
+from mbsym.mechanics.kinematics import Scene
+from mbsym.model.claims import SUMS, Claim
+from mbsym.model.system import INERTIAL
+from mbsym.problems.claims.forms import by_motion
+from mbsym.problems.claims.result import Derived
+from mbsym.problems.integrals import residual
+
+
+def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
+    """What is claimed, derived; over the ring."""
+    ring, kind = derived.ring, claim.kind
+    rows = [k - 1 for k in claim.entry]
+    if kind in SUMS:
+        return _sum(derived, kind)
+    if kind == "coefficient":
+        whole = _sum(derived, claim.of) if claim.of in SUMS else _equation(derived, claim.of)
+        return _coefficient(ring, whole, derived.parameters_scene.lower(claim.at or ZERO))
+    if kind == "mass matrix":
+        return derived.energy.A2[rows[0], rows[1]].polynomial
+    if kind == "equation of motion":
+        return _equation(derived, claim.of)
+    if kind.startswith("linear matrix"):
+        return getattr(derived.linearisation, kind[-1])[rows[0], rows[1]].polynomial
+    if kind.startswith("subsystem matrix"):
+        wanted = [derived.system.coordinates[k] for k in rows]
+        for part in derived.linearisation.subsystems:
+            if set(wanted) <= set(part.coordinates):
+                place = [part.coordinates.index(name) for name in wanted]
+                return getattr(part, kind[-1])[place[0], place[1]].polynomial
+        return ring.zero
+    if kind == "characteristic polynomial":
+        return _characteristic(derived, claim.of)
+    if kind in ("position", "velocity"):
+        return _in_inertial_axes(derived.scene, kind, claim.of)[rows[0]]
+    body = derived.kinematics.body(claim.of)
+    if kind == "direction cosine":
+        return body.rotation[rows[0], rows[1]].polynomial
+    spin = body.angular_velocity if kind == "angular velocity" else body.relative_angular_velocity
+    return spin[rows[0]].polynomial
+
+
+def _sum(derived: Derived, kind: str) -> Polynomial:
+    kinetic, force = derived.energy.kinetic_energy.polynomial, derived.energy.force_function.polynomial
+    return {
+        "kinetic energy": kinetic,
+        "force function": force,
+        "potential energy": -force,
+        "lagrangian": derived.ring.reduce(kinetic + force),
+    }[kind]
+
+
+def _equation(derived: Derived, coordinate: str) -> Polynomial:
+    """E_i = (M q'' - f)_i."""
+    return residual(derived.scene, derived.equations, derived.system.coordinates.index(coordinate))
+
+
+def _characteristic(derived: Derived, coordinate: str) -> Polynomial:
+    """Lambda of one subsystem, or of all of them multiplied; the time stands for lambda."""
+    ring = derived.ring
+    total = ring.one
+    for part in derived.stability.subsystems:
+        if not coordinate or coordinate in part.coordinates:
+            powers = enumerate(part.characteristic)
+            sum_ = ring.zero
+            for power, coefficient in powers:
+                sum_ = sum_ + coefficient.polynomial * ring.generator("time", "t") ** power
+            total = ring.times(total, sum_)
+    return ring.reduce(total)
+
+
+def _in_inertial_axes(scene: Scene, kind: str, body: str) -> tuple[Polynomial, Polynomial, Polynomial]:
+    """Radius vector or velocity of the mass centre."""
+    motion = scene.motions[body]
+    if kind == "position":
+        found = scene.position(body, motion.mass_centre, INERTIAL)
+    else:
+        found = scene.to_axes(motion.velocity_mass_centre, body, INERTIAL)
+    return (scene.ring.reduce(found[0]), scene.ring.reduce(found[1]), scene.ring.reduce(found[2]))
+
+
+def _coefficient(ring: Ring, x: Polynomial, product: Polynomial) -> Polynomial:
+    """What stands before exactly this product of velocities and accelerations."""
+    wanted = tuple(int(e) for e in product.monomial(0))
+    for exponents, coefficient in by_motion(ring, x):
+        if exponents == wanted:
+            return coefficient
+    return ring.zero

@@ -1,0 +1,147 @@
+"""What became of a claim: its outcome, and everything that can be said of a difference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from mbsym.algebra.ring import Ring
+from mbsym.algebra.signs import Signs
+from mbsym.expressions.tree import (
+    ZERO,
+    text,
+)
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.programs import Programs
+from mbsym.model.claims import CLAIMS, SUMS, Claim
+from mbsym.model.system import System
+from mbsym.problems.claims.counterexample import (
+    Counterexample,
+    Trials,
+)
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
+
+EXACT = "holds exactly"
+RELATIONS = "holds on the relations between the parameters"
+FACTOR = "holds up to a factor"
+EQUIVALENT = "holds up to a total time derivative"
+DIGITS = "holds to the digits printed"
+NUMERICAL = "verified numerically"
+UNDECIDED = "undecided"
+DIFFERS = "differs"
+SCALED = "differs by a factor"
+FAILS = "does not hold"
+
+
+class Derived(Protocol):
+    """What a claim may be compared with; each is derived when it is asked for."""
+
+    @property
+    def system(self) -> System: ...
+    @property
+    def ring(self) -> Ring: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def parameters_scene(self) -> Scene: ...
+    @property
+    def signs(self) -> Signs: ...
+    @property
+    def programs(self) -> Programs: ...
+    @property
+    def kinematics(self) -> Kinematics: ...
+    @property
+    def energy(self) -> Energy: ...
+    @property
+    def equations(self) -> Equations: ...
+    @property
+    def equilibrium(self) -> Equilibrium: ...
+    @property
+    def linearisation(self) -> Linearisation: ...
+    @property
+    def stability(self) -> Stability: ...
+    @property
+    def trials(self) -> Trials: ...
+
+
+@dataclass(frozen=True)
+class Part:
+    """``factor`` (a combination of products of velocities; 1 without them) times ``difference``.
+
+    For a characteristic polynomial the factor is its variable to the power ``power``.  ``same_as`` is the abbreviation
+    that the difference is (with its number: ``-2*c18``); ``repairs`` are abbreviations with which the claim would be
+    right if the formula were added to them.
+    """
+
+    factor: Formula
+    difference: Formula
+    power: int | None = None
+    same_as: str = ""
+    repairs: tuple[tuple[str, Formula], ...] = ()
+
+
+@dataclass(frozen=True)
+class ClaimResult:
+    """``outcome`` is one of the words above; ``difference`` is claimed - derived, ``parts`` the same taken apart.
+
+    ``factor`` is claimed / derived where one is a multiple of the other; else, where it is given, the difference is
+    claimed - factor*derived.  For a first integral I the difference is dI/dt on the equations of motion instead.
+    ``where`` are the signs to which the outcome is restricted, ``counterexample`` numbers that refute the claim.  For
+    numbers at a state ``value`` is the derived one, ``digits`` how many of the ``printed_digits`` hold.  ``remark``
+    says what else there is to say.
+    """
+
+    claim: Claim
+    title: str
+    outcome: str
+    derived: Formula | None = None
+    difference: Formula | None = None
+    parts: tuple[Part, ...] = ()
+    factor: Formula | None = None
+    value: str = ""
+    digits: int | None = None
+    printed_digits: int | None = None
+    remark: str = ""
+    where: str = ""
+    counterexample: Counterexample | None = None
+
+    @property
+    def holds(self) -> bool:
+        return self.outcome in (EXACT, RELATIONS, FACTOR, EQUIVALENT, DIGITS, NUMERICAL)
+
+    @property
+    def refuted(self) -> bool:
+        return self.outcome in (DIFFERS, SCALED, FAILS)
+
+
+def title(claim: Claim, system: System) -> str:
+    """What a claim is about: ``mass matrix [theta, delta]``."""
+    kind = CLAIMS[claim.kind]
+    words = claim.kind
+    if claim.kind == "coefficient":
+        of = claim.of if claim.of in SUMS else f"the equation of {claim.of}"
+        words = f"coefficient of {text(claim.at or ZERO)} in {of}"
+    elif claim.of_expression is not None:
+        words = f"value of {text(claim.of_expression)}"
+    elif claim.of:
+        words += f" of {claim.of}"
+    if claim.entry:
+        words += " [" + ", ".join(str(k) if kind.axes else system.coordinates[k - 1] for k in claim.entry) + "]"
+    if claim.right is not None:
+        words += f" {text(claim.equals)} {claim.relation} {text(claim.right)}"
+    if claim.at_initial:
+        words += " at the initial state"
+    elif claim.state:
+        words += " at " + ", ".join(f"{name} = {text(value)}" for name, value in claim.state)
+    return words
+
+
+def undecided(system: System, claim: Claim, reason: str) -> ClaimResult:
+    """A claim about something that could not be derived."""
+    return ClaimResult(claim, title(claim, system), UNDECIDED, remark=reason)
