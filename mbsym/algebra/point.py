@@ -1,4 +1,4 @@
-"""Numbers at one state: exact rationals through half-angle tangents, and rigorous balls.
+"""Numbers at one state: exact rationals through half-angle tangents, rigorous balls; and floats at many states.
 
 At a point where every angle is given by a rational t through sin = 2t/(1+t^2), cos = (1-t^2)/(1+t^2), everything
 that is polynomial in sines and cosines is a rational number, so two routes must agree exactly, without tolerance.
@@ -8,6 +8,7 @@ compared are identities of the ring, in which q, sin q and cos q are independent
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
@@ -108,3 +109,37 @@ class Balls(Algebra):
 
     def function(self, name: str, x: Scalar) -> Scalar:
         return getattr(x, name)()
+
+
+class Arrays(Algebra):
+    """NumPy arrays of floats, many points at once; ``angles`` gives each angle's values."""
+
+    def __init__(self, angles: Mapping[str, Any]) -> None:
+        import numpy  # here, because reading a description needs exact numbers only
+
+        self.zero, self.one = 0.0, 1.0
+        self.values, self._functions = angles, numpy
+
+    def number(self, value: Fraction | int) -> float:
+        return float(value)
+
+    def vanishes(self, x: Any) -> bool:
+        return isinstance(x, float) and x == 0
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Any, Any]:
+        total: Any = math.pi * float(angle.turns)
+        for name, coefficient in angle.coefficients:
+            total = total + float(coefficient) * self.values[name]
+        return self.sin_cos_of(total)
+
+    def sin_cos_of(self, argument: Any) -> tuple[Any, Any]:
+        return self._functions.sin(argument), self._functions.cos(argument)
+
+    def reciprocal(self, x: Any) -> Any:
+        return self._functions.true_divide(1.0, x)
+
+    def square_root(self, x: Any) -> Any:
+        return self._functions.sqrt(x)
+
+    def function(self, name: str, x: Any) -> Any:
+        return getattr(self._functions, {"atan": "arctan"}.get(name, name))(x)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Arrays
+from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.states import SEED
 
@@ -36,7 +38,7 @@ def from_many_points(
     value = _vectorised(ring, [*equations, *(x for row in slopes for x in row)], names)
     for _ in range(60):
         with np.errstate(all="ignore"):
-            found = np.array(value(q))
+            found = value(q)
         f, jacobian = found[:n], found[n:].reshape(n, n, -1)
         matrices = np.moveaxis(jacobian, 2, 0)
         usable = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=0)
@@ -59,55 +61,17 @@ def from_many_points(
     return [ends[key] for key in sorted(ends)]
 
 
-def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[str]) -> Callable[[Any], list[Any]]:
-    """Values of polynomials at many points at once."""
+def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[str]) -> Callable[[Any], Any]:
+    """Values of polynomials at many points at once, by a straight-line program; what has no value there is 0."""
     import numpy as np
 
-    tables = [
-        [(float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e]) for m, c in x.terms()]
-        for x in polynomials
-    ]
+    program = Program()
+    carry = Carrier(ring, program, {name: program.input(name) for name in ring.names()})
+    outputs = [carry(x) for x in polynomials]
 
-    def generator(index: int, q: Any, known: dict[int, Any]) -> Any:
-        if index in known:
-            return known[index]
-        g = ring.generators[index]
-        if g.argument is not None:
-            table = [
-                (float(Fraction(int(c.p), int(c.q))), [(k, int(e)) for k, e in enumerate(m) if e])
-                for m, c in g.argument.terms()
-            ]
-            inner = total(table, q, known)
-            outer: dict[str, Callable[[Any], Any]] = {
-                "sine": np.sin,
-                "cosine": np.cos,
-                "root": np.sqrt,
-                "reciprocal": lambda x: 1 / x,
-                "exp": np.exp,
-                "log": np.log,
-                "atan": np.arctan,
-            }
-            known[index] = outer[g.name if g.kind == "function" else g.kind](inner)
-        elif g.name == "pi":
-            known[index] = np.pi
-        else:
-            plain = q[names.index(g.name)] if g.name in names else np.zeros(q.shape[1])
-            inner = plain / g.denominator
-            known[index] = {"sine": np.sin, "cosine": np.cos}.get(g.kind, lambda x: x)(inner)
-        return known[index]
-
-    def total(table: Sequence[tuple[float, list[tuple[int, int]]]], q: Any, known: dict[int, Any]) -> Any:
-        result = np.zeros(q.shape[1])
-        for coefficient, powers in table:
-            term: Any = coefficient
-            for index, exponent in powers:
-                base = generator(index, q, known)
-                term = term * (base if exponent == 1 else base**exponent)
-            result = result + term
-        return result
-
-    def values(q: Any) -> list[Any]:
-        known: dict[int, Any] = {}
-        return [total(table, q, known) for table in tables]
+    def values(q: Any) -> Any:
+        inputs = dict.fromkeys(ring.names(), 0.0) | {"pi": math.pi} | dict(zip(names, q, strict=True))
+        found = program.evaluate(outputs, inputs, Arrays(inputs))
+        return np.array([np.broadcast_to(x, q.shape[1:]) for x in found])
 
     return values
