@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,9 +24,11 @@ from mbsym_cli.console import (
     read_description,
     status,
 )
-from mbsym_cli.files import alone, obstacle, write_whole
+from mbsym_cli.files import alone, obstacle
 from mbsym_cli.options import Options
-from mbsym_cli.simulation_summary import broken, note, print_summary
+from mbsym_cli.simulation_files import write_files
+from mbsym_cli.simulation_request import ARITHMETIC, FINEST, Flags, Request, read_request
+from mbsym_cli.simulation_summary import broken, print_summary
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -38,53 +39,12 @@ if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.simulate import Trajectory
 
-FORMATS = ("csv", "svg", "png")
-ARITHMETIC = ("float64", "float32", "extended")
-
 #: Unless asked for otherwise: the local error, and samples (more of them where the motion is fast).
 TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
 SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
 
-#: Paths are drawn with so many points from one sample to the next, to be smooth.
-SMOOTHER = 8
-
-#: No arithmetic here is finer, and nothing coarser is a solution.
-FINEST, COARSEST = 1e-19, 0.1
-
-#: A first try of a fixed step is the whole time divided by this.
-TRIAL_STEPS = 10_000
-
 #: A run shorter than this many seconds is repeated more finely, to see how good it is.
 SOON_DONE = 2.0
-
-
-@dataclass(frozen=True)
-class Request:
-    """What was asked for, numbers read."""
-
-    end: float
-    samples: int | None
-    every: float | None
-    method: str
-    tolerance: float | None
-    step: float | None
-    step_limit: int
-    arithmetic: str
-    formats: tuple[str, ...]
-    invariants: bool
-    estimate: bool | None
-    quiet: bool
-    whole: bool = False
-
-
-@dataclass(frozen=True)
-class Flags:
-    """The options without a value."""
-
-    invariants: bool
-    estimate: bool | None
-    quiet: bool
-    whole: bool
 
 
 class Unsuited(Exception):
@@ -178,7 +138,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
     system = read_description(file)
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
-    request = _read(system, texts, flags, asked)
+    request = read_request(system, texts, flags, asked)
     refused = asked.refused(None if system is None else file)
     if refused or given is None:
         return BAD_INPUT
@@ -201,95 +161,6 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
     except Exception as error:
         print(f"{file}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
     return FAILED
-
-
-def _read(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Request:
-    """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
-    from mbsym.numerics.methods.table import METHODS
-
-    end = asked.time(texts["--time"])
-    every = asked.number("--every", texts["--every"])
-    tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
-    step = asked.number("--step", texts["--step"])
-    why = ", the start and the end of a trajectory"
-    samples = asked.whole("--samples", texts["--samples"], 2, 10**18, why)
-    method = asked.word("--method", (texts["--method"] or "").lower(), ("auto", *METHODS), "method")
-    arithmetic = asked.word("--arithmetic", texts["--arithmetic"] or "", ARITHMETIC, "arithmetic")
-    step_limit = asked.whole("--step-limit", texts["--step-limit"], 1, 10**12)
-    formats = asked.words("--format", texts["--format"] or "", FORMATS, "format")
-    if texts["--samples"] is not None and texts["--every"] is not None:
-        asked.complain("--every", "conflicting-options", "--samples and --every exclude each other")
-    elif system is not None:
-        _check_rows(system, end, every, samples, asked)
-    if step is not None and end is not None and step > end:
-        asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
-    request = Request(
-        end or 0.0,
-        samples,
-        every,
-        method or "auto",
-        tolerance,
-        step,
-        step_limit or 1,
-        arithmetic or "float64",
-        formats,
-        flags.invariants,
-        flags.estimate,
-        flags.quiet,
-        flags.whole,
-    )
-    if method is not None:
-        _check_method(system, request, texts, asked)
-    return request
-
-
-def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
-    from mbsym.report.trajectory_csv import most_rows
-
-    rows, option = samples, "--samples"
-    if every is not None:
-        rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
-    most = most_rows(system)
-    if rows is not None and rows > most:
-        hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
-        asked.complain(option, "too-large", f"{rows} rows are too many", hint)
-
-
-def _check_method(system: System | None, request: Request, texts: Mapping[str, str | None], asked: Options) -> None:
-    """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
-    from mbsym.numerics.methods.symplectic import without_potential
-    from mbsym.numerics.methods.table import METHODS
-
-    name = request.method
-    has_step, has_tolerance = texts["--step"] is not None, texts["--tolerance"] is not None
-    if has_step and has_tolerance:
-        hint = "a method takes one or the other"
-        asked.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
-    fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
-    if name == "auto":
-        if has_step and not has_tolerance:
-            hint = f"--step goes with a method of fixed step, for example --method rk4 (also {fixed})"
-            asked.complain("--step", "conflicting-options", "--method auto chooses its steps by a tolerance", hint)
-        return
-    traits = METHODS[name].traits
-    if request.arithmetic not in traits.scalars:
-        able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
-        message = f"{name} does not compute in {request.arithmetic}"
-        asked.complain("--arithmetic", "conflicting-options", message, f"these do: {able or 'none'}")
-    if traits.fixed and has_tolerance and not has_step:
-        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
-        asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
-    elif traits.fixed and not has_step:
-        many = f"--step {request.end / TRIAL_STEPS:.2g}" if request.end else "--step H"
-        hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
-        asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
-    if not traits.fixed and has_step and not has_tolerance:
-        hint = f"leave --step out, give a --tolerance, or take a method of fixed step: {fixed}"
-        asked.complain("--step", "conflicting-options", f"{name} chooses its steps by a --tolerance", hint)
-    loads = without_potential(system) if traits.conservative and system is not None else ()
-    if loads:
-        message = f"{name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
-        asked.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
 
 
 def _simulate(file: Path, given: Scenario, folder: Path, request: Request) -> int:
@@ -412,7 +283,7 @@ def _integrate(
         "resting": _resting(chosen.resting),
     }
     with alone(folder):
-        paths = _write(folder, dynamics, found, chosen, request, summary, further, conserved == CONSERVED)
+        paths = write_files(folder, dynamics, found, chosen, request, summary, further, conserved == CONSERVED)
     if not request.quiet:
         print_summary(file, dynamics, found, chosen, request, summary, paths)
     if found.breakdown is not None:
@@ -482,83 +353,7 @@ def _estimated(dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: R
     return {"final": float(errors[-1]), "largest": float(np.max(errors)), "against": against}
 
 
-# --- writing and telling ---
-
-
-def _write(
-    folder: Path,
-    dynamics: Dynamics,
-    found: Trajectory,
-    chosen: Chosen,
-    request: Request,
-    summary: Mapping[str, Any],
-    further: Mapping[str, Any],
-    conserved: bool,
-) -> list[Path]:
-    """The table first, the figures last; names tell whether the trajectory is whole."""
-    from mbsym.report.simulation_json import simulation_json
-    from mbsym.report.trajectory_csv import trajectory_csv
-
-    mark = "" if found.whole else "-partial"
-    written: list[Path] = []
-
-    def write(name: str, content: str | bytes) -> None:
-        path = folder / name
-        write_whole(path, content)
-        written.append(path)
-
-    if "csv" in request.formats:
-        write(f"trajectory{mark}.csv", trajectory_csv(found, further))
-    images: dict[str, bytes] = {}
-    kinds = [kind for kind in request.formats if kind != "csv"]
-    if kinds:
-        from mbsym.numerics.between import accelerations
-        from mbsym.report.figures import figures
-
-        with status(request.quiet, "drawing"):
-            rates = accelerations(dynamics, found.times, found.states)
-            images = figures(found, kinds, note(found), conserved, rates)
-            images |= _motion(dynamics.scenario, found, kinds, rates)
-    for name, content in images.items():
-        stem, _, kind = name.rpartition(".")
-        write(f"{stem}{mark}.{kind}", content)
-    listed = [path.name for path in written]
-    write(
-        "simulation.json",
-        simulation_json(
-            found, dynamics.scenario, chosen.method, chosen.why, request.arithmetic, chosen.times, summary, listed
-        ),
-    )
-    # Figures and tables of an earlier simulation would contradict simulation.json.
-    for path in sorted(folder.iterdir()):
-        if path not in written and _ours(path.name):
-            path.unlink(missing_ok=True)
-    return written
-
-
-def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:
-    """Pictures of the bodies themselves, where there is something to be seen."""
-    from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
-    from mbsym.numerics.between import between
-    from mbsym.numerics.positions import positions
-    from mbsym.report.motion_figure import motion_figures
-
-    every = -(-len(found.times) // MOST_SAMPLES)  # a picture of a million samples would only be slow
-    times, states = found.times[::every], found.states[:, ::every]
-    pieces = min(MOST_SAMPLES // len(times), SMOOTHER)
-    if pieces > 1:
-        times, states = between(times, states, rates, [pieces] * (len(times) - 1))
-    try:
-        places = positions(scenario, times, states)
-    except (NoClosedForm, NotRational, SingularPoint):
-        return {}
-    return motion_figures(places, kinds, note(found)) if places is not None else {}
-
-
-def _ours(name: str) -> bool:
-    """Whether a file name is one that this command writes."""
-    drawn = r"(trajectory|(histories|phase-planes|mass-centres)(-\d+)?|drift|motion)(-partial)?\.(csv|svg|png)"
-    return re.fullmatch(drawn, name) is not None
+# --- progress ---
 
 
 @contextmanager

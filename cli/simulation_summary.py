@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.reduced import Reduced
     from mbsym.numerics.simulate import Trajectory
-    from mbsym_cli.simulate import Chosen, Request
+    from mbsym_cli.simulate import Chosen
+    from mbsym_cli.simulation_request import Request
 
 #: Below this much of what it was a pivot of M costs digits worth a warning.
 NEARLY_SINGULAR = 1e-8

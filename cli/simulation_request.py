@@ -1,0 +1,137 @@
+"""What ``mbsym simulate`` is asked for: its options, read and held against each other before anything is compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from math import ceil
+from typing import TYPE_CHECKING
+
+from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+
+FORMATS = ("csv", "svg", "png")
+ARITHMETIC = ("float64", "float32", "extended")
+
+#: No arithmetic here is finer, and nothing coarser is a solution.
+FINEST, COARSEST = 1e-19, 0.1
+
+#: A first try of a fixed step is the whole time divided by this.
+TRIAL_STEPS = 10_000
+
+
+@dataclass(frozen=True)
+class Request:
+    """What was asked for, numbers read."""
+
+    end: float
+    samples: int | None
+    every: float | None
+    method: str
+    tolerance: float | None
+    step: float | None
+    step_limit: int
+    arithmetic: str
+    formats: tuple[str, ...]
+    invariants: bool
+    estimate: bool | None
+    quiet: bool
+    whole: bool = False
+
+
+@dataclass(frozen=True)
+class Flags:
+    """The options without a value."""
+
+    invariants: bool
+    estimate: bool | None
+    quiet: bool
+    whole: bool
+
+
+def read_request(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Request:
+    """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
+    from mbsym.numerics.methods.table import METHODS
+
+    end = asked.time(texts["--time"])
+    every = asked.number("--every", texts["--every"])
+    tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
+    step = asked.number("--step", texts["--step"])
+    why = ", the start and the end of a trajectory"
+    samples = asked.whole("--samples", texts["--samples"], 2, 10**18, why)
+    method = asked.word("--method", (texts["--method"] or "").lower(), ("auto", *METHODS), "method")
+    arithmetic = asked.word("--arithmetic", texts["--arithmetic"] or "", ARITHMETIC, "arithmetic")
+    step_limit = asked.whole("--step-limit", texts["--step-limit"], 1, 10**12)
+    formats = asked.words("--format", texts["--format"] or "", FORMATS, "format")
+    if texts["--samples"] is not None and texts["--every"] is not None:
+        asked.complain("--every", "conflicting-options", "--samples and --every exclude each other")
+    elif system is not None:
+        _check_rows(system, end, every, samples, asked)
+    if step is not None and end is not None and step > end:
+        asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
+    request = Request(
+        end or 0.0,
+        samples,
+        every,
+        method or "auto",
+        tolerance,
+        step,
+        step_limit or 1,
+        arithmetic or "float64",
+        formats,
+        **asdict(flags),
+    )
+    if method is not None:
+        _check_method(system, request, texts, asked)
+    return request
+
+
+def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
+    from mbsym.report.trajectory_csv import most_rows
+
+    rows, option = samples, "--samples"
+    if every is not None:
+        rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
+    most = most_rows(system)
+    if rows is not None and rows > most:
+        hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
+        asked.complain(option, "too-large", f"{rows} rows are too many", hint)
+
+
+def _check_method(system: System | None, request: Request, texts: Mapping[str, str | None], asked: Options) -> None:
+    """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
+    from mbsym.numerics.methods.symplectic import without_potential
+    from mbsym.numerics.methods.table import METHODS
+
+    name = request.method
+    has_step, has_tolerance = texts["--step"] is not None, texts["--tolerance"] is not None
+    if has_step and has_tolerance:
+        hint = "a method takes one or the other"
+        asked.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
+    fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
+    if name == "auto":
+        if has_step and not has_tolerance:
+            hint = f"--step goes with a method of fixed step, for example --method rk4 (also {fixed})"
+            asked.complain("--step", "conflicting-options", "--method auto chooses its steps by a tolerance", hint)
+        return
+    traits = METHODS[name].traits
+    if request.arithmetic not in traits.scalars:
+        able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
+        message = f"{name} does not compute in {request.arithmetic}"
+        asked.complain("--arithmetic", "conflicting-options", message, f"these do: {able or 'none'}")
+    if traits.fixed and has_tolerance and not has_step:
+        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
+        asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
+    elif traits.fixed and not has_step:
+        many = f"--step {request.end / TRIAL_STEPS:.2g}" if request.end else "--step H"
+        hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
+        asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
+    if not traits.fixed and has_step and not has_tolerance:
+        hint = f"leave --step out, give a --tolerance, or take a method of fixed step: {fixed}"
+        asked.complain("--step", "conflicting-options", f"{name} chooses its steps by a --tolerance", hint)
+    loads = without_potential(system) if traits.conservative and system is not None else ()
+    if loads:
+        message = f"{name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
+        asked.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
