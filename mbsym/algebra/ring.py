@@ -156,6 +156,10 @@ class Ring(Algebra):
 
     # --- bounds ------------------------------------------------------------------------------------------------------
 
+    def limit_work(self, most: int) -> None:
+        """Lowers the budget of work to ``most`` candidate terms, if it is not lower already."""
+        self.work_budget = min(self.work_budget, most)
+
     def spend(self, work: int) -> None:
         """Counts work, in candidate terms of products.  Raises NoClosedForm when the budget is used up."""
         self.work += work

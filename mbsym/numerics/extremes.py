@@ -198,7 +198,7 @@ def _quantities(system: System, ring: Ring, left_out: list[str]) -> tuple[Quanti
 
 def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
     analysis = Analysis(given.system)
-    analysis.ring.work_budget = min(analysis.ring.work_budget, int(budget * STEPS_PER_SECOND))
+    analysis.ring.limit_work(int(budget * STEPS_PER_SECOND))
     what = "linear equations, eigenvalues and verdicts"
     try:
         terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)

@@ -134,7 +134,7 @@ class Work:
 
     def fresh(self, system: System) -> Analysis:
         found = Analysis(system, (), self.analysis.terms, suggests=False)
-        found.ring.work_budget = min(found.ring.work_budget, WORK)
+        found.ring.limit_work(WORK)
         return found
 
     def result(self, stage: str) -> Any:
@@ -152,7 +152,7 @@ class Work:
 
     def _kinetic_energy(self, system: System) -> tuple[int | None, int]:
         ring = ring_of(system, self.analysis.terms)
-        ring.work_budget = min(ring.work_budget, WORK)
+        ring.limit_work(WORK)
         try:
             return len(kinetic_energy(Scene(system, ring, ring_environment(system, ring), ring))), ring.work
         except NoClosedForm:
