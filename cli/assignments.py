@@ -98,9 +98,9 @@ def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options)
     """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
     for one in lack.contradictions:
         if one.name in assigned.texts:
-            assigned.complain(one.name, one.code, one.text, options)
+            assigned.complain(one.name, one.code, one.text, options, one.hint)
         else:
-            options.complaints.append(render_option(Complaint(one.code, one.text), "", str(file)))
+            options.complaints.append(render_option(Complaint(one.code, one.text, None, one.hint), "", str(file)))
 
 
 def _unread(system: System, assigned: Assigned) -> set[str]:

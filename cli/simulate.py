@@ -236,9 +236,16 @@ def _times(request: Request, frequency: float, system: System) -> Any:
         times = np.arange(ceil(request.end / request.every * (1 - 1e-12)) + 1) * request.every
         times[-1] = request.end
         return times
+    if request.samples is not None:
+        return np.linspace(0.0, request.end, request.samples)
     wanted = SAMPLES_A_PERIOD * frequency * request.end / (2 * pi)
     fitting = min(max(SAMPLES, int(min(wanted, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
-    return np.linspace(0.0, request.end, request.samples or fitting)
+    if request.step is None:
+        return np.linspace(0.0, request.end, fitting)
+    # A method of fixed step knows nothing between its steps: rows stand at whole numbers of them, and at the end.
+    steps = max(1, ceil(request.end / request.step * (1 - 1e-12)))
+    apart = max(1, ceil(steps / (fitting - 1)))
+    return np.append(np.arange(0, steps, apart) * request.step, request.end)
 
 
 def _integrals(system: System, request: Request) -> tuple[tuple[Any, ...], Any] | None:

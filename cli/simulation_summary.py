@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import pi
+from math import ceil, pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +51,13 @@ def _lines(
     setting, work = found.setting, found.work
     measured = f": {chosen.measured}" if chosen.measured else ""
     yield "method", f"{chosen.method.traits.title} ({chosen.why}{measured})"
-    how = f"step {setting.step:g}" if setting.step is not None else f"tolerance {setting.tolerance:g} per step"
+    if setting.step is None:
+        how = f"tolerance {setting.tolerance:g} per step"
+    else:
+        spacing = float(chosen.times[1] - chosen.times[0])
+        taken = spacing / ceil(spacing / setting.step * (1 - 1e-9))
+        shorter = taken < setting.step * (1 - 1e-6)
+        how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
     yield "setting", f"{how}, {request.arithmetic}"
     reached = "" if found.whole else f", reached {found.times[-1]:.9g}"
     yield "time", f"0 to {request.end:g}, {len(chosen.times)} samples{reached}"

@@ -351,7 +351,7 @@ class Analysis:
     @property
     def trials(self) -> Trials:
         """Parameters at which claimed conditions are tried, with exact verdicts."""
-        return self._result("trials", self._trials)
+        return self._result("exact verdicts", self._trials)
 
     def _trials(self) -> Trials:
         scene, energies, linear = self.parameters_scene, self._optional("energy"), self.linearisation

@@ -600,3 +600,47 @@ def test_auto_takes_an_implicit_method_for_a_stiff_system(tmp_path: Path) -> Non
     found = table(tmp_path / "out" / "trajectory.csv")
     assert np.max(np.abs(found["x"] - np.exp(-1e-6 * found["t"]))) < 1e-7
     assert np.max(np.abs(found["y"] - np.cos(found["t"]))) < 1e-6
+
+
+@pytest.mark.parametrize(("method", "step", "order"), [("rk4", "0.05", 4), ("midpoint", "0.01", 2)])
+def test_a_fixed_step_is_the_step_that_is_taken(method: str, step: str, order: int, tmp_path: Path) -> None:
+    """Rows never shorten it, and its error, against a quarter of it, falls with its order."""
+    errors = []
+    for part in (1, 2):
+        length = float(step) / part
+        words = ("--time", 2, "--method", method, "--step", length, "--format", "csv", "--out", tmp_path)
+        done = mbsym(SHIPPED / "double-pendulum.yaml", *words)
+        assert done.exit_code == 0, done.output
+        assert "shortened" not in done.output
+        assert summary(tmp_path)["work"]["steps"] == round(2 / length)
+        rows = np.diff(table(tmp_path / "trajectory.csv")["t"]) / length
+        assert np.allclose(rows, np.round(rows), atol=1e-6)
+        errors.append(summary(tmp_path)["estimated_error"]["final"])
+    assert errors[1] > 0
+    assert 0.6 * 2**order < errors[0] / errors[1] < 1.6 * 2**order
+
+
+def test_there_is_nothing_between_fixed_steps(tmp_path: Path) -> None:
+    words = ("--time", 1, "--method", "rk4", "--format", "csv", "--out", tmp_path)
+    for rows in (("--every", "0.01"), ("--samples", "101")):
+        done = mbsym(SHIPPED / "double-pendulum.yaml", *words, *rows, "--step", "0.05")
+        assert done.exit_code == 2
+        assert "rows 0.01 apart are asked for, with steps of 0.05" in done.stderr
+    done = mbsym(SHIPPED / "double-pendulum.yaml", *words, "--every", "0.1", "--step", "0.03")
+    assert done.exit_code == 0
+    assert "step 0.03, shortened to 0.025 to end at every row" in done.stdout
+
+
+def test_the_state_at_a_step_limit_is_kept(tmp_path: Path) -> None:
+    """Between rows that are far apart: without it nothing would be left but the start."""
+    words = ("--time", 1e6, "--samples", 3, "--step-limit", 500, "--format", "csv", "--out", tmp_path)
+    done = mbsym(SHIPPED / "double-pendulum.yaml", *words)
+    assert done.exit_code == 3
+    found = table(tmp_path / "trajectory-partial.csv")
+    assert len(found["t"]) == 2
+    last = float(found["t"][-1])
+    assert last > 1
+    again = ("--time", last, "--samples", 2, "--format", "csv", "--no-estimate", "--out", tmp_path / "whole")
+    assert mbsym(SHIPPED / "double-pendulum.yaml", *again).exit_code == 0
+    whole = table(tmp_path / "whole" / "trajectory.csv")
+    assert found["energy"][-1] == pytest.approx(whole["energy"][-1], rel=1e-6)

@@ -186,3 +186,20 @@ loads:
     short, long = (mbsym.loads(template.format(slope=slope)).system for slope in (number, f"{{value: {number}}}"))
     assert short == long
     assert next(one for one in short.parameters if one.name == "slope").value is not None
+
+
+@pytest.mark.parametrize(("value", "code"), [("2", None), ("2.0001", "rounded-value"), ("3", "conflicting-values")])
+def test_a_value_is_held_against_a_relation_with_a_root(value: str, code: str | None) -> None:
+    """n = sqrt(mu/R**3) = 2 for mu = 4 and R = 1."""
+    text = f"""
+mbsym: 1
+name: relation
+parameters: {{m: 1, mu: 4, R: 1, n: {{value: {value}}}}}
+bodies:
+  - {{name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}}
+loads:
+  - spring: {{coordinate: x, stiffness: m*n**2}}
+relations: {{n: sqrt(mu/R**3)}}
+"""
+    _, complaints = read(text, "x.yaml")
+    assert [one.code for one in complaints.items] == ([] if code is None else [code])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from math import sqrt
 from pathlib import Path
 
@@ -71,3 +73,53 @@ def test_the_command_tells_them(tmp_path: Path) -> None:
     told = json.loads((tmp_path / "results.json").read_text())["stability"]["eigenvalues_at_values"]
     assert told[1] == {"coordinates": ["beta"], "roots": [{"real": 0.0, "imaginary": 0.002, "multiplicity": 1}]}
     assert r"\pm 0.002\,\mathrm{i}" in (tmp_path / "report.tex").read_text()
+
+
+IN_ORBIT = """
+mbsym: 1
+name: rigid satellite
+parameters: {A: positive, B: positive, C: positive, R: positive, mu: positive, n: positive, m: positive}
+prescribed: {u: {rate: n}}
+bodies:
+  - {name: orbit, attached to: 0, rotation: {axes: [3], angles: [u]}, mass: 0}
+  - {name: body, attached to: orbit, connection point: [R, 0, 0], rotation: {axes: [3, 2, 1], angles: [a, b, c]},
+     mass: m, inertia about: mass centre, inertia: [A, B, C]}
+loads:
+  - newtonian gravity: {constant: mu, centre: 0, about: body, order: 2}
+relations: {n: sqrt(mu/R**3)}
+motion: {a: 0, b: 0, c: 0}
+values: {A: 1, B: 2, C: 2.5, R: 7000000, mu: MU, m: 1}
+"""
+
+
+@pytest.mark.parametrize(("inertia", "word"), [("1", "stable"), ("5/2", "unstable")])
+def test_irrational_values_have_a_verdict_and_eigenvalues(inertia: str, word: str) -> None:
+    """In a circular orbit of irrational rate n pitch is n sqrt(3 (B - A)/C) (Lagrange: stable for C > B > A)."""
+    text = IN_ORBIT.replace("MU", "3.986e14").replace("A: 1,", f"A: {inertia},")
+    found = mbsym.loads(text).stability
+    assert found.numerical is not None
+    assert found.numerical.word == word
+    pitch = next(x for x in found.spectra if x.coordinates == ("a",))
+    squared = 3.986e14 / 7e6**3 * 3 * (2 - float(Fraction(inertia))) / 2.5
+    size = sqrt(abs(squared))
+    expected = [complex(0, size)] if squared > 0 else [complex(-size), complex(size)]
+    assert [complex(x.real, x.imaginary) for x in numbers(pitch)] == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(("value", "frequency"), [("sqrt(2)", 2**0.25), ("pi/6", sqrt(math.pi / 6))])
+def test_a_stiffness_may_be_irrational(value: str, frequency: float) -> None:
+    text = f"""
+mbsym: 1
+name: oscillator
+parameters: {{m: 1, k: {value}}}
+bodies:
+  - {{name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}}
+loads:
+  - spring: {{coordinate: x, stiffness: k}}
+motion: {{x: 0}}
+"""
+    found = mbsym.loads(text).stability
+    assert found.numerical is not None
+    assert found.numerical.word == "stable"
+    ((pair,),) = (numbers(x) for x in found.spectra)
+    assert pair.imaginary == pytest.approx(frequency, rel=1e-15)

@@ -31,11 +31,12 @@ AGREEMENT = Fraction(1, 10**12)
 
 @dataclass(frozen=True)
 class Contradiction:
-    """A value that cannot be: a short stable ``code``, the ``name`` that has it, and a sentence."""
+    """A value that cannot be: a short stable ``code``, the ``name`` that has it, a sentence, and perhaps a way out."""
 
     code: str
     name: str
     text: str
+    hint: str | None = None
 
 
 @dataclass(frozen=True)
@@ -181,7 +182,10 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
         found = numbers.known.get(parameter.name)
         if found is not None and not has_sign(found, parameter.sign):
             text = f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
-            numbers.contradictions.append(Contradiction("sign-contradiction", parameter.name, text))
+            inferred = parameter.value is not None and parameter.sign in ("positive", "negative")
+            hint = f"if its value alone says so: {parameter.name}: {{real: true, value: ...}} in the file allows any sign"
+            wrong = Contradiction("sign-contradiction", parameter.name, text, hint if inferred else None)
+            numbers.contradictions.append(wrong)
 
 
 def _initial(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:

@@ -19,6 +19,7 @@ from mbsym.numerics.methods.interface import (
     BLOW_UP,
     LARGEST,
     SINGULAR,
+    STEP_LIMIT,
     STUCK,
     Breakdown,
     Method,
@@ -107,6 +108,10 @@ def simulate(
         interrupted = True
     seconds = time.perf_counter() - started
     kept = np.array(times[:reached], dtype=float)
+    if breakdown is not None and breakdown.kind in (STEP_LIMIT, STUCK) and breakdown.time > kept[-1]:
+        # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
+        states[reached], kept = breakdown.state, np.append(kept, breakdown.time)
+        reached += 1
     matrix = np.ascontiguousarray(states[:reached].T)
     energy = compiled_kernel(dynamics, "energy", EXTENDED if scalar == EXTENDED else FLOAT64)(np.vstack([kept, matrix]))
     return Trajectory(

@@ -22,6 +22,7 @@ _FLIPPED = {"<": ">", "<=": ">="}
 def signs(scene: Scene) -> Signs:
     """Signs of all generators of the ring, and the assumptions as polynomials compared with zero."""
     ring = scene.ring
+    dependent = relations(scene)  # first, for the roots that relations bring with them
     declared = {parameter.name: parameter.sign for parameter in scene.system.parameters} | {"pi": "positive"}
     words = [declared.get(g.name, "real") if g.kind == "parameter" else "real" for g in ring.generators]
     for index, g in enumerate(ring.generators):
@@ -29,7 +30,6 @@ def signs(scene: Scene) -> Signs:
             words[index] = "positive" if g.argument.is_constant() else "nonnegative"
     known = _with_reciprocals(scene, Signs(ring.context, tuple(words)))
     words = list(known.words)
-    dependent = relations(scene)
     definitions = _definitions(scene)
     for item in scene.system.notation:
         if item.name not in definitions:

@@ -30,12 +30,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from flint import ctx, fmpq
+from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import NotRational, SingularPoint
+from mbsym.algebra.base import Lowering, NotRational, SingularPoint
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.point import Rationals
+from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names
@@ -196,8 +196,7 @@ def _spectrum(
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
     """Formulas in the parameters as enclosures."""
     ring = scene.ring
-    numbers = dict.fromkeys(ring.names(), fmpq(0))
-    numbers |= {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
+    numbers = dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
     keep, ctx.prec = ctx.prec, PRECISION
     try:
         return [[ring.evaluate(x, numbers) for x in row] for row in rows]
@@ -407,32 +406,60 @@ def _even(ring: Ring, signs: Signs, factor: Polynomial, powers: Sequence[tuple[P
     return factor
 
 
-def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Fraction] | None:
-    """Exact values of all parameters: given ones, then relations, then what the conditions of problem 4 leave open.
+def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] | None:
+    """Values of all parameters: given ones, then relations, then what the conditions of problem 4 leave open.
 
-    None unless all are known.
+    Rational numbers exactly, irrational ones as enclosures.  None unless all are known.
     """
-    given = {p.name: value for p in scene.system.parameters if (value := rational(p.value)) is not None}
+    keep, ctx.prec = ctx.prec, PRECISION
+    try:
+        return _parameter_values(scene, equilibrium)
+    finally:
+        ctx.prec = keep
+
+
+def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] | None:
+    given: dict[str, Any] = {}
+    constants = {"pi": arb.pi()}
+    for parameter in scene.system.parameters:
+        if parameter.value is not None:
+            value = rational(parameter.value)
+            given[parameter.name] = Lowering(Balls(constants), constants)(parameter.value) if value is None else value
     solved = {name: value.polynomial for name, value in equilibrium.solved if name not in given}
     dependent = {scene.ring.generators[k].name: value for k, value in relations(scene).items()}
-    numbers = Rationals({}, {})
-    for name, value in (solved | dependent).items():
-        carry = Carrier(scene.ring, numbers, {name: numbers.number(value) for name, value in given.items()})
+    for name, polynomial in (solved | dependent).items():
         try:
-            exact = carry(value)
-        except (NotRational, SingularPoint, KeyError):
+            given[name] = _value_of(scene, polynomial, given)
+        except (SingularPoint, KeyError):
             return None
-        given[name] = Fraction(int(exact.p), int(exact.q))
-    return given if all(p.name in given for p in scene.system.parameters) else None
+    known = all(p.name in given for p in scene.system.parameters)
+    finite = all(isinstance(x, Fraction) or x.is_finite() for x in given.values())
+    return given if known and finite else None
 
 
-def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Fraction] | None) -> Verdict | None:
+def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
+    """A formula in parameters, exactly where it is rational, else enclosed.  Raises KeyError where one has no value."""
+    rationals = Rationals({}, {})
+    exact = {name: rationals.number(value) for name, value in given.items() if isinstance(value, Fraction)}
+    try:
+        found = Carrier(scene.ring, rationals, exact)(x)
+        return Fraction(int(found.p), int(found.q))
+    except (NotRational, KeyError):
+        balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in given.items()}
+        return Carrier(scene.ring, Balls(balls), balls)(x)
+
+
+def _number(value: Any) -> Any:
+    """A rational number as it is, to be rounded at the precision in which it is used; an enclosure as it is."""
+    return fmpq(value.numerator, value.denominator) if isinstance(value, Fraction) else value
+
+
+def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any] | None) -> Verdict | None:
     """ "undecided", with the reason, where the given values break a condition of problem 4; None where they do not."""
     if values is None:
         return None
     ring = scene.ring
-    exact = {name: fmpq(value.numerator, value.denominator) for name, value in values.items()}
-    numbers = dict.fromkeys(ring.names(), fmpq(0)) | exact
+    numbers = dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
     for condition in equilibrium.conditions:
         value = ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
@@ -444,11 +471,11 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Frac
 
 
 def _point(
-    scene: Scene, ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Fraction]
+    scene: Scene, ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], values: Mapping[str, Any]
 ) -> dict[int, Fraction] | None:
     """Exact values of the generators that occur in the matrices; None if one of them is irrational."""
     numbers = Rationals({}, {})
-    environment = {name: numbers.number(value) for name, value in values.items()}
+    environment = {name: numbers.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     carry = Carrier(scene.ring, numbers, environment)
     used = {k for matrix in rows for row in matrix for x in row for k, degree in enumerate(x.degrees()) if degree > 0}
     notation = {item.name for item in scene.system.notation}

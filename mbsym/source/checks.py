@@ -39,8 +39,11 @@ from mbsym.model.admissibility import (
 from mbsym.model.comparison import holds
 from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
 from mbsym.source.bodies import Draft
-from mbsym.source.identity import vanishes
+from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
+
+#: Relative error of a number that is computed in floats because it has no exact value.
+_FLOATS = Fraction(1, 10**12)
 
 #: Values that differ by less than one part in so many are taken for rounded ones.
 _ROUNDED = 1_000
@@ -288,8 +291,12 @@ def _occurring(value: object) -> Iterator[str]:
 def _check_relation_values(system: System, reading: Reading) -> None:
     values = known_values(system)
     for relation in system.relations:
-        left, right = values.get(relation.name), number_of(relation.value, values)
-        if left is None or right is None or left == right:
+        left, right, error = values.get(relation.name), number_of(relation.value, values), Fraction(0)
+        if right is None:  # a root, a sine
+            about = in_floats(relation.value, {name: number(value) for name, value in values.items()})
+            if about is not None:
+                right, error = Fraction(about), _FLOATS * abs(Fraction(about))
+        if left is None or right is None or abs(left - right) <= error:
             continue
         message = f"the given values break this relation: {decimal(left)} is not {decimal(right)}"
         if abs(left - right) > abs(right) / _ROUNDED:

@@ -165,6 +165,17 @@ class _FieldPoint:
         return (sine if coefficient > 0 else -sine % _PRIME), cosine
 
 
+def in_floats(expression: Expression, values: Mapping[str, Expression]) -> float | None:
+    """About what an expression is worth; None where a name has no value, or the expression has none."""
+    if not names(expression) <= values.keys() | {"pi"}:
+        return None
+    try:
+        value = _FloatPoint(0, values).value(expression)
+    except (ArithmeticError, ValueError, TypeError, RecursionError):
+        return None
+    return value if math.isfinite(value) else None
+
+
 def _vanishes_in_floats(expression: Expression, replaced: Mapping[str, Expression]) -> bool | None:
     verdicts = []
     for seed in range(4):
