@@ -8,12 +8,13 @@ from pathlib import Path
 import click
 
 from mbsym_cli.console import BAD_INPUT, OK, counted, read_description
+from mbsym_cli.options import Options
 
 
 @click.command("check")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
 def command(files: tuple[Path, ...]) -> None:
-    """Validate descriptions without deriving anything.
+    """Validate descriptions, those in folders too, without deriving anything.
 
     Prints every complaint with its place; the exit code is 2 if there is an error.
 
@@ -21,8 +22,12 @@ def command(files: tuple[Path, ...]) -> None:
     Example:
       mbsym check systems/*.yaml
     """
+    asked = Options()
+    paths = asked.descriptions(files)
+    if asked.refused():
+        sys.exit(BAD_INPUT)
     worst = OK
-    for path in files:
+    for path in paths:
         system = read_description(path)
         if system is None:
             worst = BAD_INPUT

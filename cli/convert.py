@@ -10,6 +10,7 @@ import click
 from mbsym.source import to_text, to_yaml
 from mbsym_cli.console import BAD_INPUT, read_description
 from mbsym_cli.files import write_whole
+from mbsym_cli.options import Options
 
 
 @click.command("convert")
@@ -25,6 +26,11 @@ def command(file: Path, spelling: str | None, out: Path | None) -> None:
     Example:
       mbsym convert systems/satellite.yaml --out satellite.txt
     """
+    asked = Options()
+    if out is not None and out.exists() and file.exists() and out.samefile(file):
+        asked.complain("--out", "same-file", f"{out} would replace what it is made of", "comments would be lost")
+    if asked.refused(file):
+        sys.exit(BAD_INPUT)
     system = read_description(file)
     if system is None:
         sys.exit(BAD_INPUT)

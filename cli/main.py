@@ -8,14 +8,12 @@ from __future__ import annotations
 import gc
 import importlib
 import sys
+from difflib import get_close_matches
 from typing import Any
 
 import click
 
 import mbsym
-
-#: As shells count the signal of Ctrl-C.
-INTERRUPTED = 130
 
 #: name -> module of this package that defines ``command``.
 COMMANDS = {
@@ -45,11 +43,31 @@ class LazyGroup(click.Group):
         command: click.Command = importlib.import_module(COMMANDS[name]).command
         return command
 
+    def resolve_command(
+        self, context: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """With a hint where the name of a command is misspelt."""
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            near = get_close_matches(name, COMMANDS, 1)
+            known = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(COMMANDS)}"
+            context.fail(f"there is no command '{name}'; {known}")
+        return super().resolve_command(context, args)
+
     def invoke(self, context: click.Context) -> Any:
-        """Ctrl-C, wherever it comes, ends with the code that shells count the signal as."""
+        """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
         try:
             return super().invoke(context)
+        except (click.ClickException, click.exceptions.Exit, click.Abort):
+            raise
+        except Exception as error:
+            from mbsym_cli.console import FAILED
+
+            print(f"internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
+            sys.exit(FAILED)
         except KeyboardInterrupt:
+            from mbsym_cli.console import INTERRUPTED
+
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(INTERRUPTED)
 

@@ -19,6 +19,9 @@ from mbsym_cli.console import counted
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
 
+#: Descriptions end in one of these.
+SUFFIXES = (".yaml", ".yml", ".txt")
+
 #: Problems are numbered 1 to this.
 PROBLEMS = 7
 
@@ -43,6 +46,22 @@ class Options:
         print("\n".join(self.complaints), file=sys.stderr)
         print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return True
+
+    def descriptions(self, files: Iterable[Path]) -> list[Path]:
+        """The files, each once; a folder stands for the descriptions in it, by name and YAML before plain text."""
+        found: dict[Path, Path] = {}
+        for path in files:
+            inside = [path]
+            if path.is_dir():
+                inside = [child for child in path.iterdir() if child.suffix in SUFFIXES]
+                inside.sort(key=lambda child: (child.stem, SUFFIXES.index(child.suffix)))
+            for one in inside:
+                found.setdefault(one.resolve(), one)
+        if not found:
+            hint = f"a description is a file that ends in {', '.join(SUFFIXES)}"
+            named = ", ".join(map(str, files))
+            self.complain(named, "no-descriptions", "there are no descriptions here", hint)
+        return list(found.values())
 
     def time(self, text: str | None) -> float | None:
         """``--time``, without which nothing can be simulated."""

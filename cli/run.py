@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from mbsym.numerics.ledger.entry import Ledger
 
 #: What a folder is searched for.
-SUFFIXES = (".yaml", ".yml", ".txt")
 
 
 @dataclass(frozen=True)
@@ -79,14 +77,11 @@ def command(
     """
     from mbsym.report.targets import TARGETS
 
-    paths = list(_descriptions(files))
     asked = Options()
+    paths = asked.descriptions(files)
     chosen = asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
     budget = asked.whole("--terms", terms, 1, 10**12)
-    if not paths:
-        hint = f"a description is a file that ends in {', '.join(SUFFIXES)}"
-        asked.complain(", ".join(map(str, files)), "no-descriptions", "there are no descriptions here", hint)
     if asked.complaints or budget is None:
         for path in paths:
             read_description(path)
@@ -98,15 +93,6 @@ def command(
     for path, folder in zip(paths, _folders(paths, out), strict=True):
         worst = max(worst, _run_one(path, folder, request))
     sys.exit(worst)
-
-
-def _descriptions(files: Iterable[Path]) -> Iterator[Path]:
-    """The files themselves; a folder stands for the descriptions in it, by name."""
-    for path in files:
-        if path.is_dir():
-            yield from sorted(child for child in path.iterdir() if child.suffix in SUFFIXES)
-        else:
-            yield path
 
 
 def _folders(paths: list[Path], out: Path | None) -> list[Path]:

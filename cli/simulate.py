@@ -156,10 +156,6 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
         print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
     except MemoryError:
         print(f"{file}: out of memory; ask for fewer --samples", file=sys.stderr)
-    except KeyboardInterrupt:
-        raise
-    except Exception as error:
-        print(f"{file}: internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
     return FAILED
 
 

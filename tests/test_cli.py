@@ -84,7 +84,40 @@ def test_a_folder_stands_for_its_descriptions(tmp_path: Path) -> None:
     (folder / "a.txt").write_text(mbsym("convert", PENDULUM).stdout)
     done = mbsym("run", folder, "--out", tmp_path / "out", "-f", "json", "-p", "1")
     assert done.exit_code == 0, done.output
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"a", "a.yaml", "b"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"a", "a.txt", "b"}
+
+
+def test_a_file_that_is_named_twice_is_run_once(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text(PENDULUM.read_text())
+    done = mbsym("run", tmp_path / "a.yaml", tmp_path, "--out", tmp_path / "out", "-f", "json", "-p", "1")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.count("1 kinematics") == 1
+    assert mbsym("check", tmp_path).stdout.count(": ok: ") == 1
+
+
+def test_a_misspelt_command_is_guessed() -> None:
+    done = mbsym("simulat", PENDULUM)
+    assert done.exit_code == 2
+    assert "did you mean 'simulate'?" in done.stderr
+
+
+def test_a_description_is_not_converted_into_itself(tmp_path: Path) -> None:
+    own = tmp_path / "own.yaml"
+    own.write_text("# a comment\n" + PENDULUM.read_text())
+    done = mbsym("convert", own, "--to", "yaml", "--out", own)
+    assert done.exit_code == 2
+    assert "error[same-file]" in done.stderr
+    assert own.read_text().startswith("# a comment")
+
+
+def test_a_mistake_of_ours_is_called_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("planted")
+
+    monkeypatch.setattr("mbsym_cli.check.read_description", broken)
+    done = mbsym("check", PENDULUM)
+    assert done.exit_code == 1
+    assert "internal error, please report it: RuntimeError: planted" in done.stderr
 
 
 def test_a_folder_without_descriptions_is_an_error(tmp_path: Path) -> None:

@@ -183,7 +183,7 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
         if found is not None and not has_sign(found, parameter.sign):
             text = f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
             inferred = parameter.value is not None and parameter.sign in ("positive", "negative")
-            hint = f"if its value alone says so: {parameter.name}: {{real: true, value: ...}} in the file allows any sign"
+            hint = f"if its value alone says so, {parameter.name}: {{real: true, value: ...}} allows any sign"
             wrong = Contradiction("sign-contradiction", parameter.name, text, hint if inferred else None)
             numbers.contradictions.append(wrong)
 

@@ -269,6 +269,8 @@ def _axis(node: Node, reading: Reading) -> int | None:
     if scalar.text in ("0", "1", "2", "3"):
         return int(scalar.text)
     hint = "for the opposite sense, turn by the negative angle" if scalar.text.startswith("-") else None
+    if scalar.text.lower() in ("x", "y", "z"):
+        hint = f"write {'xyz'.index(scalar.text.lower()) + 1}: the axes x, y, z are numbered 1, 2, 3"
     reading.error("bad-axis", f"rotation axes are 1, 2, 3 or 0, not {ascii_safe(scalar.text)}", scalar.span, hint)
     return None
 

@@ -139,7 +139,9 @@ class Reading:
     def triple(self, node: Node, what: str) -> tuple[Node, ...] | None:
         """The three items of a list of three."""
         if not isinstance(node, Sequence):
-            self.shape_error(node, what, "a list of three", "write [0, 0, 0]")
+            written = node.text.strip() if isinstance(node, Scalar) else ""
+            bare = written.count(",") == 2 and len(written) <= 3 * MAX_SHOWN
+            self.shape_error(node, what, "a list of three", f"write [{written if bare else '0, 0, 0'}]")
             return None
         if len(node.items) != 3:
             message = f"{what} has three components, not {len(node.items)}"
