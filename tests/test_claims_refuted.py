@@ -38,7 +38,7 @@ from mbsym_cli.main import main
 KEPLER = """
 mbsym: 1
 name: Kepler
-parameters: {m: positive, mu: positive, s: real, n: negative}
+parameters: {m: positive, mu: positive, s: real, n: negative, q: nonpositive}
 bodies:
   - name: planet
     attached to: 0
@@ -339,3 +339,107 @@ def test_the_appendix_with_refuted_claims_compiles(tmp_path: Path) -> None:
         "claim: kinetic energy, equals: Io*theta_dot**2",
     )
     assert "Overfull" not in compiled_latex(latex(analysis, range(1, 8)), tmp_path)
+
+
+def test_parameters_that_follow_keep_their_declared_signs() -> None:
+    """k1 = a - b is declared positive: no counterexample has a < b."""
+    text = SPRINGS.replace(
+        "k1: real, k2: real}", "k1: positive, k2: positive, a: positive, b: positive}\nrelations: {k1: a - b}"
+    )
+    assert not conditions("as: sufficient, that: a > 0", text=text)[0].refuted
+
+
+def test_a_border_of_a_condition_is_told() -> None:
+    weak, strict = conditions("that: k1 >= 0", "that: k1 > 0")
+    assert weak.outcome == strict.outcome == EXACT
+    assert weak.remark.endswith(", but for the case of equality")
+    assert "equality" not in strict.remark
+
+
+def test_what_always_holds_is_not_sufficient_for_that() -> None:
+    """U = -k x^4 is a hill; the first approximation does not see it, so nothing refutes the claim."""
+    hill = SPRINGS.partition("  - {name: b")[0].replace("k1: real, k2: real", "k: positive")
+    hill += "loads:\n  - potential: -k*x**4\nmotion: {x: 0}\n"
+    (result,) = conditions("as: sufficient, that: k > 0", text=hill)
+    assert (result.outcome, result.holds) == (UNDECIDED, False)
+
+
+def test_denominators_count_by_their_signs() -> None:
+    """k1/a^2 > 0 is k1 > 0 wherever it makes sense; k1/a > 0 is not."""
+    text = SPRINGS.replace("k2: real}", "k2: real, a: real}")
+    even, odd = conditions("that: k1/a**2 > 0", "that: k1/a > 0", text=text)
+    assert (even.outcome, odd.outcome) == (EXACT, FAILS)
+
+
+def test_only_sufficient_conditions_of_a_place_count_together() -> None:
+    one, other = conditions("as: sufficient, that: k1 > 0, place: two", "as: necessary, that: k2 > 0, place: two")
+    assert (one.outcome, other.outcome) == (FAILS, EXACT)
+
+
+TURNTABLE = """
+mbsym: 1
+name: Particle on a turntable
+parameters: {m: positive, k1: real, k2: real, w: positive}
+prescribed: {chi: w}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - {name: p, attached to: table, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads:
+  - spring: {coordinate: x, stiffness: k1}
+  - spring: {coordinate: y, stiffness: k2}
+motion: {x: 0, y: 0}
+values: {m: 1, k1: 1, k2: 1, w: 2}
+"""
+
+
+def test_a_firm_counterexample_is_preferred() -> None:
+    """k < m w^2 at the given values: Foucault's pendulum, gyroscopically stabilised; k1, k2 > m w^2: a minimum."""
+    firm, weak = conditions("as: necessary, that: k1 > 1000", "as: necessary, that: k1 > m*w**2", text=TURNTABLE)
+    assert firm.remark == "it is not necessary for stability"
+    assert weak.remark == "it is not necessary for stability in the first approximation"
+
+
+DRIVEN = """
+mbsym: 1
+name: Driven
+parameters: {m: positive, k: positive, F: positive}
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - generalized force: {x: F*cos(t)}
+"""
+
+
+def test_the_time_is_told_where_it_matters() -> None:
+    """dI/dt = F cos(t) x'."""
+    driven = judged("claim: first integral, equals: m*x_dot**2/2 + k*x**2/2", text=DRIVEN)
+    assert dict(driven.counterexample.at)["t"] == "0"
+    free = judged("claim: first integral, equals: m*x_dot**2/2 - k*x**2/2", text=DRIVEN.partition("  - gener")[0])
+    assert "t" not in dict(free.counterexample.at)
+
+
+def test_a_polynomial_is_compared_by_its_highest_power() -> None:
+    """Io p^2 + m g l times 2 or times 3 would do equally well."""
+    result = judged("claim: characteristic polynomial, variable: p, equals: 2*Io*p**2 + 3*m*g*l")
+    assert (result.outcome, str(result.factor)) == (DIFFERS, "2")
+    assert [(part.power, str(part.difference)) for part in result.parts] == [(0, "m*l*g")]
+
+
+def test_a_factor_that_may_be_infinite_is_told() -> None:
+    result = judged(EQUATION + "(Io*theta_ddot + m*g*l*sin(theta))/cos(theta)")
+    assert (result.outcome, result.remark) == (FACTOR, "where cos(theta) is not 0")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "outcome", "where"),
+    [
+        ("s*sqrt(1/s**2)", NUMERICAL, "for s > 0 (it does not for s < 0)"),  # under a root, in a reciprocal
+        ("sqrt(s**2)/s*sqrt(r**2)/r", EXACT, "for r > 0, s > 0 (it need not with other signs)"),  # also for both < 0
+        ("(sqrt(s**2)/s + sqrt(r**2)/r)/2", EXACT, "for r > 0, s > 0 (it need not with other signs)"),
+        ("(-sqrt(q**2)/q)", EXACT, ""),  # q <= 0
+    ],
+)
+def test_signs_under_roots_that_are_harder(ratio: str, outcome: str, where: str) -> None:
+    result = judged(f"claim: coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*{ratio}", text=KEPLER)
+    assert (result.outcome, result.where) == (outcome, where)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import permutations, product
 from pathlib import Path
@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from conftest import SHIPPED, reference
+from conftest import SHIPPED, at_values, reference
 from flint import arb, fmpq
+from test_spectrum import SHAFT
 
 import mbsym
 from mbsym.algebra import krawczyk
 from mbsym.algebra.polynomial_systems import Limits, Solutions, context, solve
 from mbsym.analysis import Analysis, Unavailable
+from mbsym.mechanics.charts import joints
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.numerics.scenario import exact
 from mbsym.problems.enclosed_stability import enclosed_verdict
@@ -648,3 +650,120 @@ def test_the_described_motion_is_listed_and_judged_as_problem_6_does(path: Path)
     listed = [one for one in (*found.equilibria, *found.singular) if is_described(one)]
     assert len(listed) == (0 if judged.explanation.startswith("The motion does not exist there") else 1)
     assert {one.verdict.word for one in listed} <= {judged.word}
+
+
+@pytest.mark.parametrize("rate", [1, 3])
+def test_a_spin_at_any_rate_is_judged_as_in_problem_6(rate: int) -> None:
+    """lambda^2 + omega^2 divides the determinant: at the rate 1 omega and omega^2 cannot be told apart."""
+    _, found = at("satellite-with-damper", omega=rate)
+    judged = at_values(SHIPPED / "satellite-with-damper.yaml", omega=rate).stability.numerical
+    upright = next(one for one in found.equilibria if texts(one) == ("0", "0", "0"))
+    assert (upright.verdict.word, upright.verdict.theorem) == (judged.word, judged.theorem)
+    assert upright.verdict.word == "asymptotically stable up to a rotation of space"
+
+
+@pytest.mark.parametrize(("b", "word"), [(3, "asymptotically stable"), (-3, "unstable")])
+def test_gyroscopic_and_circulatory_forces_have_their_signs(b: int, word: str) -> None:
+    """z'' + (1 + i b) z' + (1 + 2 i) z = 0 is stable iff 1 + 2 b - 4 > 0 (Bilharz)."""
+    _, found = at(SHAFT.format(b=b, c=1))
+    assert [one.verdict.word for one in found.equilibria] == [word]
+
+
+CIRCULATORY = """
+mbsym: 1
+name: Circulatory
+parameters: {m: 1, c: 1, k: 3, d: 1}
+bodies:
+  - {name: block, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - spring: {coordinate: y, stiffness: k}
+  - damper: {coordinate: x, coefficient: d}
+  - damper: {coordinate: y, coefficient: d}
+  - generalized force: {x: c*y, y: -c*x}
+motion: {x: 0, y: 0}
+"""
+
+
+def test_a_circulatory_force_on_a_cyclic_coordinate_holds_it() -> None:
+    """s = lambda^2 + lambda, s^2 + 3 s + 1 = 0: s = (-3 +- sqrt 5)/2 < 0, so both lambda are on the left."""
+    _, found = at(CIRCULATORY)
+    assert [one.verdict.word for one in found.equilibria] == ["asymptotically stable"]
+
+
+HALF = """
+mbsym: 1
+name: Half an angle
+parameters: {m: 1, l: 1, k: 1}
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [theta]}, mass centre: [l, 0, 0], mass: m}
+loads:
+  - potential: k*cos(theta/2)
+"""
+
+
+def test_half_angles_have_two_turns() -> None:
+    """sin(theta/2) = 0: theta = 0 and theta = 2 pi are different; the potential is least at the second."""
+    _, found = at(HALF)
+    assert {one.verdict.word: one.values[0].value for one in found.equilibria} == pytest.approx(
+        {"unstable": 0, "stable": 2 * math.pi}
+    )
+
+
+SAMPLED = """
+mbsym: 1
+name: Five uncoupled coordinates
+parameters: {m: 1, k: 1}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z], mass: m}
+  - {name: q, attached to: 0, connection point: [u, 0, 0], coordinates: [u], mass: m}
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [theta]}, mass centre: [1, 0, 0], mass: m}
+loads:
+  - potential: exp(x) - x + exp(y) - y + k*(z - 3)**2 + exp(u) - u + sin(theta) + exp(sin(theta))
+"""
+
+
+def test_a_search_from_many_points_finds_what_is_there() -> None:
+    """e^x = 1 and so on, z = 3; (1 + exp(sin)) cos = 0: theta = +-pi/2, once each."""
+    _, found = at(SAMPLED)
+    assert not found.complete
+    assert {one.verdict.word: [x.value for x in one.values] for one in found.equilibria} == {
+        "stable": pytest.approx([0, 0, 3, 0, -math.pi / 2], abs=1e-9),
+        "unstable": pytest.approx([0, 0, 3, 0, math.pi / 2], abs=1e-9),
+    }
+    assert len(found.equilibria) == 2
+
+
+TWISTED = """
+mbsym: 1
+name: Rod in a universal joint
+parameters: {m: 1, l: 1, g: 1, F: 1}
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [1, 2], angles: [x, y]}, mass centre: [0, 0, -l], mass: m}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("load", "free"), [("", True), ("  - torque: {body: rod, components: [0, 0, F], axes: rod}\n", False)]
+)
+def test_a_torque_about_a_rod_is_work_of_its_twist(load: str, free: bool) -> None:
+    assert bool(joints(mbsym.loads(TWISTED + load).system, ())) is free
+
+
+FOLLOWER = "  - force: {body: rod, point: [0, 0, -l], components: [F, 0, 0], axes: rod}\n"
+
+
+def test_a_force_that_turns_with_a_twist_needs_it() -> None:
+    """In the angles x, y: f_x = -m g l sin x cos y, f_y = -m g l cos x sin y - F l with F = m g/2.
+
+    sin x = 0 gives sin y = -+1/2 (x = 0, pi; two y each); cos y = 0 gives cos x = -+1/2, where x turns about the rod.
+    """
+    system, found = at(TWISTED.replace("F: 1}", "F: 1/2}") + FOLLOWER)
+    assert not joints(system.system, ())
+
+    def degrees(listed: Sequence[RelativeEquilibrium]) -> set[tuple[int, ...]]:
+        return {tuple(round(math.degrees(item.value)) for item in one.values) for one in listed}
+
+    assert degrees(found.equilibria) == {(0, -30), (0, -150), (180, 30), (180, 150)}
+    assert degrees(found.singular) == {(60, -90), (-60, -90), (120, 90), (-120, 90)}

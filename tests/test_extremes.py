@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from conftest import SHIPPED
 from flint import Ordering, arb, fmpq_mpoly_ctx
 
+import mbsym
 from mbsym.algebra.program import Program
 from mbsym.algebra.roots import count_roots, rational
 from mbsym.analysis import Analysis
@@ -24,7 +26,7 @@ from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
 from mbsym.numerics.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
-from mbsym.numerics.extremes import extremes, sentences
+from mbsym.numerics.extremes import LISTED, extremes, sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import RATIO, SINGULAR, ladders, scaled, singular
 from mbsym.numerics.scenario import scenario
@@ -415,3 +417,55 @@ def test_sequences_on_the_command_line() -> None:
     none = run("extremes", ROOT / "systems/double-pendulum.yaml", "--sequences")
     assert none.exit_code == 0
     assert "no body" in none.output
+
+
+def subjects(text: str, name: str) -> list[str]:
+    given = scenario(mbsym.loads(text).system)
+    model = LinearModel(Analysis(given.system))
+    return [x.subject for x in model.borders(given, {}) if x.subject.startswith(f"{name} -> ")]
+
+
+PAIR = """
+mbsym: 1
+name: Two oscillators and a damper between them
+parameters: {m: 1, k1: 1, k2: 1, d: 1}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads:
+  - spring: {coordinate: x, stiffness: k1}
+  - spring: {coordinate: y, stiffness: k2}
+  - rayleigh: d*(x_dot - y_dot)**2/2
+motion: {x: 0, y: 0}
+initial: {x: 1, y: 0}
+"""
+INSIDE = """
+mbsym: 1
+name: One way
+parameters: {m: 1, k: 1, a: 6/5, c: 1, h: 1497/997 - 6/5}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads:
+  - generalized force: {x: -(k - a)*x - c*y, y: -h*y}
+motion: {x: 0, y: 0}
+initial: {x: 1, y: 0}
+"""
+
+
+def test_a_single_point_is_no_border() -> None:
+    """PAIR: without friction only where k1 = k2, in the mode x = y; asymptotically stable on both sides of that.
+
+    INSIDE: lambda^2 = a - k or -h: unstable for k < a; they coincide at k = a + h, 3/2 times the first trial.
+    """
+    assert mbsym.loads(PAIR).stability.numerical.word.startswith("stable")
+    assert subjects(PAIR, "k1") == []
+    assert subjects(INSIDE, "k") == ["k -> 1.2 from below", "k -> 1.2 from above"]
+
+
+def test_late_ladders_beyond_a_line_are_counted() -> None:
+    given = scenario(mbsym.load(SHIPPED / "satellite.yaml").system)
+    ring = ring_of(given.system)
+    late = extremes(given, ring, {}, budget=0).left_out[-1].partition(": ")[2].split(", ")
+    every = quantities(given.system, ring)
+    number = len(list(ladders(given, {}, Truth(given.system, every), every)))
+    assert number > LISTED + 1 == len(late)
+    assert late[-1] == f"and {number - LISTED} more"

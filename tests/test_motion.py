@@ -254,3 +254,47 @@ def test_a_title_is_not_read_as_a_formula(tmp_path: Path) -> None:
 def test_a_single_state_gives_no_picture() -> None:
     found = scenario_of(SHIPPED / "double-pendulum.yaml")
     assert motion_figures(along(found, [0.0]), ["png"]) == {}
+
+
+def test_of_several_paths_the_longest_counts() -> None:
+    times = np.linspace(0, 200, 20_001)
+    found = along(
+        scenario_of(SHIPPED / "double-pendulum.yaml"), times, theta1=0.1 * np.sin(times), theta2=np.sin(times)
+    )
+    shown = found.readable()
+    paths = np.sum(np.linalg.norm(np.diff(shown.places, axis=2), axis=1), axis=1)
+    assert 4.9 * found.size < max(paths) <= 5 * found.size
+
+
+def test_of_the_axes_of_a_body_the_slowest_counts() -> None:
+    """Tilted by 0.3 and turned: the third axis runs on a small circle."""
+    times = np.linspace(0, 400, 20_001)
+    found = along(scenario_of(SHIPPED / "clebsch.yaml"), times, c=times, a=0.3 + 0 * times, b=0 * times)
+    shown = found.readable()
+    paths = np.sum(np.linalg.norm(np.diff(shown.places[list(shown.tips)], axis=2), axis=1), axis=1)
+    assert 14.9 * found.size < min(paths) <= 15 * found.size
+
+
+def test_a_hub_that_turns_by_one_angle_shows_no_axes(tmp_path: Path) -> None:
+    text = DAMPED.replace("axes: [3, 1, 2], angles: [phi, alpha, beta]", "axes: [3], angles: [phi]")
+    (tmp_path / "hub.yaml").write_text(text.replace("alpha: 0.1, beta: 0.05, ", ""), encoding="utf-8")
+    found = along(scenario_of(tmp_path / "hub.yaml"), [0.0, 1.0], phi=[0, 1], z=[0, 0.3])
+    assert (found.plane, found.tips) == (None, ())
+
+
+def test_a_damper_to_the_origin_is_drawn(tmp_path: Path) -> None:
+    text = """\
+mbsym: 1
+name: Point on a damper
+parameters: {m: positive, k: positive}
+bodies:
+  - {name: bob, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - damper: {coordinate: x, coefficient: k}
+values: {m: 1, k: 1}
+initial: {x: 1, y: 2}
+"""
+    (tmp_path / "bob.yaml").write_text(text, encoding="utf-8")
+    found = along(scenario_of(tmp_path / "bob.yaml"), [0.0, 1.0], x=[1, 2])
+    assert [point.kind for point in found.points] == [ORIGIN, JOINT]
+    assert (found.links, found.slides) == ((), ((0, 1),))

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 from fractions import Fraction
+from math import comb
 from pathlib import Path
 
 import numpy as np
@@ -31,10 +32,12 @@ from mbsym.problems.stability_theory import (
     STABLE_BUT_CYCLIC,
     UNDECIDED,
     UNSTABLE,
+    Case,
     Requirement,
+    Verdict,
 )
-from mbsym.report.conditions import Reference, Shown, Statement, statements
-from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken
+from mbsym.report.conditions import Reference, Shown, Statement, cases, statements
+from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken, counted
 from mbsym.report.latex_report import label as latex_label
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
@@ -601,3 +604,27 @@ def test_without_any_code_reports_say_why(tmp_path):
     assert "the power 1/3" in texts["latex"]
     assert "the power 1/3" in texts["wolfram"]
     assert "the power 1/3" in json.loads(texts["json"])["unavailable"]["equations"]
+
+
+def test_an_alternative_is_one_inequality() -> None:
+    """p > 0 and f != 0 together are p f^2 > 0, whatever the sign of f."""
+    ring = analysis_of("heavy-top.yaml").ring
+    p, f = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
+    required = Requirement("a", p * f**2, Condition("inequality", p, nonzero=(f,)))
+    (one,) = cases(ring, [Case((), (required,), Verdict("unstable"))])
+    assert [(item.formula.polynomial, item.relation) for item in one.any_of] == [(p * f**2, ">")]
+
+
+def test_a_short_formula_of_many_terms_is_counted() -> None:
+    ring = analysis_of("heavy-top.yaml").ring
+    total = ring.one
+    for name in ("m", "g", "l", "A"):
+        total = total + ring.context.gen(ring.index("parameter", name))
+    assert counted(Formula(ring, total**20)).startswith(rf"\text{{({comb(24, 4)} terms, of degree 20;")
+    assert counted(Formula(ring, total)) == ""
+
+
+def test_short_verdicts_claim_what_the_long_ones_do() -> None:
+    for long, short in SHORT.items():
+        assert long.startswith("asymptotically stable") == short.startswith("asymptotically stable")
+        assert long.startswith("stable with respect") == short.startswith("stable (")

@@ -32,6 +32,7 @@ from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import least_pivot, simulate
+from mbsym.report.drawing import thinned
 from mbsym.report.figures import CORNER, _curve, figures
 from mbsym.report.trajectory_csv import columns, trajectory_csv
 from mbsym.source import load
@@ -644,3 +645,17 @@ def test_the_state_at_a_step_limit_is_kept(tmp_path: Path) -> None:
     assert mbsym(SHIPPED / "double-pendulum.yaml", *again).exit_code == 0
     whole = table(tmp_path / "whole" / "trajectory.csv")
     assert found["energy"][-1] == pytest.approx(whole["energy"][-1], rel=1e-6)
+
+
+def test_velocities_are_joined_by_straight_lines_too() -> None:
+    times = np.array([0.0, 1.0, 2.0])
+    states = np.array([[0.0, 9.0, 10.0], [1.0, 3.0, 2.0]])  # 9 in time 1 at speeds 1 to 3: no smooth curve
+    _, found = between(times, states, np.zeros((1, 3)), [4, 2])
+    assert np.allclose(found[0], [0, 2.25, 4.5, 6.75, 9, 9.5, 10], rtol=0, atol=1e-14)
+    assert np.allclose(found[1], [1, 1.5, 2, 2.5, 3, 2.5, 2], rtol=0, atol=1e-14)
+
+
+def test_thinning_keeps_both_ends() -> None:
+    times = np.linspace(0, 1, 100_000)
+    shown, _ = thinned(times, np.sin(40_000 * times))
+    assert (shown[0], shown[-1]) == (0, 1)

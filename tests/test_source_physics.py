@@ -203,3 +203,60 @@ relations: {{n: sqrt(mu/R**3)}}
 """
     _, complaints = read(text, "x.yaml")
     assert [one.code for one in complaints.items] == ([] if code is None else [code])
+
+
+BLOCK = "bodies:\n  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}\n"
+
+
+@pytest.mark.parametrize(
+    ("sign", "good", "bad"),
+    [
+        ("positive", "1", "0"), ("nonnegative", "0", "-1"), ("negative", "-1", "0"),
+        ("nonpositive", "0", "1"), ("nonpositive", "-1", "1/2"), ("nonzero", "-1", "0"),
+    ],
+)  # fmt: skip
+def test_declared_signs_and_values(sign: str, good: str, bad: str) -> None:
+    def codes(number: str) -> list[str]:
+        text = f"mbsym: 1\nname: x\nparameters: {{m: 1, k: {{sign: {sign}, value: {number}}}}}\n{BLOCK}"
+        return [item.code for item in read(text, "x.yaml")[1] if item.code != "unused-name"]
+
+    assert (codes(good), codes(bad)) == ([], ["sign-contradiction"])
+
+
+def test_zero_has_no_sign_and_a_value_may_be_said_twice() -> None:
+    for zero in ("0", "{value: 0}"):
+        a = mbsym.loads(f"mbsym: 1\nname: x\nparameters: {{m: 1, k: {zero}}}\n{BLOCK}")
+        assert [p.sign for p in a.system.parameters] == ["positive", "real"]
+    for value, codes in (("1", []), ("2", ["conflicting-values"])):
+        text = f"mbsym: 1\nname: x\nparameters: {{m: 1}}\n{BLOCK}values: {{m: {value}}}\n"
+        assert [item.code for item in read(text, "x.yaml")[1]] == codes
+
+
+@pytest.mark.parametrize(
+    ("frame", "axes", "angles", "enough"),
+    [
+        (3, "3", "w", True),
+        (1, "3", "w", False),  # a prescribed turn about another axis
+        (3, "1, 3", "pi/6, w", False),  # tilted on a drum that turns
+        (None, "1, 3", "pi/6, w", True),  # an inclined axis at rest
+        (None, "3, 1", "w, pi/6", False),  # inclined to the axis it turns about
+    ],
+)
+def test_where_a_single_moment_is_enough(frame: int | None, axes: str, angles: str, enough: bool) -> None:
+    turning = f"rotation: {{axes: [{frame}], angles: [chi]}}"
+    drum = "" if frame is None else f"  - {{name: drum, attached to: 0, mass: 0, {turning}}}\n"
+    text = f"""mbsym: 1
+name: x
+parameters: {{omega: positive}}
+{"prescribed: {chi: omega}" if drum else ""}
+bodies:
+{drum}  - name: wheel
+    attached to: {"drum" if drum else 0}
+    mass: 2
+    rotation: {{axes: [{axes}], angles: [{angles}]}}
+    mass centre: [3, 0, 0]
+    inertia about: joint
+    inertia: [0, 0, 18]
+"""
+    codes = [item.code for item in read(text, "x.yaml")[1] if item.code != "unused-name"]
+    assert codes == ([] if enough else ["single-moment"])

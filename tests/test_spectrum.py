@@ -15,6 +15,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.problems.spectrum import RootNumbers, numbers
+from mbsym.report.latex_report import eigenvalues, scientific
 from mbsym.report.summary import root_text
 from mbsym_cli.main import main
 
@@ -123,3 +124,53 @@ motion: {{x: 0}}
     assert found.numerical.word == "stable"
     ((pair,),) = (numbers(x) for x in found.spectra)
     assert pair.imaginary == pytest.approx(frequency, rel=1e-15)
+
+
+OSCILLATOR = """
+mbsym: 1
+name: Oscillator
+parameters: {{m: 1, k: {k}, d: {d}}}
+bodies:
+  - {{name: block, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}}
+loads:
+  - spring: {{coordinate: x, stiffness: k}}
+  - damper: {{coordinate: x, coefficient: d}}
+motion: {{x: 0}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("k", "d", "roots", "written"),
+    [
+        (-4, 0, [(-2, 0, 1), (2, 0, 1)], r"-2,\; \penalty0 2"),
+        (5, 2, [(-1, 2, 1)], r"-1\pm 2\,\mathrm{i}"),
+        (1, 2, [(-1, 0, 2)], r"-1\ (2\times)"),
+    ],
+)
+def test_real_roots_and_dampings_are_told(k: int, d: int, roots: list[tuple[int, int, int]], written: str) -> None:
+    """lambda^2 + d lambda + k = 0, by hand."""
+    (found,) = mbsym.loads(OSCILLATOR.format(k=k, d=d)).stability.spectra
+    told = [(x.real, x.imaginary, x.multiplicity) for x in numbers(found)]
+    assert told == [pytest.approx(root, rel=1e-15) for root in roots]
+    assert eigenvalues(found) == written
+    assert scientific(2.5e-7) == r"2.5\cdot 10^{-7}"
+
+
+SHAFT = """
+mbsym: 1
+name: Shaft
+parameters: {{m: 1, b: {b}}}
+bodies:
+  - {{name: p, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: m}}
+loads:
+  - generalized force: {{x: -x_dot + b*y_dot - {c}*x + 2*y, y: -y_dot - b*x_dot - {c}*y - 2*x}}
+motion: {{x: 0, y: 0}}
+"""
+
+
+@pytest.mark.parametrize("b", [3, -3])
+def test_eigenvalues_where_a_matrix_is_irrational(b: int) -> None:
+    """z = x + i y: lambda^2 + (1 + i b) lambda + sqrt(2) + 2 i = 0, and the conjugates."""
+    (found,) = mbsym.loads(SHAFT.format(b=b, c="sqrt(2)")).stability.spectra
+    expected = sorted((z.real, abs(z.imag)) for z in np.roots([1, 1 + 1j * b, 2**0.5 + 2j]))
+    assert sorted((x.real, x.imaginary) for x in numbers(found)) == [pytest.approx(z, rel=1e-12) for z in expected]

@@ -17,6 +17,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_mat
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import mbsym
 from mbsym.algebra import characteristic
 from mbsym.algebra.characteristic import (
     TooLargeError,
@@ -34,6 +35,7 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.roots import RootCount, count_real_roots, count_roots, enclosures, rational, univariate
 from mbsym.algebra.signs import Signs
 from mbsym.problems import stability_theory as theory
+from mbsym.problems.stability import _even
 from mbsym.problems.stability_theory import LinearSystem, Verdict, analyse, combine, inertia, kind_of, verdict_at
 
 Matrix = Any
@@ -1001,3 +1003,23 @@ def test_kinds() -> None:
     assert kind_of(linear(NONE, M=one, D=one)) == "dissipative"
     assert kind_of(linear(NONE, M=one, N=skew)) == "circulatory"
     assert kind_of(linear(NONE, M=one, D=one, G=skew, N=skew)) == "gyroscopic dissipative circulatory"
+
+
+BLOCK = "bodies:\n  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}\n"
+
+
+def test_what_is_left_of_denominators_is_a_square() -> None:
+    a = mbsym.loads(f"mbsym: 1\nname: x\nparameters: {{m: positive, a: real, b: real}}\n{BLOCK}")
+    ring = a.ring
+    m, p, q = (ring.generator("parameter", name) for name in ("m", "a", "b"))
+    for powers, expected in (
+        ([(p, 1)], p**2),
+        ([(p, 3), (q, 2)], p**4 * q**2),
+        ([(p, 1), (p, 1)], p**2),  # met twice: a square already
+        ([(p, 1), (q, 1), (p, 2)], p**4 * q**2),
+        ([(m, 1), (p, 1)], m * p**2),
+    ):
+        factor = ring.one
+        for bottom, exponent in powers:
+            factor = factor * bottom**exponent
+        assert _even(ring, a.signs, factor, powers) == expected

@@ -145,7 +145,8 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
     try:
         found = rest(wider)
         place = wider.coordinates.index(extra)
-        if not found.forcing[place].is_zero():
+        # A force fixed in the body does no work in the twist, but it turns with it.
+        if not found.forcing[place].is_zero() or any(found.ring.dependencies(f, (extra,)) for f in found.forcing):
             return False
         row = found.mass_matrix()[place]
     except (NoClosedForm, SingularPoint):
