@@ -350,10 +350,11 @@ def test_parameters_that_follow_keep_their_declared_signs() -> None:
 
 
 def test_a_border_of_a_condition_is_told() -> None:
-    weak, strict = conditions("that: k1 >= 0", "that: k1 > 0")
-    assert weak.outcome == strict.outcome == EXACT
-    assert weak.remark.endswith(", but for the case of equality")
-    assert "equality" not in strict.remark
+    for weak, strict in (("k1 >= 0", "k1 > 0"), ("0 <= k1", "0 < k1")):
+        border, inside = conditions(f"that: {weak}", f"that: {strict}")
+        assert border.outcome == inside.outcome == EXACT
+        assert border.remark.endswith(", but for the case of equality")
+        assert "equality" not in inside.remark
 
 
 def test_what_always_holds_is_not_sufficient_for_that() -> None:

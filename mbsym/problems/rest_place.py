@@ -22,10 +22,7 @@ class Place:
         self.ring = found.ring
         self.modulus = modulus
         self._exact = dict(exact)
-        names = dict.fromkeys(found.ring.names(), arb(0))
-        for entry in found.system.coordinates:
-            names[entry + "_dot"] = found.ring.evaluate(found.rates[found.ring.index("velocity", entry)], names)
-        self.balls = names | dict(balls)
+        self.balls = dict.fromkeys(found.ring.names(), arb(0)) | dict(balls)
 
     def ball(self, x: Polynomial) -> Any:
         """An enclosure; exactly 0 where the value is proved to vanish."""

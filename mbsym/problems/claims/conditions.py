@@ -69,7 +69,7 @@ def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResul
             for same in (_proportional, partial(_same_condition, derived.signs)):
                 for what, found, relation in known:
                     if same(wanted, found, relation == "!="):
-                        equal = strict == (relation in ("<", ">", "!="))
+                        equal = strict == (relation in (">", "!="))
                         note = what + ("" if equal else ", but for the case of equality")
                         if claim.role == SUFFICIENT:
                             note += "; no parameters that were tried refute that those of its place are sufficient"
@@ -142,8 +142,7 @@ def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str
             (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
         ):
             for label, formula, relation in found:
-                sign = -1 if relation in ("<", "<=") else 1
-                polynomial = _essential(derived, claim, formula.polynomial * sign, own)
+                polynomial = _essential(derived, claim, formula.polynomial, own)
                 yield f"it is the condition {label} of {whose}{note}", polynomial, relation
 
 

@@ -95,7 +95,7 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
 
 
 def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
-    """Coordinates, velocities and parameters in the values, those that relations and notation are made of included."""
+    """Coordinates, velocities and parameters in the values, those that relations are made of included."""
     ring, system = derived.ring, derived.system
     wanted = [*system.coordinates, *system.velocities]
     found: set[str] = set()
@@ -103,7 +103,6 @@ def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
         found |= set(ring.dependencies(x, wanted))
         found |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
     made_of = {item.name: names(item.value) for item in system.relations}
-    made_of |= {item.name: names(item.value) for item in system.notation}
     pending = list(found)
     while pending:
         new = made_of.get(pending.pop(), set()) - found
