@@ -315,7 +315,8 @@ def _ratios(found: Extremes) -> Iterator[str]:
             poor.setdefault(row.subject, []).append(row)
     fine = [subject for kind, subject in found.ladders if kind == RATIO and subject not in poor]
     if fine:
-        yield (f"Times 1e-12 to 1e12, {', '.join(fine)}: float64 keeps at least {GOOD:.0f} digits of everything.")
+        least = min(row.found.digits[FLOAT64] for row in rows if row.subject in fine)
+        yield f"Times 1e-12 to 1e12, {', '.join(fine)}: float64 keeps at least {least:.1f} digits of everything."
     for subject, lost in poor.items():
         worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
         names = ", ".join(dict.fromkeys(r.quantity for r in lost))

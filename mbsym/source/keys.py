@@ -20,13 +20,13 @@ SYSTEM = {
     "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
     "values": "numerical values of parameters: {l: 2}",
-    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}}",
+    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}}; a velocity left out is 0",
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
     "claims": "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
 }
 
 PARAMETER = {
-    "sign": "one of " + ", ".join(SIGNS) + "; when left out, the sign of the value, or real without one",
+    "sign": "one of " + ", ".join(SIGNS) + "; or positive: true and so on; when left out, the sign of the value, or real without one",
     "value": "a numerical value, used where numbers are wanted",
     "meaning": "what it is, for reports",
 }
@@ -39,12 +39,12 @@ PRESCRIBED = {
 
 BODY = {
     "name": "what the body is called, here and in reports",
-    "attached to": "the name of an earlier body, or 0 for the inertial frame",
+    "attached to": "the name of an earlier body, or 0 for the inertial frame; the first body may leave it out",
     "rotation": "the turns that lead from the axes of the previous body to the axes of this one",
     "connection point": "radius vector of O_k in the axes of the previous body; [0, 0, 0] when left out",
     "relative velocity": "derivative of that radius vector; derived when left out, checked when given",
     "mass centre": "radius vector of the mass centre from O_k in the axes of this body; [0, 0, 0] when left out",
-    "mass": "0 for a massless frame",
+    "mass": "required; 0 for a massless frame",
     "inertia about": "joint (the connection point O_k) or mass centre; required with an inertia",
     "inertia": "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm)",
     "gyrostatic moment": "constant angular momentum of rotors inside the body, in its axes: adds h.omega to T",
