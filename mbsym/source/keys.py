@@ -20,13 +20,13 @@ SYSTEM = {
     "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
     "values": "numerical values of parameters: {l: 2}",
-    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}}; a velocity left out is 0",
+    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0)",
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
     "claims": "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
 }
 
 PARAMETER = {
-    "sign": "one of " + ", ".join(SIGNS) + "; or positive: true and so on; when left out, the sign of the value, or real without one",
+    "sign": f"one of {', '.join(SIGNS)} (or positive: true); when left out, the sign of the value, or real without one",
     "value": "a numerical value, used where numbers are wanted",
     "meaning": "what it is, for reports",
 }
