@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: How the first word of a verdict is coloured.
 _COLOURS = {"asymptotically": "green", "stable": "green", "gyroscopically": "yellow", "unstable": "red"}
 
-#: Longer equations of a family are cut; --json has them whole.
+#: Longer equations of a family are only counted.
 _LONGEST = 100
 
 
@@ -193,7 +193,8 @@ def _show_family(number: int, family: EquilibriumFamily) -> None:
     )
     out.print(Text(title, style="bold cyan"))
     for equation in family.equations[:12]:
-        shown = equation if len(equation) <= _LONGEST else f"{equation[:_LONGEST]} ..."
+        terms = equation.count(" + ") + equation.count(" - ") + 1
+        shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
         out.print(Text(f"    {shown} = 0"))
     sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
     out.print(Text(f"    for example {sample}: {short_verdict(family.verdict.word)}"))
