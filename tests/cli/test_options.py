@@ -20,7 +20,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym_cli.main import main
 from mbsym_cli.options import Options
 
-SYSTEMS = Path(__file__).parent.parent / "systems"
+SYSTEMS = Path(__file__).parents[2] / "systems"
 DOUBLE = SYSTEMS / "double-pendulum.yaml"  # conservative: m1, m2, l1, l2, g positive; theta1, theta2
 DAMPED = """
 mbsym: 1

@@ -19,7 +19,7 @@ import mbsym.expressions.parser
 import mbsym.source
 from mbsym.source import read, render
 
-CORPUS = sorted((Path(__file__).parent / "invalid").iterdir())
+CORPUS = sorted((Path(__file__).parents[1] / "invalid").iterdir())
 
 #: Complaints about files as such, which a text file in the corpus cannot show; test_source_files.py has them.
 ELSEWHERE = {"unreadable", "not-utf8", "too-large", "too-many"}

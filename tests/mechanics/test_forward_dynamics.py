@@ -31,7 +31,7 @@ from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import acceleration_name, velocity_name
 
-SHIPPED = sorted(Path(__file__).parents[1].joinpath("systems").glob("*.yaml"))
+SHIPPED = sorted(Path(__file__).parents[2].joinpath("systems").glob("*.yaml"))
 
 
 def frames_of(analysis: Analysis) -> tuple[Program, Articulation]:

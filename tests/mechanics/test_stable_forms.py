@@ -32,7 +32,7 @@ from mbsym.numerics.scenario import exact, scenario
 from mbsym.numerics.specialise import Specialised, substituted
 from mbsym.source import load
 
-SYSTEMS = Path(__file__).parent.parent / "systems"
+SYSTEMS = Path(__file__).parents[2] / "systems"
 EPS = 2.0**-53
 
 

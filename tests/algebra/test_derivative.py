@@ -27,7 +27,7 @@ from mbsym.mechanics.programs import momenta, momentum_rates
 from mbsym.mechanics.states import rational_states
 from mbsym.model.system import velocity_name
 
-SHIPPED = sorted(Path(__file__).parents[1].joinpath("systems").glob("*.yaml"))
+SHIPPED = sorted(Path(__file__).parents[2].joinpath("systems").glob("*.yaml"))
 
 
 class Duals(Algebra):

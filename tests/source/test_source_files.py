@@ -20,8 +20,8 @@ from mbsym.source import json_schema, load, read, render, to_text, to_yaml
 from mbsym.source.placed import MAX_TEXT
 from mbsym.source.scope import slip_of
 
-SYSTEMS = sorted((Path(__file__).parent.parent / "systems").glob("*.yaml"))
-EVERYTHING = Path(__file__).parent / "everything.yaml"
+SYSTEMS = sorted((Path(__file__).parents[2] / "systems").glob("*.yaml"))
+EVERYTHING = Path(__file__).parents[1] / "everything.yaml"
 GOOD = [*SYSTEMS, EVERYTHING]
 
 
@@ -67,7 +67,7 @@ def test_the_schema_is_a_schema_and_refuses_unknown_keys() -> None:
 
 
 def test_the_editor_text_of_the_satellite_is_the_same_system() -> None:
-    system, complaints, _ = load(Path(__file__).parent.parent / "systems" / "satellite.txt")
+    system, complaints, _ = load(Path(__file__).parents[2] / "systems" / "satellite.txt")
     assert not complaints
     assert system == loaded(SYSTEMS[0].parent / "satellite.yaml")
 

@@ -25,9 +25,9 @@ from mbsym.numerics.scenario import scenario
 from mbsym.numerics.tradeoff import Tradeoff, advice, tradeoff
 from mbsym_cli.main import main
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
-TRUTH = Path(__file__).parent / "references"
+TRUTH = Path(__file__).parents[1] / "references"
 
 PENDULUM = """
 mbsym: 1

@@ -36,7 +36,7 @@ from mbsym.report.extremes_tables import HEADER, extremes_csv, extremes_json, ta
 from mbsym.source import load
 from mbsym_cli.main import main
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 HARD = json.loads((ROOT / "tests/references/hard_polynomials.json").read_text())["reference"]
 
 

@@ -21,7 +21,7 @@ from mbsym_cli import files
 from mbsym_cli.explain import TOPICS
 from mbsym_cli.main import COMMANDS, main
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
 PENDULUM = SYSTEMS / "simple-pendulum.yaml"
 

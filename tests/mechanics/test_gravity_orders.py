@@ -30,8 +30,8 @@ from mbsym.source import read, to_text, to_yaml
 
 ORDERS = [2, 3, 4, "exact"]
 HIGHER = [3, 4, "exact"]
-SATELLITE = (Path(__file__).parent.parent / "systems" / "satellite.yaml").read_text(encoding="utf-8")
-RIGID = (Path(__file__).parent.parent / "systems" / "gravity-gradient.yaml").read_text(encoding="utf-8")
+SATELLITE = (Path(__file__).parents[2] / "systems" / "satellite.yaml").read_text(encoding="utf-8")
+RIGID = (Path(__file__).parents[2] / "systems" / "gravity-gradient.yaml").read_text(encoding="utf-8")
 Description = dict[str, Any]
 
 
