@@ -35,7 +35,7 @@ from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario
 from mbsym.problems.stability import ExactVerdicts, conserves_energy
-from mbsym.problems.stability_theory import ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, UNDECIDED, UNSTABLE, Verdict
+from mbsym.problems.stability.theory import ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, UNDECIDED, UNSTABLE, Verdict
 
 BORDER = "border of stability"
 

@@ -47,7 +47,7 @@ from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
 from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     ASYMPTOTIC_BUT_TURNED,

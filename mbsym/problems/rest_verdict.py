@@ -13,10 +13,10 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import energy as energies
-from mbsym.problems.enclosed_stability import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.stability import conserves_energy
-from mbsym.problems.stability_theory import MASS_SINGULAR, UNDECIDED, LinearSystem, Verdict, combine, verdict_at
+from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
+from mbsym.problems.stability.theory import MASS_SINGULAR, UNDECIDED, LinearSystem, Verdict, combine, verdict_at
 
 
 @dataclass(frozen=True)

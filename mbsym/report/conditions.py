@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import Stability, SubsystemStability
-from mbsym.problems.stability_theory import UNDECIDED, Case, Requirement
+from mbsym.problems.stability.theory import UNDECIDED, Case, Requirement
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
-from mbsym.problems.spectrum import Spectrum, numbers
+from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.conditions import Reference, Shown, cases, depends, provided, statements, whole_depends
 from mbsym.report.environment import rendered

@@ -17,8 +17,8 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.spectrum import numbers
 from mbsym.problems.stability import Stability
+from mbsym.problems.stability.spectrum import numbers
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
 

@@ -15,9 +15,9 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability import Stability
-from mbsym.problems.stability_theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
+from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
+from mbsym.problems.stability.theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
 from mbsym.report.claims import ClaimLine, claim_line
 from mbsym.report.conditions import Statement, depends, provided, statements, whole_depends
 from mbsym.report.results_json import statement_text

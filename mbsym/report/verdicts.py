@@ -5,7 +5,7 @@ JSON and the appendix keep the long words, which say what is meant.
 
 from __future__ import annotations
 
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     ASYMPTOTIC_BUT_TURNED,

@@ -31,7 +31,7 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import RATIO, SINGULAR, ladders, scaled, singular
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
-from mbsym.problems.stability_theory import UNDECIDED, UNSTABLE, LinearSystem, Verdict, verdict_at
+from mbsym.problems.stability.theory import UNDECIDED, UNSTABLE, LinearSystem, Verdict, verdict_at
 from mbsym.report.extremes_tables import HEADER, extremes_csv, extremes_json, tables
 from mbsym.source import load
 from mbsym_cli.main import main

@@ -25,9 +25,9 @@ from mbsym.analysis import Analysis, Unavailable
 from mbsym.mechanics.charts import joints
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.numerics.scenario import exact
-from mbsym.problems.enclosed_stability import enclosed_verdict
 from mbsym.problems.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
 from mbsym.problems.stability import parameter_values
+from mbsym.problems.stability.enclosed import enclosed_verdict
 from mbsym_cli.equilibria import command
 
 

@@ -26,7 +26,7 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.model.system import System
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     ASYMPTOTIC_BUT_TURNED,

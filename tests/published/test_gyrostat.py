@@ -22,7 +22,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.model.system import System
-from mbsym.problems.stability_theory import STABLE_BUT_CYCLIC, UNSTABLE
+from mbsym.problems.stability.theory import STABLE_BUT_CYCLIC, UNSTABLE
 from mbsym.source import read, to_text, to_yaml
 
 GYROSTAT, CLEBSCH = SHIPPED / "gyrostat.yaml", SHIPPED / "clebsch.yaml"

@@ -19,7 +19,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.problems.equilibria import equilibria
-from mbsym.problems.stability_theory import GYROSCOPIC, STABLE, UNSTABLE
+from mbsym.problems.stability.theory import GYROSCOPIC, STABLE, UNSTABLE
 
 FILE = SHIPPED / "orbital-gyrostat.yaml"
 REFERENCE = reference("orbit-gyrostat-and-clebsch")["gyrostat_orbit"]

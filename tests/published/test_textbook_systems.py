@@ -17,7 +17,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.equilibria import CoordinateValue, equilibria
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     CRITICAL,

@@ -25,7 +25,7 @@ import mbsym_cli
 from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC_BUT_CYCLIC,
     GYROSCOPIC,
     STABLE,

@@ -22,7 +22,7 @@ from mbsym.problems.claims.differences import rational_ratio
 from mbsym.problems.claims.forms import in_parameters, on_relations
 from mbsym.problems.claims.result import EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.stability_theory import (
+from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     ASYMPTOTIC_BUT_TURNED,

@@ -35,7 +35,7 @@ from mbsym.mechanics.states import SEED
 from mbsym.model.admissibility import NumberTensor, inertia_violation, number_of, offset_violation
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
-from mbsym.problems.stability_theory import Verdict, is_positive
+from mbsym.problems.stability.theory import Verdict, is_positive
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.spectrum import RootNumbers, numbers
+from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.report.latex_report import eigenvalues, scientific
 from mbsym.report.summary import root_text
 from mbsym_cli.main import main

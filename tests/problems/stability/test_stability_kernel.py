@@ -34,9 +34,9 @@ from mbsym.algebra.characteristic import (
 )
 from mbsym.algebra.roots import RootCount, count_real_roots, count_roots, enclosures, rational, univariate
 from mbsym.algebra.signs import Signs
-from mbsym.problems import stability_theory as theory
-from mbsym.problems.stability import _even
-from mbsym.problems.stability_theory import LinearSystem, Verdict, analyse, combine, inertia, kind_of, verdict_at
+from mbsym.problems.stability import theory
+from mbsym.problems.stability.problem import _even
+from mbsym.problems.stability.theory import LinearSystem, Verdict, analyse, combine, inertia, kind_of, verdict_at
 
 Matrix = Any
 

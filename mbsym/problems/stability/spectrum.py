@@ -13,7 +13,7 @@ from typing import Any
 from flint import acb, ctx
 
 from mbsym.algebra.roots import Root, enclosures
-from mbsym.problems.enclosed_stability import Rows, eigenvalues
+from mbsym.problems.stability.enclosed import Rows, eigenvalues
 
 #: Working precision of enclosures, in bits.
 PRECISION = 128

@@ -1,27 +1,4 @@
-"""Problem 6: stability of the unperturbed motion, subsystem by subsystem.
-
-For every subsystem  M x'' + (D + G) x' + (K + N) x = 0  of problem 5, in the user's dimensionless notation,
-
-    Lambda(lambda) = det(lambda^2 M + lambda (D + G) + K + N)
-
-is made primitive (a factor of known sign is removed) and factored; the conditions are
-
-* only even powers of lambda: all roots in lambda^2 real, negative and simple (coefficients and discriminants);
-* otherwise: all roots to the left of the imaginary axis (Lienard-Chipart).
-
-"Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
-gyroscopically stabilised only; stable in first approximation only, critical; unstable; undecided.  With symbolic
-parameters it comes as cases, and at numerical values it is decided exactly (irrational ones by enclosures).
-
-Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
-
-Example:
-
-    >>> import mbsym
-    >>> pendulum = mbsym.load("systems/simple-pendulum.yaml")
-    >>> pendulum.stability.verdict.word, pendulum.stability.verdict.theorem
-    ('asymptotically stable', 'Kelvin-Chetaev')
-"""
+"""Problem 6 on a scene: every subsystem of problem 5 is judged, in symbols and at the given values."""
 
 from __future__ import annotations
 
@@ -46,14 +23,14 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
-from mbsym.problems.enclosed_stability import enclosed_verdict_with_cyclic
 from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
-from mbsym.problems.spectrum import Spectrum, from_characteristic, from_matrices
-from mbsym.problems.stability_theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
-from mbsym.problems.stability_theory import Stability as Theory
+from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
+from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
+from mbsym.problems.stability.theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
+from mbsym.problems.stability.theory import Stability as Theory
 
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
