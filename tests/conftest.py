@@ -107,11 +107,8 @@ def at_values(path: Path, **values: int | str | Fraction) -> Analysis:
 
 @contextmanager
 def precision(bits: int) -> Iterator[None]:
-    kept, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         yield
-    finally:
-        ctx.prec = kept
 
 
 def ball(value: str | Fraction | int) -> arb:

@@ -65,8 +65,7 @@ def certified(function: Function, jacobian: Jacobian, start: Sequence[float], bi
     The iteration keeps the Jacobian's first inverse: a start that is good to 8 digits gains 8 digits a step.
     """
     n = len(start)
-    keep, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         centre: Box = tuple(arb(x) for x in start)
         inverse = _inverse(jacobian(centre))
         for turn in range(40):
@@ -87,8 +86,6 @@ def certified(function: Function, jacobian: Jacobian, start: Sequence[float], bi
             if image is not None and all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
                 return image
         return None
-    finally:
-        ctx.prec = keep
 
 
 def search(function: Function, jacobian: Jacobian, box: Sequence[tuple[float, float]], most: int) -> Search:

@@ -76,11 +76,8 @@ class AlgebraicPoint:
         """A ball around an element of the number field, at this root."""
         if element.degree() <= 0:
             return _ball(element[0], bits)
-        keep, ctx.prec = ctx.prec, bits
-        try:
+        with ctx.workprec(bits):
             return arb_poly(element.coeffs())(self.root(bits))
-        finally:
-            ctx.prec = keep
 
 
 @dataclass(frozen=True)
@@ -121,13 +118,10 @@ def real_roots(p: Univariate, bits: int = 64) -> list[Any]:
     """Isolating balls of the real roots, ascending."""
     if p.degree() == 1:
         return [_ball(-p[0] / p[1], bits)]
-    keep, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         # Arb encloses real roots in balls whose imaginary part is exactly 0, and the others in balls off the axis.
         real = (root.real for root, _ in p.numer().complex_roots() if root.imag == 0)
         return sorted(real, key=lambda root: root.mid())
-    finally:
-        ctx.prec = keep
 
 
 def residue(x: Polynomial, values: Sequence[Univariate], modulus: Univariate) -> Univariate:
@@ -531,11 +525,8 @@ def _moved_back(x: Polynomial, order: Sequence[int], where: Any) -> Polynomial:
 
 
 def _ball(value: fmpq, bits: int) -> Any:
-    keep, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         return arb(value)
-    finally:
-        ctx.prec = keep
 
 
 # --- the quotient by an ideal of finitely many solutions -------------------------------------------------------------

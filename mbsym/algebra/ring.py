@@ -631,14 +631,11 @@ class Ring(Algebra):
     def _nonzero_at_random(self, x: Polynomial) -> bool:
         """Whether a ball at some random point excludes zero."""
         source = random.Random(20240229)
-        keep, ctx.prec = ctx.prec, 400
-        try:
+        with ctx.workprec(400):
             for _ in range(4):
                 value = self.evaluate(x, {name: fmpq(source.randint(1, 99), 64) for name in self.names()})
                 if not value.contains(0) and value.is_finite():
                     return True
-        finally:
-            ctx.prec = keep
         return False
 
     def names(self) -> list[str]:

@@ -111,12 +111,8 @@ def enclosures(coefficients: Sequence[Rational], bits: int = 80) -> tuple[Root, 
     For display and for checks; counts and verdicts never rest on them.
     """
     p = univariate(coefficients)
-    before = ctx.prec
-    ctx.prec = bits
-    try:
+    with ctx.workprec(bits):
         found = [Root(ball, int(multiplicity)) for ball, multiplicity in p.complex_roots()]
-    finally:
-        ctx.prec = before
     return tuple(sorted(found, key=lambda root: (float(root.ball.real.mid()), float(root.ball.imag.mid()))))
 
 

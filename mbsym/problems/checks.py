@@ -76,11 +76,8 @@ def compare(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs, st
         return Check(name, *routes, outcome, detail)
     except NotRational:
         pass
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         outcome, detail = _compare(truth.balls, pairs, states)
-    finally:
-        ctx.prec = keep
     return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail)
 
 
@@ -109,11 +106,8 @@ def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[boo
                 return Check(name, *routes, outcome, detail or "random parameters")
             except NotRational:
                 pass
-        keep, ctx.prec = ctx.prec, PRECISION
-        try:
+        with ctx.workprec(PRECISION):
             outcome, detail = _verdict(pairs(True))
-        finally:
-            ctx.prec = keep
         return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail or "random parameters")
     except (SingularPoint, ZeroDivisionError) as reason:
         return Check(name, *routes, UNDECIDED, f"singular: {reason}")
@@ -321,14 +315,11 @@ def _vanishing(ring: Ring, x: Any) -> str:
     if zero is not None:
         return EXACT if zero else FAILED
     source, found = random.Random(SEED), 0
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         for _ in range(4 * STATES):
             value = ring.evaluate(x, {name: arb(source.randint(1, 99)) / 64 for name in ring.names()})
             agree = _agree(value, arb(0))
             if agree is False:
                 return FAILED
             found += agree is True
-    finally:
-        ctx.prec = keep
     return NUMERICAL if found else UNDECIDED

@@ -531,14 +531,11 @@ class _ChartSearch:
                     self._add(place, EXACT)
                 return
         place = Place(self.found, box, {}, None)
-        keep, ctx.prec = ctx.prec, PRECISION
-        try:
+        with ctx.workprec(PRECISION):
             if any(self.ring.evaluate(x, place.balls).contains(0) for x in self.nonzero):
                 return
             if any(not self.ring.evaluate(x, place.balls).contains(0) for x in self.equations):
                 return
-        finally:
-            ctx.prec = keep
         if not self._known([float(box[name].mid()) for name in self.occurring], 1e-12):
             self._add(place, CERTIFIED)
 
@@ -641,13 +638,10 @@ class _ChartSearch:
 
 
 def _angle(s: Any, c: Any) -> Any:
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         if c < 0 and s.contains(0):  # atan2 is cut here
             return arb.pi() - (s / -c).atan()
         return arb.atan2(s, c)
-    finally:
-        ctx.prec = keep
 
 
 def _short(value: float) -> str:

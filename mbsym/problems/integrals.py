@@ -220,11 +220,8 @@ def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> boo
         return _vanishes(scene, equations, rate, rational_states(scene.system, ring, 4 * STATES), fmpq_mat)
     except NotRational:
         pass
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         return _vanishes(scene, equations, rate, ball_states(scene.system, ring, 4 * STATES), arb_mat)
-    finally:
-        ctx.prec = keep
 
 
 def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iterable[State], matrix: Any) -> bool:

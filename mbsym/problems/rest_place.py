@@ -29,11 +29,8 @@ class Place:
         residue = self.residue(x)
         if residue is not None and residue.degree() <= 0:
             return arb(residue[0])
-        keep, ctx.prec = ctx.prec, PRECISION
-        try:
+        with ctx.workprec(PRECISION):
             return self.ring.evaluate(x, self.balls)
-        finally:
-            ctx.prec = keep
 
     def residue(self, x: Polynomial) -> Any:
         """The value in the number field, or None where it is not known to lie there."""

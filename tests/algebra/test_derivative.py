@@ -101,16 +101,13 @@ def test_every_operation(name: str) -> None:
     node = OPERATIONS[name](program, a, b) * (a + program.number(3))
     values = {"a": fmpq(7, 5), "b": fmpq(3, 4), "pi": fmpq(22, 7)}
     rows = [gradient(program, node, [a, b]), *jacobian(program, [node], [a, b])]
-    keep, ctx.prec = ctx.prec, 200
-    try:
+    with ctx.workprec(200):
         balls: dict[str, Any] = {key: arb(value) for key, value in values.items()} | {"pi": arb.pi()}
         expected = [slopes(program, [node], values, key)[0] for key in "ab"]
         for row in rows:
             for x, wanted in zip(program.evaluate(row, balls, Balls(balls)), expected, strict=True):
                 assert x.overlaps(wanted)
                 assert (x - wanted).rad() < 1e-40
-    finally:
-        ctx.prec = keep
 
 
 def test_an_unknown_operation_is_refused() -> None:
@@ -212,8 +209,7 @@ def test_the_jacobian_of_the_accelerations(path: Path) -> None:
     program, names = dynamics.program, analysis.system.coordinates
     states = [*names, *(velocity_name(name) for name in names)]
     rows = jacobian(program, dynamics.accelerations, [dynamics.environment[name] for name in states])
-    keep, ctx.prec = ctx.prec, 300
-    try:
+    with ctx.workprec(300):
         values = {name: fmpq(11 + 7 * k % 13, 10 + k) for k, name in enumerate(dynamics.environment)}
         balls: dict[str, Any] = {name: arb(value) for name, value in values.items()}
         columns = [slopes(program, list(dynamics.accelerations), values, name) for name in states]
@@ -222,8 +218,6 @@ def test_the_jacobian_of_the_accelerations(path: Path) -> None:
         for x, wanted in zip(flat, expected, strict=True):
             assert (x - wanted).contains(0)
             assert (x - wanted).rad() < 1e-30 * (1 + abs(wanted))
-    finally:
-        ctx.prec = keep
 
 
 def test_a_planted_error_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -115,11 +115,8 @@ def everywhere(values: dict[str, fmpq]) -> dict[str, fmpq]:
 
 
 def enclosure(ring: Ring, x: Polynomial, values: dict[str, fmpq]) -> arb:
-    keep, ctx.prec = ctx.prec, 300
-    try:
+    with ctx.workprec(300):
         return ring.evaluate(x, everywhere(values))
-    finally:
-        ctx.prec = keep
 
 
 def number_in_sympy(expression: Any, values: dict[str, fmpq]) -> arb:

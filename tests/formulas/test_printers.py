@@ -95,9 +95,8 @@ def truth(polynomial: Polynomial, values: dict[str, Fraction]) -> arb:
 
 @pytest.fixture(autouse=True)
 def _precise():
-    keep, ctx.prec = ctx.prec, 200
-    yield
-    ctx.prec = keep
+    with ctx.workprec(200):
+        yield
 
 
 @settings(max_examples=120, deadline=None)

@@ -218,8 +218,7 @@ def order_of(errors: Sequence[arb]) -> Fraction:
 def test_the_error_decreases_with_the_order(order: int | str) -> None:
     """U and its generalised forces of order N err by (size/R)^(N + 1) against Newton's law; exactly 0 for exact."""
     a = analysed(cluster(order))
-    keep, ctx.prec = ctx.prec, 1200
-    try:
+    with ctx.workprec(1200):
         energies, forces = [], []
         for size in (fmpq(1, 1000), fmpq(1, 2000)):
             values = ANGLES | {"R": fmpq(1), "s": size}
@@ -235,8 +234,6 @@ def test_the_error_decreases_with_the_order(order: int | str) -> None:
             about_the_radius, *others = zip(*forces, strict=True)  # turning about the radius changes nothing
             assert all(error < arb(2) ** -500 for error in about_the_radius)
             assert {order_of(pair) for pair in others} == {int(order) + 1}
-    finally:
-        ctx.prec = keep
 
 
 def body_of(masses: Sequence[tuple[Any, Sequence[int]]], order: int | str) -> Description:
@@ -271,8 +268,7 @@ def test_an_extended_body_whose_third_central_moments_vanish(order: int | str, e
         for sign in (1, -1)
     ]
     a, exact = analysed(body_of(masses, order)), analysed(body_of(masses, "exact"))
-    keep, ctx.prec = ctx.prec, 600
-    try:
+    with ctx.workprec(600):
         against_masses, against_exact = [], []
         for size in (fmpq(1, 1000), fmpq(1, 2000)):
             values = ANGLES | {"R": fmpq(1), "s": size}
@@ -282,8 +278,6 @@ def test_an_extended_body_whose_third_central_moments_vanish(order: int | str, e
         assert order_of(against_masses) == min(expected, 4)
         if order != "exact":
             assert order_of(against_exact) == expected
-    finally:
-        ctx.prec = keep
 
 
 # --- the satellite with a stabilizer ---

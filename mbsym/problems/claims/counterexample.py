@@ -261,8 +261,7 @@ def rate_at_states(
     Coordinates are positive but for those in ``negative`` (which may hold parameters of undeclared sign, too).
     """
     source = random.Random(SEED)
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         for free, _ in zip(parameter_samples(system), range(STATES), strict=False):
             chosen = dict(free)
             for name in system.coordinates:
@@ -277,8 +276,6 @@ def rate_at_states(
                 continue
             if value.is_finite():
                 yield chosen, value
-    finally:
-        ctx.prec = keep
 
 
 def _state(system: System, chosen: Mapping[str, Fraction]) -> dict[str, Any]:

@@ -33,14 +33,11 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 
     A ball too wide to tell is computed again in more bits; where the most of them do not tell, nothing is decided.
     """
-    keep = ctx.prec
-    try:
-        for ctx.prec in FINER:
-            result = _at_precision(derived, claim, about, last=ctx.prec == FINER[-1])
-            if result is not None:
-                return result
-    finally:
-        ctx.prec = keep
+    for bits in FINER:
+        with ctx.workprec(bits):
+            result = _at_precision(derived, claim, about, last=bits == FINER[-1])
+        if result is not None:
+            return result
     return ClaimResult(claim, about, UNDECIDED, remark=f"too many digits cancel, even of {FINER[-1]} bits")
 
 

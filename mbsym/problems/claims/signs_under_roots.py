@@ -87,9 +87,8 @@ def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
     except (NoClosedForm, SingularPoint):
         opened = x
     source = random.Random(SEED)
-    keep, ctx.prec = ctx.prec, PRECISION
     finite, narrow = 0, True
-    try:
+    with ctx.workprec(PRECISION):
         for _ in range(4 * POINTS):
             values = {name: signs.get(name, 1) * fmpq(source.randint(1, 99), 64) for name in ring.names()}
             value = ring.evaluate(opened, values)
@@ -100,8 +99,6 @@ def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
             finite, narrow = finite + 1, narrow and value.rad() < ROUNDING
             if finite == POINTS:
                 return NUMERICAL if narrow else UNDECIDED
-    finally:
-        ctx.prec = keep
     return UNDECIDED
 
 

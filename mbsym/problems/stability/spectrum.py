@@ -41,13 +41,11 @@ def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows]) -> Spectrum
     m, d, g, k, n = parts
     size = range(len(coordinates))
     velocity, position = ([[x[i][j] + y[i][j] for j in size] for i in size] for x, y in ((d, g), (k, n)))
-    keep, ctx.prec = ctx.prec, PRECISION
     try:
-        found, _ = eigenvalues(m, velocity, position)
+        with ctx.workprec(PRECISION):
+            found, _ = eigenvalues(m, velocity, position)
     except ZeroDivisionError:
         return None
-    finally:
-        ctx.prec = keep
     if found is None:
         return None
     found.sort(key=lambda ball: (float(ball.real.mid()), float(ball.imag.mid())))
@@ -55,11 +53,8 @@ def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows]) -> Spectrum
 
 
 def _times(ball: acb, scale: Any) -> acb:
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         return ball * scale
-    finally:
-        ctx.prec = keep
 
 
 @dataclass(frozen=True)
