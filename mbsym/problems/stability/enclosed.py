@@ -13,9 +13,8 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import Any
 
-from flint import acb_mat, arb, arb_mat, ctx, fmpq_mpoly_ctx
+from flint import acb_mat, arb, arb_mat, ctx
 
-from mbsym.algebra.ring import Polynomial
 from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     CRITICAL,
@@ -28,10 +27,8 @@ from mbsym.problems.stability.theory import (
     STABLE,
     UNDECIDED,
     UNSTABLE,
-    LinearSystem,
     Verdict,
     drifting,
-    ignoring_cyclic,
 )
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
@@ -57,46 +54,38 @@ def enclosed_verdict_with_cyclic(
     plain = enclosed_verdict(parts, conservative, bits)
     if not cyclic or plain.word == UNSTABLE or plain.explanation == MASS_SINGULAR:
         return plain
-    symbols: list[Any] = []
-
-    def symbol(x: Any) -> int:
-        symbols.append(x)
-        return len(symbols) - 1
-
-    size = len(parts[0])
-    places = [
-        {(i, j): symbol(rows_[i][j]) for i in range(size) for j in range(size) if not bool(rows_[i][j] == 0)}
-        for rows_ in parts
-    ]
-    names = [f"e{k}" for k in range(max(1, len(symbols)))]
-    where = fmpq_mpoly_ctx.get(names)
-    gens, zero = where.gens(), where.constant(0)
-    made = [
-        tuple(tuple(gens[at[i, j]] if (i, j) in at else zero for j in range(size)) for i in range(size))
-        for at in places
-    ]
-    try:
-        system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic)
-        reduced = ignoring_cyclic(system)
-    except ValueError:
-        return Verdict(UNDECIDED, "", "Cyclic coordinates give zero roots, and no theorem decides about the rest.")
-
-    def value(x: Polynomial) -> Any:
-        total = arb(0)
-        for monomial, coefficient in x.terms():
-            term = arb(coefficient)
-            for k, e in enumerate(monomial):
-                for _ in range(int(e)):
-                    term = term * symbols[k]
-            total = total + term
-        return total
-
     keep, ctx.prec = ctx.prec, bits
     try:
-        smaller = [[[value(x) for x in row] for row in rows_] for rows_ in reduced.matrices]
+        reduced = _ignoring_cyclic(parts, cyclic)
     finally:
         ctx.prec = keep
-    return drifting(enclosed_verdict(smaller, conservative, bits))
+    if reduced is None:
+        return Verdict(UNDECIDED, "", "Cyclic coordinates give zero roots, and no theorem decides about the rest.")
+    return drifting(enclosed_verdict(reduced, conservative, bits))
+
+
+def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:
+    """Routh's reduction of ``theory.ignoring_cyclic`` with M_cc^-1 in balls; None where a momentum is not constant."""
+    m, d, g, _, n = parts
+    others = [i for i in range(len(m)) if i not in cyclic]
+    acted_on = not all(_no([rows[i] for i in cyclic]) for rows in (d, n))
+    if acted_on or not others or not _no([[g[i][j] for j in cyclic] for i in cyclic]):
+        return None
+    inverse = arb_mat(len(cyclic), len(cyclic), [m[i][j] for i in cyclic for j in cyclic]).inv()
+    sizes = {True: others, False: list(cyclic)}
+
+    def block(rows: Rows, free_rows: bool, free_columns: bool) -> Any:
+        at, across = sizes[free_rows], sizes[free_columns]
+        return arb_mat(len(at), len(across), [rows[i][j] for i in at for j in across])
+
+    def less(rows: Rows, *pairs: tuple[Rows, Rows]) -> Rows:
+        total = block(rows, True, True)
+        for left, right in pairs:
+            total = total - block(left, True, False) * inverse * block(right, False, True)
+        found: Rows = total.tolist()
+        return found
+
+    return [less(m, (m, m)), less(d), less(g, (m, g), (g, m)), less(parts[3], (g, g)), less(n)]
 
 
 def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) -> Verdict:
