@@ -63,14 +63,14 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
     reach = asked.number("--within", within, most=1e6)
     if asked.refused(None if system is None else file) or system is None or reach is None:
         sys.exit(BAD_INPUT)
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.algebra.failures import Failure
     from mbsym.problems.equilibria import equilibria
 
     started = time.perf_counter()
     try:
         with console(stderr=True).status(f"{file.name}: relative equilibria"):
             found = equilibria(system, values, reach)
-    except (NoClosedForm, SingularPoint) as reason:
+    except Failure as reason:
         print(f"{file}: no equilibria listed: {reason}", file=sys.stderr)
         sys.exit(FAILED)
     if as_json:

@@ -61,7 +61,7 @@ def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str,
 
 def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool, budget: str, quiet: bool) -> int:
     """Reads everything, complains about everything, then measures."""
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.algebra.failures import Failure
 
     system = read_description(file)
     asked = Options()
@@ -77,7 +77,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
         if sequences:
             return _rank(file, given, quiet)
         return _measure(file, folder, given, dict(overrides), seconds, quiet)
-    except (NoClosedForm, SingularPoint) as error:
+    except Failure as error:
         print(f"{file}: the equations have no program: {error}", file=sys.stderr)
     except OSError as error:
         print(f"{file}: the results cannot be written: {error}", file=sys.stderr)

@@ -94,7 +94,7 @@ class Options:
 
     def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:
         """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""
-        from mbsym.algebra.base import NoClosedForm, SingularPoint
+        from mbsym.algebra.failures import Failure
         from mbsym.numerics.scenario import exact
 
         if text is None:
@@ -114,7 +114,7 @@ class Options:
         if value is not None and not complaints.errors:
             try:
                 found = float(exact(value, {}))
-            except (NoClosedForm, SingularPoint) as reason:
+            except Failure as reason:
                 complaints.error("bad-number", f"it has no value: {reason}", whole)
             else:
                 within = f"choose between {least:g} and {most:g}" if most is not None and least else None

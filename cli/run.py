@@ -130,7 +130,7 @@ def _run_one(path: Path, folder: Path, request: Request) -> int:
 
 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.algebra.failures import NoClosedForm, SingularPoint
     from mbsym.analysis import PROBLEMS, Analysis, Unavailable
     from mbsym.report.targets import TARGETS
 

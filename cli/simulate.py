@@ -160,7 +160,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
 
 
 def _simulate(file: Path, given: Scenario, folder: Path, request: Request) -> int:
-    from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+    from mbsym.algebra.failures import Failure, SingularPoint
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.methods.interface import Unusable
     from mbsym.numerics.reduced import reduced
@@ -174,7 +174,7 @@ def _simulate(file: Path, given: Scenario, folder: Path, request: Request) -> in
         print(f"{file}: error[singular]: singular at these values: {error}", file=sys.stderr)
         print(f"{file}: nothing was written.", file=sys.stderr)
         return BROKEN_DOWN
-    except (NoClosedForm, NotRational) as error:
+    except Failure as error:
         print(f"{file}: error[no-program]: there is no program for these equations: {error}", file=sys.stderr)
         print(f"{file}: nothing was written.", file=sys.stderr)
         return FAILED

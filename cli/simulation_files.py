@@ -78,7 +78,7 @@ def write_files(
 
 def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:
     """Pictures of the bodies themselves, where there is something to be seen."""
-    from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+    from mbsym.algebra.failures import Failure
     from mbsym.numerics.between import between
     from mbsym.numerics.positions import positions
     from mbsym.report.motion_figure import motion_figures
@@ -90,7 +90,7 @@ def _motion(scenario: Scenario, found: Trajectory, kinds: Sequence[str], rates: 
         times, states = between(times, states, rates, [pieces] * (len(times) - 1))
     try:
         places = positions(scenario, times, states)
-    except (NoClosedForm, NotRational, SingularPoint):
+    except Failure:
         return {}
     return motion_figures(places, kinds, note(found)) if places is not None else {}
 

@@ -134,7 +134,7 @@ def _command(
 def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], request: Request) -> int:
     import numpy as np
 
-    from mbsym.algebra.base import NoClosedForm, SingularPoint
+    from mbsym.algebra.failures import Failure
     from mbsym.numerics import fidelity
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.methods.interface import Breakdown
@@ -160,7 +160,7 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
         except Breakdown as error:
             print(f"{file}: there is no reference solution up to t = {request.end:g}: {error}", file=sys.stderr)
             return BROKEN_DOWN
-        except (NoClosedForm, SingularPoint) as error:
+        except Failure as error:
             print(f"{file}: the equations have no program: {error}", file=sys.stderr)
             return BROKEN_DOWN
         say(f"{file.name}: drawing")

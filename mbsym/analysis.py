@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, column
@@ -95,7 +95,7 @@ class NoResult:
     short: str = "no closed form"
 
 
-class Unavailable(Exception):
+class Unavailable(Failure):
     """Raised when a result is asked for that a stage could not produce; ``failure`` says why."""
 
     def __init__(self, stage: str, failure: NoResult) -> None:
@@ -143,11 +143,10 @@ class Analysis:
                 value = compute()
             except Unavailable as missing:
                 failure = missing.failure
-            except (NoClosedForm, NotRational) as reason:
-                hint = "the straight-line program is available; raise --terms for more"
-                failure = NoResult(str(reason), hint if "budget" in str(reason) else "")
             except SingularPoint as reason:
                 failure = NoResult(f"singular: {reason}", "choose another motion or other coordinates", "singular")
+            except Failure as reason:
+                failure = NoResult(str(reason), reason.remedy)
             whole = time.perf_counter() - started
             self._stages[name] = Stage(name, value, failure, whole - self._nested)
             self._nested = outer + whole
@@ -277,7 +276,7 @@ class Analysis:
         for other in rotation_orders(self.system):
             try:
                 Analysis(other.system, (), self.terms, suggests=False).linearisation  # noqa: B018
-            except (Unavailable, NoClosedForm, NotRational, SingularPoint):
+            except Failure:
                 continue
             axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
             order = f"rotation: {{axes: [{axes}], angles: [{angles}]}}"
@@ -368,7 +367,7 @@ class Analysis:
         ring.work, ring.work_budget = 0, min(budget // CLAIM_SHARE, max(allowance, 0))
         try:
             result = claims.examine(source, claim)
-        except (NoClosedForm, NotRational, SingularPoint, Unavailable) as reason:
+        except Failure as reason:
             result = claims.undecided(self.system, claim, str(reason))
         spent, ring.work, ring.work_budget = ring.work, work, budget
         return result, spent
@@ -393,7 +392,7 @@ class Analysis:
         for name, check in self._second_routes():
             try:
                 done.append(check())
-            except (NoClosedForm, NotRational, SingularPoint, Unavailable) as reason:
+            except Failure as reason:
                 done.append(Check(name, "", "", checks.UNDECIDED, str(reason)))
         return tuple(done)
 

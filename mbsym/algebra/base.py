@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 
@@ -26,20 +27,8 @@ Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
 
 
-class NoClosedForm(Exception):
-    """A formula outgrew the budget, or has no representation in this algebra; the message says which and why."""
-
-
-class NotRational(Exception):
-    """A value at a rational state is irrational (a root, an exponential): compare with balls instead."""
-
-
-class SingularPoint(Exception):
-    """A formula divides by zero at the point where it is asked for."""
-
-
 class Algebra:
-    """Operations on scalars beyond ``+``, ``-`` and ``*``; subclasses define those marked abstract."""
+    """Operations on scalars beyond ``+``, ``-`` and ``*``; subclasses define what raises NotImplementedError here."""
 
     zero: Scalar
     one: Scalar
@@ -147,7 +136,8 @@ class Lowering:
     def __call__(self, expression: Expression) -> Scalar:
         """The value of the expression.
 
-        Raises SingularPoint for a division by zero, NoClosedForm or NotRational as the algebra does.
+        Raises SingularPoint for a division by zero, NoValue for a name without one, NoClosedForm or NotRational as the
+        algebra does.
         """
         number = self._number(expression)
         if number not in self._values:
@@ -213,7 +203,7 @@ class Lowering:
             case Number(value):
                 return algebra.number(value)
             case Name(name):
-                return self.environment[name]
+                return self._named(name)
             case Negative(operand):
                 return -self(operand)
             case Operation("+", left, right):
@@ -238,6 +228,12 @@ class Lowering:
             case Call(function, argument):
                 return algebra.function(function, self(argument))
         raise TypeError(f"not an expression: {expression!r}")
+
+    def _named(self, name: str) -> Scalar:
+        try:
+            return self.environment[name]  # some environments make their values when they are asked for
+        except KeyError:
+            raise NoValue(name) from None
 
     def _power(self, base: Expression, exponent: Expression) -> Scalar:
         form = linear_form(exponent)

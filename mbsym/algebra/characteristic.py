@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from mbsym.algebra.failures import TooLargeError
+
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 Coefficients = tuple[Polynomial, ...]
 Matrix = Sequence[Sequence[Polynomial]]
@@ -22,10 +24,6 @@ BUDGET = 4_000_000
 
 #: Terms of a characteristic polynomial that is still factored and judged in symbols.
 LONGEST = 12_000
-
-
-class TooLargeError(Exception):
-    """A formula that is not written out, because it would be too long to compute or to read."""
 
 
 def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ...]:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.failures import NoValue
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
@@ -64,9 +65,14 @@ class Carrier:
             case "function":
                 return self.algebra.function(g.name, self(g.argument))
             case "velocity":
-                return self.environment[g.name + "_dot"]
+                return self._named(g.name + "_dot")
             case "acceleration":
-                return self.environment[g.name + "_ddot"]
+                return self._named(g.name + "_ddot")
             case "sine" | "cosine":
                 return self.algebra.sin_cos_of(self(g.argument))[0 if g.kind == "sine" else 1]
-        return self.environment[g.name]
+        return self._named(g.name)
+
+    def _named(self, name: str) -> Scalar:
+        if name not in self.environment:
+            raise NoValue(name)
+        return self.environment[name]

@@ -15,7 +15,8 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from mbsym.algebra.base import Algebra, NotRational, Scalar, SingularPoint
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.failures import NotRational, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
 #: Multiples of an angle up to this one are formed from its sine and cosine.
@@ -40,6 +41,8 @@ class Rationals(Algebra):
     def sin_cos(self, angle: LinearForm) -> tuple[fmpq, fmpq]:
         sine, cosine = _quarter_turns(angle.turns)
         for name, coefficient in angle.coefficients:
+            if name not in self.basic:
+                raise NoValue(name)
             s, c = self.basic[name]
             n = coefficient * self.denominators[name]
             if abs(n) > MOST_MULTIPLE:
@@ -94,6 +97,8 @@ class Balls(Algebra):
     def sin_cos(self, angle: LinearForm) -> tuple[arb, arb]:
         total = arb.pi() * self.number(angle.turns)
         for name, coefficient in angle.coefficients:
+            if name not in self.values:
+                raise NoValue(name)
             total += self.number(coefficient) * self.values[name]
         sine: Any = total.sin()
         return sine, total.cos()

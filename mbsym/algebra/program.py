@@ -13,7 +13,8 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any, NamedTuple
 
-from mbsym.algebra.base import Algebra, NoClosedForm, SingularPoint
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.

@@ -27,7 +27,8 @@ from typing import Any
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz
 from flint.utils.flint_exceptions import DomainError
 
-from mbsym.algebra.base import Algebra, NoClosedForm, SingularPoint
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
 Polynomial = Any
@@ -164,7 +165,7 @@ class Ring(Algebra):
         """Counts work, in candidate terms of products.  Raises NoClosedForm when the budget is used up."""
         self.work += work
         if self.work > self.work_budget:
-            raise NoClosedForm(f"more than {self.work_budget} steps of polynomial arithmetic in all")
+            raise NoClosedForm(f"more than {self.work_budget} steps of polynomial arithmetic in all", limit=Limit.WORK)
 
     def times(self, a: Polynomial, b: Polynomial) -> Polynomial:
         candidates = len(a) * len(b)
@@ -175,12 +176,14 @@ class Ring(Algebra):
 
     def _check(self, x: Polynomial) -> None:
         if len(x) > self.term_budget:
-            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.term_budget}")
+            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.term_budget}", limit=Limit.TERMS)
 
     def factored(self, x: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
         """The content of x and its irreducible factors with their exponents, if x is not too long to be factored."""
         if len(x) > MOST_FACTORED:
-            raise NoClosedForm(f"a denominator or root of {len(x)} terms: at most {MOST_FACTORED} are factored")
+            raise NoClosedForm(
+                f"a denominator or root of {len(x)} terms: at most {MOST_FACTORED} are factored", limit=Limit.FACTORS
+            )
         self._check(x)
         self.spend(100 * len(x))
         content, factors = x.factor()
@@ -210,7 +213,10 @@ class Ring(Algebra):
         self.spend(len(x) + 8 * self._overhead)
         degrees = x.degrees()
         if max(degrees) > MOST_DEGREE:
-            raise NoClosedForm(f"a formula of degree {_size(int(max(degrees)))}: at most {MOST_DEGREE} is supported")
+            raise NoClosedForm(
+                f"a formula of degree {_size(int(max(degrees)))}: at most {MOST_DEGREE} is supported",
+                limit=Limit.DEGREE,
+            )
         _check_number(x.leading_coefficient())
         again = True
         while again:
@@ -329,7 +335,7 @@ class Ring(Algebra):
 
     def _adjoin(self, kind: str, argument: Polynomial, name: str = "") -> int:
         if self._free < 0:
-            raise NoClosedForm(f"more than {self.spare} reciprocals, roots and functions")
+            raise NoClosedForm(f"more than {self.spare} reciprocals, roots and functions", limit=Limit.FUNCTIONS)
         index = self._free
         self._free -= 1
         self.generators[index] = Generator(kind, name or f"#{index}", 1, argument)
@@ -555,7 +561,7 @@ class Ring(Algebra):
             lengths = [(index, len(images[index])) for index in touched]
             candidates = sum(min(dense, _expanded(monomial, lengths)) for monomial in x.monoms())
         if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
-            raise NoClosedForm(f"a substitution into {terms} terms may lead to {_size(candidates)}")
+            raise NoClosedForm(f"a substitution into {terms} terms may lead to {_size(candidates)}", limit=Limit.WORK)
         self.spend(candidates)
 
     def _moved(self, index: int, images: dict[int, Polynomial]) -> Polynomial:
@@ -742,14 +748,14 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     """
     candidates = len(a) * len(b)
     if candidates > PRODUCT_BUDGET:
-        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms is beyond the budget")
+        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms is beyond the budget", limit=Limit.TERMS)
     spans = [max(0, int(d)) + max(0, int(e)) for d, e in zip(a.degrees(), b.degrees(), strict=True)]
     dense = 1
     for span in spans:
         dense = min(dense * (1 + span), candidates)
     first, second = _words(a), _words(b)
     if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
-        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory")
+        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory", limit=Limit.MEMORY)
     return 1 + first * second // 64
 
 
@@ -767,7 +773,7 @@ def _check_number(value: fmpq) -> None:
     """Raises NoClosedForm for a coefficient that nobody could read."""
     bits = int(value.p).bit_length() + int(value.q).bit_length()
     if bits > MOST_COEFFICIENT_BITS:
-        raise NoClosedForm(f"a formula with a number of {int(bits * 0.30103)} digits")
+        raise NoClosedForm(f"a formula with a number of {int(bits * 0.30103)} digits", limit=Limit.DIGITS)
 
 
 def _bytes(x: Polynomial, degree: int) -> int:
@@ -814,7 +820,9 @@ def _primes(n: int, distinct: bool = True) -> list[int]:
                 parts = [(root, 2)]
             elif int(factor).bit_length() > MOST_BITS:
                 digits = int(int(factor).bit_length() * 0.30103) + 1
-                raise NoClosedForm(f"the square root of a number whose {digits} digits cannot be factored")
+                raise NoClosedForm(
+                    f"the square root of a number whose {digits} digits cannot be factored", limit=Limit.DIGITS
+                )
             else:
                 parts = [(p, int(e)) for p, e in factor.factor()]
         found += [int(p) for p, e in parts for _ in range(1 if distinct else e * int(exponent))]

@@ -22,7 +22,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, SingularPoint, Vector
+from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.failures import SingularPoint
 from mbsym.mechanics.articulation import Articulation, MassProperties, Matrix, symmetric, turned_symmetric
 from mbsym.mechanics.coasting import Coasting
 from mbsym.mechanics.frames import Turn, axis_vector, turn_back

@@ -19,7 +19,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise, product
 from typing import Any
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.tree import Name, names
 from mbsym.mechanics.frames import axis_vector, back, direction_cosines, forward
@@ -149,7 +149,7 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
         if not found.forcing[place].is_zero() or any(found.ring.dependencies(f, (extra,)) for f in found.forcing):
             return False
         row = found.mass_matrix()[place]
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         return False
     return all(x.is_zero() for x in row)
 

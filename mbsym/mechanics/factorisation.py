@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mbsym.algebra.base import Algebra, Scalar, SingularPoint
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.failures import SingularPoint
 
 
 def solve(

@@ -16,8 +16,8 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq_mat
 
-from mbsym.algebra.base import SingularPoint
 from mbsym.algebra.derivative import gradient
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.articulation import articulation

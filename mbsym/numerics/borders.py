@@ -20,8 +20,8 @@ import numpy as np
 import scipy.linalg
 from flint import acb, ctx, fmpq_mat
 
-from mbsym.algebra.base import NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.roots import enclosures
@@ -177,7 +177,7 @@ class LinearModel:
         try:
             m, d, g, k, c = (self._rational(matrix, given) for matrix in self.linear.matrices)
             inverse = m.inv()
-        except (NotRational, SingularPoint, ZeroDivisionError):
+        except NOT_THERE:
             return None
         n = self.size
         position, velocity = inverse * (k + c), inverse * (d + g)

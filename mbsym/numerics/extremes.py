@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Ring
-from mbsym.analysis import Analysis, Unavailable
+from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.newton_euler import residuals
@@ -161,7 +161,7 @@ class _Rungs:
         usual = probe.scenario is self.given
         try:
             arithmetic = self.usual if usual else Arithmetic(probe.scenario, self.lean, compiled=False)
-        except (SingularPoint, NoClosedForm):  # a division by zero in the parameters alone: nothing to evaluate
+        except Failure:  # a division by zero in the parameters alone: nothing to evaluate
             return
         for q in self.found if usual else self.lean:
             digits = measured(self.truth, arithmetic, q.name, probe.scenario, probe.state)
@@ -206,7 +206,7 @@ def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel 
             left_out.append(f"{what}: {terms} terms are too many here")
             return None
         return LinearModel(analysis)
-    except (Unavailable, NoClosedForm, SingularPoint) as reason:
+    except Failure as reason:
         left_out.append(f"{what}: {reason}")
         return None
 

@@ -21,8 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.base import Lowering, NoClosedForm, SingularPoint
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.mechanics.motion import motion_values
 from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, velocity_name
@@ -172,7 +173,7 @@ def measured(
         watch(variant.label)
         try:
             runs.append((variant, *_run(scenario, variant, method, times)))
-        except (NoClosedForm, SingularPoint) as reason:
+        except Failure as reason:
             runs.append((variant, None, 0, 0, 0.0, str(reason)))
     solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
     if not solved:

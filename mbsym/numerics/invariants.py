@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
@@ -94,7 +94,7 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
     for integral in integrals:
         try:
             node = Carrier(ring, program, environment)(integral.formula.polynomial)
-        except (NoClosedForm, SingularPoint, KeyError):
+        except NOT_THERE:
             continue
         column = _column(integral, taken)
         taken.add(column)

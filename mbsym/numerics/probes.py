@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from flint import arb, arb_mat, ctx
 
-from mbsym.algebra.base import SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.expressions.tree import Expression, Number, names
 from mbsym.numerics.digits import Quantity, Truth
 from mbsym.numerics.scenario import PRECISION, Incomplete, Scenario, exact, rounded, scenario

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
@@ -75,7 +75,7 @@ def reduced(dynamics: Dynamics) -> Reduced | None:
         # Where what is left moves no mass, the whole system says when and where.
         assert smaller.dynamics.right_hand_side is not None
         return smaller
-    except (NoClosedForm, NotRational, SingularPoint):
+    except Failure:
         return None
 
 

@@ -15,7 +15,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -61,7 +61,7 @@ def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str]
         return None
     try:
         found = programs(system, ring if ring is not None else ring_of(system))
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         return None
     how = PROVED
     while candidates:
@@ -142,7 +142,7 @@ def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expres
         values = fresh.evaluate([node for _, node in left], ring_environment(held(system, candidates), ring), ring)
         how = PROVED
         moved = {name for (name, _), value in zip(left, values, strict=True) if not ring.reduce(value).is_zero()}
-    except (NoClosedForm, NotRational, SingularPoint, KeyError):
+    except NOT_THERE:
         how = VERIFIED
         moved = _moved_somewhere(system, candidates, fresh, left, ring)
     return pushed | moved, how
@@ -157,7 +157,7 @@ def _moved_somewhere(
         for state in rational_states(held(system, candidates), ring, STATES):
             values = fresh.evaluate([node for _, node in left], state.values, state.numbers)
             moved |= {name for (name, _), value in zip(left, values, strict=True) if value != 0}
-    except (NotRational, SingularPoint, NoClosedForm, KeyError, ZeroDivisionError):
+    except NOT_THERE:
         return {name for name, _ in left}
     return moved
 

@@ -13,7 +13,8 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import Lowering, NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.comparison import has_sign
@@ -131,7 +132,7 @@ class _Numbers:
             return Fraction(0)
         try:
             return exact(expression, self.known)
-        except (NoClosedForm, SingularPoint) as reason:
+        except Failure as reason:
             text = f"{name} has no value: {reason}"
             self.contradictions.append(Contradiction("bad-number", name.split(" ")[-1], text))
             self.refused.add(name)
@@ -212,7 +213,7 @@ def exact(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
             values = {name: fmpq(known[name].numerator, known[name].denominator) for name in used}
             found = Lowering(Rationals({}, {}), values)(expression)
             return _within_range(Fraction(int(found.p), int(found.q)))
-        except (NotRational, KeyError):
+        except (NotRational, NoValue):
             pass
     with ctx.workprec(PRECISION + 64):
         balls = {name: arb(fmpq(known[name].numerator, known[name].denominator)) for name in used - {"pi"}}

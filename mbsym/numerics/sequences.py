@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.expressions.tree import Name, names
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import constants, programs
@@ -145,7 +145,7 @@ def _alternative(
     try:
         ring = ring_of(changed)
         solved, whole = forward_dynamics(changed, ring), programs(changed, ring)
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         return None
     fixed = constants(changed)
     equations = [*(x for row in whole.mass_matrix for x in row), *whole.forcing]

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm

@@ -31,7 +31,7 @@ from typing import Any
 from flint import arb, ctx, fmpq_poly
 
 from mbsym.algebra import krawczyk
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_systems import (
     AlgebraicPoint,
     Family,
@@ -627,7 +627,7 @@ class _ChartSearch:
         """The matrices as formulas, or why there are none."""
         try:
             return linear_at_rest(self.found)
-        except (NoClosedForm, SingularPoint) as reason:
+        except Failure as reason:
             return str(reason)
 
     def verdict(self, place: Place) -> Verdict:

@@ -31,8 +31,8 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
-from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.frames import axis_vector
@@ -134,7 +134,7 @@ def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tup
                         moments[i] = moments[i] + arm[j] * force[k] - arm[k] * force[j]
                         if change is not None:
                             moments[i] = moments[i] + change[i]
-            except (SingularPoint, NotRational, ZeroDivisionError):
+            except NOT_THERE:
                 continue
             rates = {("linear momentum", i + 1): x for i, x in enumerate(forces)}
             rates |= {("angular momentum", i + 1): x for i, x in enumerate(moments)}
@@ -156,7 +156,7 @@ def _momenta(
                 name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
                 status = PROVED if is_proved(scene, equations, formula) else NUMERICAL
                 found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
-    except (NoClosedForm, NotRational):
+    except Failure:
         pass  # what was found so far is right; the rest is not known
     return found
 
@@ -233,7 +233,7 @@ def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iter
         try:
             mass = matrix(n, n, _mass_at(carry, equations))
             accelerations = mass.solve(matrix(n, 1, [carry(x.polynomial) for x in equations.forcing]))
-        except (SingularPoint, ZeroDivisionError):
+        except ZeroDivisionError:
             continue
         moved = {acceleration_name(name): accelerations[i, 0] for i, name in enumerate(names)}
         value = Carrier(scene.ring, state.numbers, {**state.values, **moved})(rate)
@@ -289,7 +289,7 @@ def _simple_multipliers(scene: Scene, equations: Equations, formula: Polynomial)
                 found = fmpq_mat(basis).solve(fmpq_mat(values))
                 columns = [[found[k, i] for k in range(len(unknowns))] for i in range(len(names))]
                 return [sum((x * c for x, c in zip(unknowns, column, strict=True)), ring.zero) for column in columns]
-    except (NotRational, ZeroDivisionError):
+    except NOT_THERE:
         pass
     return None
 
@@ -319,7 +319,7 @@ def _multipliers_at(scene: Scene, equations: Equations, slopes: Sequence[Polynom
     n = len(slopes)
     try:
         solved = fmpq_mat(n, n, _mass_at(carry, equations)).solve(fmpq_mat(n, 1, [carry(x) for x in slopes]))
-    except (SingularPoint, ZeroDivisionError):
+    except ZeroDivisionError:
         return None
     return [solved[i, 0] for i in range(n)]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names
@@ -36,7 +36,7 @@ def signs(scene: Scene) -> Signs:
             continue
         try:
             definition = ring.substitute(definitions[item.name], dependent)
-        except (NoClosedForm, SingularPoint):
+        except Failure:
             continue
         words = list(_with_reciprocals(scene, Signs(ring.context, tuple(words))).words)
         word = Signs(ring.context, tuple(words)).sign(definition)
@@ -80,7 +80,7 @@ def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ..
             if item.relation in _FLIPPED:
                 left, right = right, left
             numerator, denominators = scene.ring.fraction(left - right)
-        except (NoClosedForm, SingularPoint):
+        except Failure:
             continue
         relation = _FLIPPED.get(item.relation, item.relation)
         for factor, exponent in denominators:
@@ -122,7 +122,7 @@ def _definitions(scene: Scene) -> dict[str, Polynomial]:
                 raise SingularPoint("an earlier symbol is missing")
             found[item.name] = ring.substitute(scene.lower(item.value), images)
             images[ring.index("parameter", item.name)] = found[item.name]
-        except (NoClosedForm, SingularPoint):
+        except Failure:
             missing.add(item.name)
     _REMEMBERED[scene] = found
     return found

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
@@ -77,7 +77,7 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     scene = found.scene
     try:
         known = energies.energy(scene)
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         known = None
     cyclic = tuple(i for i, name in enumerate(names) if known is not None and name in known.cyclic)
     parts = (

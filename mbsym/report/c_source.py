@@ -13,8 +13,8 @@ from textwrap import fill
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -155,7 +155,7 @@ _KNOWN: WeakKeyDictionary[Analysis, _Solved] = WeakKeyDictionary()
 def _solved(analysis: Analysis) -> _Solved:
     try:
         forward = forward_dynamics(analysis.system, analysis.ring)
-    except (SingularPoint, NoClosedForm) as reason:
+    except Failure as reason:
         return _Solved(None, str(reason), None, "")
     return _Solved(forward, "", *_slopes(analysis, forward))
 

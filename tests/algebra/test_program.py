@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_systems import Description, analysed, orbiting, state, systems
 
-from mbsym.algebra.base import Algebra, SingularPoint
+from mbsym.algebra.base import Algebra
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Program
 from mbsym.expressions.angles import LinearForm

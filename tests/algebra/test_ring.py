@@ -11,7 +11,8 @@ from flint import arb, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsym.algebra.base import Lowering, NoClosedForm, SingularPoint
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.parser import parse_expression

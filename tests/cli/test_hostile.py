@@ -14,7 +14,8 @@ import sys
 import pytest
 from flint import fmpz
 
-from mbsym.algebra.base import Lowering, NoClosedForm, NotRational
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm, NotRational
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import MOST_MULTIPLE, Ring

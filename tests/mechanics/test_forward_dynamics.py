@@ -14,7 +14,7 @@ from random_systems import Description, analysed, orbiting, systems
 from test_self_check import PROGRAM, Mistake, failing, failing_without_a_mistake, plant
 
 import mbsym
-from mbsym.algebra.base import NotRational, SingularPoint
+from mbsym.algebra.failures import NotRational, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.analysis import Analysis

@@ -28,7 +28,7 @@ from hypothesis import strategies as st
 from random_systems import systems
 
 import mbsym
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.expressions.tree import number

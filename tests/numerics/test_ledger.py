@@ -19,7 +19,7 @@ from conftest import SHIPPED
 from flint import fmpq
 
 import mbsym
-from mbsym.algebra.base import SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.analysis import ALL_PROBLEMS, Analysis
 from mbsym.expressions.tree import Name, names

@@ -26,7 +26,7 @@ from typing import Any
 import llvmlite.binding as llvm
 import numpy as np
 
-from mbsym.algebra.base import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.numerics.kernels import sine_cosine
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.sine_cosine import splat, vector

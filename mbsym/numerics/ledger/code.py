@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from mbsym.algebra.base import SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.mechanics import factorisation
 from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics

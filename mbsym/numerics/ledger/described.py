@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from flint import arb, ctx, fmpq
 
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
 from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.kinematics import Scene
@@ -24,7 +25,7 @@ from mbsym.model.system import (
     rational,
 )
 from mbsym.numerics.ledger.entry import ESTIMATED, PROVED, UNDECIDED, Saving
-from mbsym.numerics.ledger.work import REFUSALS, Symbols, Work, changed_bodies, moving_names
+from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
 from mbsym.numerics.scenario import PRECISION, Scenario
 
 
@@ -154,7 +155,7 @@ def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | N
                 gyration = arb(0) if tensor is None or motion.mass.contains(0) else trace(tensor) / (2 * motion.mass)
                 largest = max(largest, float((c[0] ** 2 + c[1] ** 2 + c[2] ** 2).sqrt() + abs(gyration).sqrt()))
             ratio = largest * float(abs(orbit.inverse))
-        except REFUSALS:
+        except Failure:
             return None
     return ratio if 0 < ratio < float("inf") else None
 

@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.characteristic import BUDGET as DETERMINANT
-from mbsym.algebra.characteristic import TooLargeError, characteristic_polynomial
+from mbsym.algebra.characteristic import characteristic_polynomial
+from mbsym.algebra.failures import Failure
 from mbsym.analysis import PROBLEMS
 from mbsym.formulas.formula import Matrix
 from mbsym.numerics.ledger.entry import COUNT, PROVED, Measure, Saving
-from mbsym.numerics.ledger.work import REFUSALS, Counted, Work
+from mbsym.numerics.ledger.work import Counted, Work
 from mbsym.problems.linearisation import Linearisation, components
 
 
@@ -122,7 +123,7 @@ def _characteristic(work: Work, found: Linearisation, part: Sequence[int]) -> Co
     def size() -> int | None:
         try:
             polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
-        except (TooLargeError, *REFUSALS):
+        except Failure:
             return None
         return sum(len(x) for x in polynomial)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from flint import arb, ctx
 
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import names
 from mbsym.mechanics.generalized import generalized_forces
@@ -15,7 +16,7 @@ from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERMS, VERIFIED, Measure, Saving
-from mbsym.numerics.ledger.work import REFUSALS, Work, holds
+from mbsym.numerics.ledger.work import Work, holds
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.problems.energy import Energy
@@ -72,7 +73,7 @@ def _plane(system: System) -> int | None:
                 others = [x for k, x in enumerate(spin, start=1) if k != axis]
                 if not all(ring.reduce(x).is_zero() for x in (*others, velocity[axis - 1])):
                     axes.discard(axis)
-    except REFUSALS:
+    except Failure:
         return None
     return min(axes) if len(axes) == 1 else None
 
@@ -103,7 +104,7 @@ def _undriven(work: Work) -> set[str]:
     ring = ring_of(work.system)
     try:
         found = generalized_forces(Scene(work.system, ring, ring_environment(work.system, ring), ring))
-    except REFUSALS:
+    except Failure:
         return set()
     return {name for name, force in found.items() if ring.reduce(force).is_zero()}
 
@@ -199,6 +200,6 @@ def _proportional(ring: Ring, rows: Sequence[Sequence[Polynomial]], name: str) -
             for x, y in zip(row, other, strict=True):
                 if ring.is_zero(ring.times(x, other[k]) - ring.times(row[k], y)) is not True:
                     return False
-    except (*REFUSALS, StopIteration):
+    except (Failure, StopIteration):
         return False
     return True

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.numerics.ledger import code, described, formulas, motion
 from mbsym.numerics.ledger.entry import Ledger, Saving
-from mbsym.numerics.ledger.work import BUDGET, REFUSALS, OutOfTime, Work
+from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Work
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
@@ -44,6 +45,6 @@ def ledger(analysis: Analysis, seconds: float = BUDGET) -> Ledger:
             found += [saving for saving in savings(work) if saving.saves]
         except OutOfTime:
             unmeasured.append(kind)
-        except REFUSALS:
+        except Failure:
             continue
     return Ledger(tuple(found), tuple(unmeasured))

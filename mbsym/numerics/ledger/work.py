@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from flint import arb
 
-from mbsym.algebra.base import NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.failures import Failure, NoClosedForm, NotRational, SingularPoint
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
@@ -142,7 +142,7 @@ class Work:
         source = self.analysis if stage in self.analysis.derived else self.bounded
         try:
             return getattr(source, stage)
-        except REFUSALS:
+        except Failure:
             return None
 
     def kinetic_energy(self, system: System) -> Counted:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from mbsym.algebra.base import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import (

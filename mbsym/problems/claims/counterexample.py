@@ -23,8 +23,9 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_mat
 
-from mbsym.algebra.base import Algebra, Lowering, NotRational, SingularPoint
+from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import is_number, names
@@ -204,7 +205,7 @@ class Trials:
                 break
             try:
                 gaps = claimed(self.numbers, trial.values)
-            except (NotRational, SingularPoint, ZeroDivisionError):
+            except NOT_THERE:
                 continue
             except KeyError:  # sines of constant angles and the like
                 break
@@ -237,7 +238,7 @@ class Trials:
                 carry = Carrier(self.ring, numbers, values)
                 if is_positive(fmpq_mat([[carry(x) for x in row] for row in self._mass_matrix.polynomials])):
                     yield Trial(values)
-            except (NotRational, SingularPoint, ZeroDivisionError):
+            except NOT_THERE:
                 continue
             except KeyError:
                 return
@@ -272,7 +273,7 @@ def rate_at_states(
                 values = _state(system, chosen)
                 moving = accelerated(system, State(Balls(values), values), programs)
                 value = Carrier(ring, moving.numbers, moving.values)(rate)
-            except (NotRational, SingularPoint, ZeroDivisionError, KeyError):
+            except NOT_THERE:
                 continue
             if value.is_finite():
                 yield chosen, value

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import product as combinations_of
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
     names,
@@ -90,7 +90,7 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
         if top is None or bottom is None:
             top, bottom = found
         return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         return None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from mbsym.algebra.base import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
@@ -64,7 +64,7 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
     try:
         factor = ring.reduce(ring.times(top, ring.reciprocal(bottom)))
         difference = ring.reduce(claimed - ring.times(truth, factor))
-    except (NoClosedForm, SingularPoint):
+    except Failure:
         return None
     return Multiple(Formula(ring, factor), difference, decided(derived, left), _exceptions(derived, top, bottom))
 

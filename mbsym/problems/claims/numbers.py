@@ -7,8 +7,9 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import Lowering, NotRational
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NotRational
 from mbsym.algebra.point import Balls
 from mbsym.expressions.tree import (
     Expression,

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from mbsym.algebra.base import Lowering, NoClosedForm
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import (

@@ -9,9 +9,10 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.base import Lowering, NotRational, SingularPoint
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
@@ -281,7 +282,7 @@ class ExactVerdicts:
         for name, wanted in self.equilibrium.solved:
             try:
                 fits = bool(carry(wanted.polynomial) == numbers.number(values[name]))
-            except (NotRational, SingularPoint):
+            except Failure:
                 fits = False
             if not fits:
                 return Verdict("undecided", "", f"The motion does not exist there: {name} has another value.")
@@ -407,7 +408,7 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
     for name, polynomial in (solved | dependent).items():
         try:
             given[name] = _value_of(scene, polynomial, given)
-        except (SingularPoint, KeyError):
+        except Failure:
             return None
     known = all(p.name in given for p in scene.system.parameters)
     finite = all(isinstance(x, Fraction) or x.is_finite() for x in given.values())
@@ -421,7 +422,7 @@ def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
     try:
         found = Carrier(scene.ring, rationals, exact)(x)
         return Fraction(int(found.p), int(found.q))
-    except (NotRational, KeyError):
+    except Failure:
         balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in given.items()}
         return Carrier(scene.ring, Balls(balls), balls)(x)
 
@@ -465,7 +466,7 @@ def _point(
             symbol = definition_in_parameters(scene, g.name) if named else scene.ring.context.gen(whole)
             exact = carry(symbol)
             point[index] = Fraction(int(exact.p), int(exact.q))
-    except (NotRational, SingularPoint, KeyError):
+    except NOT_THERE:
         return None
     return point
 

@@ -35,7 +35,6 @@ from mbsym.algebra.characteristic import (
     Coefficients,
     Matrix,
     Polynomial,
-    TooLargeError,
     characteristic_polynomial,
     determinant,
     factor_in_lambda,
@@ -46,6 +45,7 @@ from mbsym.algebra.characteristic import (
     resultant,
     subdiscriminants,
 )
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.roots import RootCount, count_roots, rational
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 

@@ -20,7 +20,6 @@ from hypothesis import strategies as st
 import mbsym
 from mbsym.algebra import characteristic
 from mbsym.algebra.characteristic import (
-    TooLargeError,
     characteristic_polynomial,
     determinant,
     discriminant,
@@ -32,6 +31,7 @@ from mbsym.algebra.characteristic import (
     resultant,
     subdiscriminants,
 )
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.roots import RootCount, count_real_roots, count_roots, enclosures, rational, univariate
 from mbsym.algebra.signs import Signs
 from mbsym.problems.stability import theory

@@ -1,0 +1,98 @@
+"""Failures as values: why a formula, a number or a result is not there, in words and as data.
+
+A failure is raised where something cannot be had and caught where less will do.  ``code`` names its kind, ``limit``
+the bound it met, if any; ``remedy`` says what to try next; ``severity`` tells an answer ("there is no closed form")
+from a defect of ours.  Nobody has to read the sentence to know what happened.
+
+=================  ==========================================================================
+``NoClosedForm``   a formula outgrew a limit, or has no representation in this algebra
+``TooLargeError``  the same of a determinant, resultant or discriminant of problem 6
+``NotRational``    a value at a rational state is irrational: compare with enclosures instead
+``SingularPoint``  a division by zero at the point where a formula is asked for
+``NoValue``        a name has no number there
+=================  ==========================================================================
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Limit(Enum):
+    """The bounds that a derivation can meet."""
+
+    TERMS = "terms of a formula"
+    WORK = "steps of arithmetic"
+    MEMORY = "memory"
+    DEGREE = "degree"
+    DIGITS = "digits of a number"
+    FUNCTIONS = "roots, reciprocals and functions"
+    FACTORS = "terms that are factored"
+
+
+class Severity(Enum):
+    """``ANSWER``: that there is no such thing is the answer.  ``DEFECT``: the program is at fault."""
+
+    ANSWER = "answer"
+    DEFECT = "defect"
+
+
+#: What helps where a formula is longer than its budget.
+MORE_TERMS = "the straight-line program is available; raise --terms for more"
+
+
+class Failure(Exception):
+    """Something that was asked for is not there; the message says what and why."""
+
+    code = "failure"
+    severity = Severity.ANSWER
+
+    def __init__(self, message: str = "", *, limit: Limit | None = None, remedy: str = "") -> None:
+        super().__init__(message)
+        self.limit = limit
+        self.remedy = remedy or (MORE_TERMS if limit is Limit.TERMS else "")
+
+    @property
+    def reason(self) -> str:
+        """The message."""
+        return str(self)
+
+
+class NoClosedForm(Failure):
+    """A formula outgrew the budget, or has no representation in this algebra; the message says which and why."""
+
+    code = "no-closed-form"
+
+
+class TooLargeError(Failure):
+    """A determinant, resultant or discriminant has too many terms to be of use."""
+
+    code = "too-large"
+
+
+class NotRational(Failure):
+    """A value at a rational state is irrational (a root, an exponential): compare with balls instead."""
+
+    code = "irrational"
+
+
+class SingularPoint(Failure, ZeroDivisionError):
+    """A formula divides by zero at the point where it is asked for.
+
+    ``except ZeroDivisionError`` catches these and the number library's own.
+    """
+
+    code = "singular"
+
+
+class NoValue(Failure, KeyError):
+    """``args[0]`` is a name without a number."""
+
+    code = "no-value"
+
+    def __str__(self) -> str:
+        return f"no number for {self.args[0]}"
+
+
+#: A formula cannot be had, or is not defined there, in our words or in the number library's.
+NOT_THERE = (Failure, ZeroDivisionError)
