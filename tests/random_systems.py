@@ -220,7 +220,7 @@ def all_loads(description: Description) -> st.SearchStrategy[Description]:
         st.builds(lambda x, r: {"spring": {"coordinate": x, "stiffness": "k", "rest": r}}, q, rest),
         st.builds(lambda x: {"damper": {"coordinate": x, "coefficient": "b"}}, q),
         st.builds(lambda e: {"spring": {"between": e, "stiffness": "k", "length": 0}}, _ends(bodies)),
-        st.builds(lambda e: {"damper": {"between": e, "coefficient": "b"}}, _ends(bodies)),
+        st.builds(lambda e: {"isotropic damper": {"between": e, "coefficient": "b"}}, _ends(bodies)),
         st.one_of(potentials).map(lambda x: {"potential": x}),
         st.one_of(rayleigh).map(lambda x: {"rayleigh": x}),
         st.builds(lambda x, f: {"generalized force": {x: f}}, q, st.one_of(forces)),

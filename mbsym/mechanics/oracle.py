@@ -514,14 +514,33 @@ def _coordinate_damper(oracle: Oracle, load: model.CoordinateDamper, name: str) 
 
 
 def _point_damper(oracle: Oracle, load: model.PointDamper, name: str) -> Scalar:
-    velocities, shifts = [], []
+    """-c d' dd'/dq', where the rate of the distance d' = (r . r')/d has dd'/dq' = dd/dq = (r . dr/dq)/d."""
+    apart, closing, shift = _ends_apart(oracle, load, name)
+    square = oracle.numbers.reciprocal(_dot(apart, apart))
+    return -(oracle.moving.lower(load.coefficient).a * _dot(apart, closing) * _dot(apart, shift) * square)
+
+
+def _isotropic_damper(oracle: Oracle, load: model.IsotropicDamper, name: str) -> Scalar:
+    """-c r' . dr/dq with r the vector between the points."""
+    _, closing, shift = _ends_apart(oracle, load, name)
+    return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
+
+
+def _ends_apart(
+    oracle: Oracle, load: model.PointDamper | model.IsotropicDamper, name: str
+) -> tuple[list[Scalar], list[Scalar], list[Scalar]]:
+    """r = r_first - r_second, its rate, and its derivative by a coordinate, in inertial axes."""
+    places, velocities, shifts = [], [], []
     for end in (load.first, load.second):
         point = oracle.moving.lower.vector(end.position)
-        velocities.append([x.b for x in oracle.moving.point(end.body, point)])
+        path = oracle.moving.point(end.body, point)
+        places.append([x.a for x in path])
+        velocities.append([x.b for x in path])
         shifts.append(oracle.along(name, end.body, [x.a for x in point]))
+    apart = [a - b for a, b in zip(*places, strict=True)]
     closing = [a - b for a, b in zip(*velocities, strict=True)]
     shift = [a - b for a, b in zip(*shifts, strict=True)]
-    return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
+    return apart, closing, shift
 
 
 def _rayleigh(oracle: Oracle, load: model.Rayleigh, name: str) -> Scalar:
@@ -556,6 +575,7 @@ def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
 _GENERALIZED_FORCES: dict[type, Any] = {
     model.CoordinateDamper: _coordinate_damper,
     model.PointDamper: _point_damper,
+    model.IsotropicDamper: _isotropic_damper,
     model.Rayleigh: _rayleigh,
     model.GeneralizedForce: _generalized,
     model.PointForce: _point_force,

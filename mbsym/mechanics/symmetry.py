@@ -21,6 +21,7 @@ from mbsym.model.system import (
     CoordinateSpring,
     ForceFunction,
     GeneralizedForce,
+    IsotropicDamper,
     Load,
     PointDamper,
     PointForce,
@@ -89,7 +90,7 @@ def _is_internal(load: Load, hidden: set[str]) -> bool:
     match load:
         case CoordinateSpring(coordinate) | CoordinateDamper(coordinate):
             return coordinate not in hidden
-        case PointSpring(first, second) | PointDamper(first, second):
+        case PointSpring(first, second) | PointDamper(first, second) | IsotropicDamper(first, second):
             return INERTIAL not in (first.body, second.body)
         case ForceFunction() | Rayleigh():
             return True

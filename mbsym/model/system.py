@@ -186,7 +186,21 @@ class CoordinateDamper:
 
 @dataclass(frozen=True, slots=True)
 class PointDamper:
-    """Rayleigh function coefficient |V_first - V_second|^2 / 2 (an isotropic dashpot between two points)."""
+    """Along the line between two points: Rayleigh function coefficient (d distance/dt)^2 / 2."""
+
+    first: Point
+    second: Point
+    coefficient: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
+class IsotropicDamper:
+    """Against all relative motion of two points: Rayleigh function coefficient |V_first - V_second|^2 / 2.
+
+    Its two forces are opposite but not along the line, so that together they are a couple: it does not conserve
+    angular momentum, as no pair of points alone can do it (it stands for a joint, a bath, a medium).
+    """
 
     first: Point
     second: Point
@@ -251,6 +265,7 @@ Load = (
     | PointSpring
     | CoordinateDamper
     | PointDamper
+    | IsotropicDamper
     | ForceFunction
     | Rayleigh
     | GeneralizedForce

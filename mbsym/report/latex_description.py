@@ -14,6 +14,7 @@ from mbsym.model.system import (
     CoordinateSpring,
     ForceFunction,
     GeneralizedForce,
+    IsotropicDamper,
     Load,
     NewtonianGravity,
     Point,
@@ -149,9 +150,15 @@ class _Loads:
                 c = self.math(coefficient)
                 return f"Damper of ${self.names[coordinate]}$, coefficient ${c}$: dissipation function ${r}$."
             case PointDamper(first, second, coefficient):
+                r = f"\\tfrac{{1}}{{2}}\\, {_bracketed(coefficient, 2, self.names)}\\, \\dot{{d}}^2"
+                return (
+                    f"Damper along the line between {self.point(first)} and {self.point(second)}, coefficient "
+                    f"${self.math(coefficient)}$: dissipation function ${r}$ with the distance $d$."
+                )
+            case IsotropicDamper(first, second, coefficient):
                 r = f"\\tfrac{{1}}{{2}}\\, {_bracketed(coefficient, 2, self.names)}\\, v^2"
                 return (
-                    f"Damper between {self.point(first)} and {self.point(second)}, coefficient "
+                    f"Isotropic damper between {self.point(first)} and {self.point(second)}, coefficient "
                     f"${self.math(coefficient)}$: dissipation function ${r}$ with their relative velocity $v$."
                 )
             case ForceFunction(value, spelled):

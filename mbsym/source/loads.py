@@ -17,6 +17,7 @@ from mbsym.model.system import (
     CoordinateSpring,
     ForceFunction,
     GeneralizedForce,
+    IsotropicDamper,
     Load,
     NewtonianGravity,
     Point,
@@ -42,6 +43,7 @@ _MISSPELT = 0.75
 _MEANT = {
     word: meant
     for meant, words in {
+        "'isotropic damper'": "isotropic dashpot, isotropic damping, viscous bath",
         "'damper'": "friction, viscous friction, dashpot, damping, viscous damping, viscous damper, linear damper, "
         "torsional damper, rotational damper, shock absorber, drag",
         "'spring'": "elastic, elastic force, elasticity, torsion spring, torsional spring, rotational spring, "
@@ -234,14 +236,29 @@ def _spring(load: _Load) -> Load | None:
 
 def _damper(load: _Load) -> Load | None:
     fields = load.fields()
+    errors = load.reading.errors
     where = _one_of(fields, load.reading)
     coefficient = fields.required_expression("coefficient", Allowed("a damping coefficient"))
     if where == "coordinate":
         return CoordinateDamper(_coordinate(fields, load.reading), coefficient, load.span)
     if where == "between":
         first, second = _between(load, fields)
+        message = "this damper acts along the line between its points: R = coefficient (rate of the distance)^2 / 2"
+        hint = "for R = coefficient |V_1 - V_2|^2 / 2, which this key meant before, write 'isotropic damper'"
+        if load.reading.errors == errors and first == second:
+            met = "these points are one, and the line between them has no direction"
+            load.reading.error("coinciding-points", met, fields.found["between"].value.span)
+        load.reading.complaints.warning("damper-along-line", message, fields.key_span("between"), hint)
         return PointDamper(first, second, coefficient, load.span)
     return None
+
+
+def _isotropic_damper(load: _Load) -> Load:
+    fields = load.fields()
+    coefficient = fields.required_expression("coefficient", Allowed("a damping coefficient"))
+    fields.require("between")
+    first, second = _between(load, fields)
+    return IsotropicDamper(first, second, coefficient, load.span)
 
 
 def _rayleigh(load: _Load) -> Load:
@@ -284,6 +301,7 @@ _READERS: dict[str, Callable[[_Load], Load | None]] = {
     "uniform gravity": _uniform_gravity,
     "spring": _spring,
     "damper": _damper,
+    "isotropic damper": _isotropic_damper,
     "rayleigh": _rayleigh,
     "force function": _force_function,
     "potential": _force_function,

@@ -145,6 +145,7 @@ _REQUIRED = {
     "newtonian gravity": ("constant", "about"),
     "spring": ("stiffness",),
     "damper": ("coefficient",),
+    "isotropic damper": ("between", "coefficient"),
     "force": ("body", "point", "components", "axes"),
     "torque": ("body", "components", "axes"),
 }

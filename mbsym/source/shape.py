@@ -18,6 +18,7 @@ from mbsym.model.system import (
     GeneralizedForce,
     Inertia,
     InitialValue,
+    IsotropicDamper,
     Load,
     MotionEntry,
     NewtonianGravity,
@@ -137,6 +138,8 @@ def load_shape(load: Load) -> tuple[str, Shape]:
             return "damper", {"coordinate": coordinate, "coefficient": text(coefficient)}
         case PointDamper(first, second, coefficient):
             return "damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
+        case IsotropicDamper(first, second, coefficient):
+            return "isotropic damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
         case ForceFunction(expression, spelled):
             return spelled, text(expression)
         case Rayleigh(expression):

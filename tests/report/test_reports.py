@@ -278,6 +278,7 @@ loads:
   - spring: {between: [{body: cart, point: [0, 0, 0]}, {body: 0, point: [0, 0, L]}], stiffness: k, length: L/2}
   - damper: {coordinate: theta, coefficient: c}
   - damper: {between: [{body: bob, point: [0, -L, 0]}, {body: 0, point: [0, 0, 0]}], coefficient: 2*c}
+  - isotropic damper: {between: [{body: bob, point: [0, -L, 0]}, {body: 0, point: [0, 0, 0]}], coefficient: 2*c}
   - potential: -k*x**4
   - rayleigh: c*x_dot**4
   - generalized force: {x: -c*x_dot, theta: M}
@@ -298,7 +299,8 @@ def test_latex_lists_the_loads_and_the_given_motion(tmp_path):
         r"Spring between the point $(0,\; 0,\; 0)$ of \textit{cart} and the point $(0,\; 0,\; L)$ of the inertial",
         r"natural length $\frac{L}{2}$: $U = -\tfrac{1}{2}\, k\, (d - \frac{L}{2})^2$",
         r"Damper of $\theta$, coefficient $c$: dissipation function $\tfrac{1}{2}\, c\, \dot{\theta}^2$",
-        r"dissipation function $\tfrac{1}{2}\, 2 c\, v^2$",
+        r"dissipation function $\tfrac{1}{2}\, 2 c\, \dot{d}^2$ with the distance $d$",
+        r"dissipation function $\tfrac{1}{2}\, 2 c\, v^2$ with their relative velocity $v$",
         r"Potential: $-U = -k x^{4}$",
         r"Dissipation function: $c \dot{x}^{4}$",
         r"Generalised forces: $Q_{x} = -c \dot{x}$, $Q_{\theta} = M$",

@@ -17,6 +17,7 @@ KINDS: dict[type, Kind[Any]] = {
     model.PointSpring: springs.POINT_SPRING,
     model.CoordinateDamper: springs.DAMPER,
     model.PointDamper: springs.POINT_DAMPER,
+    model.IsotropicDamper: springs.ISOTROPIC_DAMPER,
     model.ForceFunction: free.FORCE_FUNCTION,
     model.Rayleigh: free.RAYLEIGH,
     model.GeneralizedForce: free.GENERALIZED,

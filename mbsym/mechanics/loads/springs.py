@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar, SingularPoint, Vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind, force_at
 from mbsym.model.system import (
     INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
+    IsotropicDamper,
     Point,
     PointDamper,
     PointSpring,
@@ -108,16 +109,47 @@ def point_velocity(scene: Scene, body: str, point: Vector) -> Vector:
     return scene.algebra.add(motion.velocity_origin, scene.algebra.cross(motion.angular_velocity, point))
 
 
-def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
-    """coefficient (V_second - V_first) on the first point."""
-    algebra = scene.algebra
-    pair = _Pair(load.first, load.second, scene)
+def _closing(pair: _Pair, scene: Scene) -> Vector:
+    """V_second - V_first, in the axes of the pair's frame."""
     speeds = [
         scene.to_axes(point_velocity(scene, end.body, point), end.body, pair.frame)
         for end, point in zip(pair.ends, pair.points, strict=True)
     ]
-    closing = algebra.subtract(speeds[1], speeds[0])
-    return pair.action(algebra.scale(scene.lower(load.coefficient), closing))
+    return scene.algebra.subtract(speeds[1], speeds[0])
+
+
+def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
+    """coefficient (u . (V_second - V_first)) u on the first point, with u along the line between the points.
+
+    On a line that never turns u is its axis; elsewhere u u^T = r r^T / r.r with r = r_second - r_first, which is
+    singular where the points meet: there the line has no direction.
+
+    Raises SingularPoint where they meet.
+    """
+    algebra = scene.algebra
+    pair = _Pair(load.first, load.second, scene)
+    closing = _closing(pair, scene)
+    coefficient = scene.lower(load.coefficient)
+    along = [axis for axis in range(3) if not algebra.vanishes(pair.span[axis])]
+    if len(along) == 1:
+        pull = [algebra.zero, algebra.zero, algebra.zero]
+        pull[along[0]] = algebra.times(coefficient, closing[along[0]])
+        return pair.action((pull[0], pull[1], pull[2]))
+    try:
+        inverse_square = algebra.reciprocal(algebra.dot(pair.span, pair.span))
+    except SingularPoint:
+        raise SingularPoint("the points of a damper coincide: the line between them has no direction") from None
+    rate = algebra.reduce(algebra.times(algebra.dot(pair.span, closing), inverse_square))
+    return pair.action(algebra.scale(algebra.reduce(algebra.times(coefficient, rate)), pair.span))
 
 
 POINT_DAMPER = Kind(_point_damper_action)
+
+
+def _isotropic_damper_action(load: IsotropicDamper, scene: Scene) -> Action:
+    """coefficient (V_second - V_first) on the first point."""
+    pair = _Pair(load.first, load.second, scene)
+    return pair.action(scene.algebra.scale(scene.lower(load.coefficient), _closing(pair, scene)))
+
+
+ISOTROPIC_DAMPER = Kind(_isotropic_damper_action)

@@ -23,7 +23,7 @@ from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import CoordinateDamper, PointDamper, Rayleigh, rational
+from mbsym.model.system import CoordinateDamper, IsotropicDamper, PointDamper, Rayleigh, rational
 from mbsym.problems.energy import Energy
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
@@ -36,7 +36,7 @@ from mbsym.problems.stability.theory import Stability as Theory
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
 
-_DISSIPATIVE = (CoordinateDamper, PointDamper, Rayleigh)
+_DISSIPATIVE = (CoordinateDamper, PointDamper, IsotropicDamper, Rayleigh)
 
 
 @dataclass(frozen=True)
