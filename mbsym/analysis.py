@@ -250,10 +250,11 @@ class Analysis:
         return equilibrium.equilibrium(self.parameters_scene, forcing, self.signs)
 
     @property
-    def linearisation(self) -> Linearisation:
-        return self._result("linearisation", self._linearisation)
+    def first_approximation(self) -> Linearisation:
+        """The equations of perturbed motion, time-dependent or not (its ``varying`` says which)."""
+        return self._result("first approximation", self._first_approximation)
 
-    def _linearisation(self) -> Linearisation:
+    def _first_approximation(self) -> Linearisation:
         if self.equilibrium.impossible:
             never = ", ".join(f"{item} = 0" for item in self.equilibrium.impossible)
             raise Unavailable(
@@ -264,10 +265,19 @@ class Analysis:
             reason = f"on the given motion the equations still vary with {varying}"
             hint = self._steady_order() or "it is no steady motion in these coordinates"
             raise Unavailable("motion", NoResult(reason, hint, "not steady"))
-        try:
-            return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
-        except linearisation.TimePeriodic as reason:
-            raise Unavailable("linearisation", NoResult(str(reason), self._steady_order(), "time-periodic")) from None
+        return linearisation.by_quadratisation(self.parameters_scene, self.expanded, self.equilibrium)
+
+    @property
+    def linearisation(self) -> Linearisation:
+        """The first approximation where its coefficients are constant: what the theorems of problem 6 are about."""
+        return self._result("linearisation", self._linearisation)
+
+    def _linearisation(self) -> Linearisation:
+        found = self.first_approximation
+        if found.varying:
+            hint = self._steady_order() or "choose coordinates in which the motion is steady, if there are any"
+            raise Unavailable("linearisation", NoResult(found.time_dependence, hint, "time-dependent"))
+        return found
 
     def _steady_order(self) -> str:
         """A hint at the rotation sequence in which the first approximation is steady; "" where none is known."""

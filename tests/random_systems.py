@@ -296,6 +296,37 @@ def spinning(draw: Draw) -> Description:
 
 
 @st.composite
+def driving(draw: Draw) -> Description:
+    """A tree on a base that is moved in a prescribed way (it turns, slides, speeds up), with loads that know the time.
+
+    The coordinates rest somewhere, or the first turns steadily; that this is no motion of the system does not matter.
+    """
+    carried = draw(systems(most=2, most_coordinates=3))
+    moved = st.sampled_from(["0", "1", "R*cos(chi)", "R*sin(chi)", "l1*chi", "b*chi**2", "chi*sin(chi)"])
+    base: Description = {"name": "base", "attached to": 0, "mass": 0, "coordinates": []}
+    base["connection point"] = [draw(moved) for _ in range(3)]
+    if draw(st.booleans()):
+        base["rotation"] = {"axes": [draw(axes)], "angles": [draw(st.sampled_from(["chi", "-2*chi", "alpha"]))]}
+    for body in carried["bodies"]:
+        body["attached to"] = "base" if body["attached to"] == "0" else body["attached to"]
+    names = coordinates(carried)
+    carried["bodies"].insert(0, base)
+    carried.setdefault("loads", [])
+    timely = ["k*{0}**2*cos(chi)", "c*{0}*t**2", "k*{0}**2*chi*t"]
+    if names and draw(st.booleans()):
+        carried["loads"].append({"potential": draw(st.sampled_from(timely)).format(draw(st.sampled_from(names)))})
+    if names and draw(st.booleans()):
+        forced = {"generalized force": {names[-1]: f"c*{names[0]}*chi + b*{names[-1]}_dot*t"}}
+        carried["loads"].append(forced)
+    spelled = [load for load in carried["loads"] if "force function" not in load]
+    carried["loads"] = spelled
+    carried["motion"] = {name: draw(st.sampled_from([0, 0, "pi/2", "alpha"])) for name in names}
+    if names and draw(st.booleans()):
+        carried["motion"][names[0]] = {"value": 0, "rate": draw(st.sampled_from(["Omega", "2"]))}
+    return carried
+
+
+@st.composite
 def resting(draw: Draw) -> Description:
     """Any tree with any loads at rest somewhere; nothing depends on time."""
     description = draw(systems(most_coordinates=3, driven=False))

@@ -45,6 +45,22 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
     return images
 
 
+def rate_on_motion(scene: Scene, x: Polynomial) -> Polynomial:
+    """dx/dt of a quantity on the unperturbed motion: sum of rate dx/d(name) over what runs there, and dx/dt itself.
+
+    What runs are the coordinates that turn steadily, the prescribed quantities and t.  Raises NoClosedForm.
+    """
+    ring: Ring = scene.ring
+    total = ring.derivative(x, "t")
+    values = motion_values(scene.system)
+    running = [(name, values[name][1]) for name in turning(scene)]
+    running += [(item.name, item.rate) for item in scene.system.prescribed]
+    for name, rate in running:
+        if ring.depends_on(x, name):
+            total = total + ring.times(scene.lower(rate), ring.derivative(x, name))
+    return ring.reduce(total)
+
+
 def relations(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices of dependent parameters and their values in independent ones."""
     ring: Ring = scene.ring

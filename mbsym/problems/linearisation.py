@@ -6,7 +6,12 @@ with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (ci
 
 1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq;
 2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
-   with L2 = x'.M x'/2 + x'.B x - x.P x/2 the equations are M x'' + (B - B^T) x' + P x = (linear part of Q).
+   with L2 = x'.M x'/2 + x'.B x - x.P x/2 the equations are
+
+       M x'' + (dM/dt + B - B^T) x' + (dB/dt + P) x = (linear part of Q),
+
+   d/dt along the unperturbed motion, where prescribed quantities, steadily turning coordinates and t run: the
+   acceleration of a prescribed motion stands in dB/dt (a lift gives K = m l (g + a) through it).
 
 Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
 tau = w t: M stays, D and G are divided by w, K and N by w^2.
@@ -35,7 +40,7 @@ from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
-from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed, unsteady
+from mbsym.mechanics.motion import motion_values, rate_on_motion, relations, turning, unperturbed, unsteady
 from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
@@ -56,11 +61,28 @@ class Subsystem:
     N: Matrix
 
 
+#: How many varying coefficients a message names.
+MOST_NAMED = 4
+
+
+@dataclass(frozen=True)
+class Varying:
+    """An entry of M, D, G, K or N (row <= column) that is not constant: it varies with the quantities ``among``."""
+
+    matrix: str
+    row: str
+    column: str
+    value: Formula
+    among: tuple[str, ...]
+
+
 @dataclass(frozen=True)
 class Linearisation:
     """Matrices n x n in physical time and declared parameters; ``subsystems`` as a paper prints them.
 
-    ``time_scale`` is w of tau = w t, or None.  ``route`` names the way the matrices were obtained.
+    ``time_scale`` is w of tau = w t, or None.  ``route`` names the way the matrices were obtained.  ``varying`` lists
+    the coefficients that are not constant: with any of them the first approximation is time-dependent, and no theorem
+    about constant coefficients (Lagrange, Kelvin-Chetaev, eigenvalues) says anything about it.
     """
 
     coordinates: tuple[str, ...]
@@ -72,20 +94,31 @@ class Linearisation:
     time_scale: Formula | None
     subsystems: tuple[Subsystem, ...]
     route: str
+    varying: tuple[Varying, ...] = ()
 
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
         return self.M, self.D, self.G, self.K, self.N
 
-
-class TimePeriodic(NoClosedForm):
-    """The first approximation has coefficients that vary with time."""
+    @property
+    def time_dependence(self) -> str:
+        """Which coefficients vary with which quantity, in words; "" where all are constant."""
+        if not self.varying:
+            return ""
+        among = ", ".join(dict.fromkeys(name for entry in self.varying for name in entry.among))
+        entries = [f"{entry.matrix}[{entry.row}, {entry.column}]" for entry in self.varying[:MOST_NAMED]]
+        if len(self.varying) > MOST_NAMED:
+            entries.append(f"{len(self.varying) - MOST_NAMED} more")
+        return (
+            f"the first approximation is time-dependent, its coefficients vary with {among} ({', '.join(entries)}); "
+            "no theorem about constant coefficients applies"
+        )
 
 
 def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | None) -> Linearisation:
     """Route 2, from the system over jets (``quadratised``): never forms the nonlinear equations.
 
-    Raises TimePeriodic, NoClosedForm or SingularPoint.
+    Raises NoClosedForm or SingularPoint.
     """
     ring, names = scene.ring, scene.system.coordinates
     n = len(names)
@@ -94,6 +127,10 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
     mixed = [[_second(ring, lagrangian, n + i, j) for j in range(n)] for i in range(n)]
     velocity = [[mixed[i][j] - mixed[j][i] for j in range(n)] for i in range(n)]
     position = [[-_second(ring, lagrangian, i, j) for j in range(n)] for i in range(n)]
+    for i in range(n):
+        for j in range(n):
+            velocity[i][j] = velocity[i][j] + rate_on_motion(scene, mass[i][j])
+            position[i][j] = position[i][j] + rate_on_motion(scene, mixed[i][j])
     for i, force in enumerate(applied_forces(expanded).values()):
         for j in range(n):
             position[i][j] = position[i][j] - force.first.get(j, ring.zero)
@@ -102,7 +139,10 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
 
 
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
-    """Route 1: differentiates the nonlinear equations on the unperturbed motion."""
+    """Route 1: differentiates the nonlinear equations on the unperturbed motion.
+
+    Raises NoClosedForm or SingularPoint.
+    """
     ring, names = scene.ring, scene.system.coordinates
     at = unperturbed(scene)
     mass = [[ring.substitute(x, at) for x in row] for row in equations.mass_matrix.polynomials]
@@ -148,12 +188,6 @@ def _assemble(
     if equilibrium is not None:
         images |= {ring.index("parameter", name): value.polynomial for name, value in equilibrium.solved}
     parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in (mass, velocity, position)]
-    varying = dict.fromkeys(name for rows in parts for row in rows for x in row for name in unsteady(scene, x))
-    if varying:
-        raise TimePeriodic(
-            f"the first approximation has coefficients that vary with {', '.join(varying)}; "
-            "choose coordinates in which the unperturbed motion is steady"
-        )
     scale = None
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
@@ -168,7 +202,18 @@ def _assemble(
         subsystems=(),
         route=route,
     )
-    return replace(result, subsystems=_subsystems(scene, result))
+    return replace(result, subsystems=_subsystems(scene, result), varying=_varying(scene, result))
+
+
+def _varying(scene: Scene, whole: Linearisation) -> tuple[Varying, ...]:
+    names = whole.coordinates
+    return tuple(
+        Varying(label, names[i], names[j], matrix[i, j], among)
+        for label, matrix in zip("MDGKN", whole.matrices, strict=True)
+        for i in range(len(names))
+        for j in range(i, len(names))
+        if (among := unsteady(scene, matrix[i, j].polynomial))
+    )
 
 
 def _symmetric(ring: Ring, rows: Rows) -> Rows:

@@ -15,6 +15,7 @@ from random_systems import (
     axes,
     clone,
     coordinates,
+    driving,
     motion_numbers,
     orbiting,
     resting,
@@ -30,6 +31,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import rational_states
+from mbsym.problems import checks, linearisation, perturbation
 from mbsym.problems.checks import EXACT, NUMERICAL
 
 law = settings(max_examples=20, deadline=None, derandomize=True)
@@ -83,6 +85,21 @@ def test_quadratised_and_linearised_equations_agree(description: Description) ->
     assert passed(analysis, EXACT)
     impossible = "does not exist" in getattr(analysis.stage(5).failure, "reason", "")
     assert impossible or "linearisation" in [check.name for check in analysis.checks]
+
+
+@law
+@given(driving())
+def test_prescribed_motions_enter_both_routes_of_the_first_approximation_alike(description: Description) -> None:
+    """Quadratised Lagrangian == differentiated equations == disturbed d'Alembert, however the coefficients vary."""
+    analysis = analysed(description)
+    assume(analysis.system.coordinates)
+    quadratic = linearisation.by_quadratisation(analysis.parameters_scene, analysis.expanded, None)
+    closed = linearisation.by_equations(analysis.scene, analysis.equations, None)
+    agreement = checks.check_linearisation(analysis.ring, quadratic, closed)
+    assert agreement.outcome == EXACT, agreement
+    nothing = perturbation.Dependent({}, {})
+    disturbed = perturbation.check_perturbed_motion(analysis.system, analysis.ring, quadratic, nothing)
+    assert disturbed.outcome in (EXACT, NUMERICAL), disturbed
 
 
 def pendulum(load: dict[str, Any], motion: Any = 0) -> Analysis:
