@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar, SingularPoint, Vector
+from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.failures import SingularPoint
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind, force_at
 from mbsym.model.system import (
