@@ -147,10 +147,12 @@ def test_the_meaning_is_told_where_the_key_is_used():
     assert system is not None
     (told,) = complaints.items
     assert (told.code, told.severity) == ("damper-along-line", "warning")
-    assert told.span is not None and text.split("\n")[told.span.line - 1][told.span.column - 1 :].startswith("between")
+    assert told.span is not None
+    assert text.split("\n")[told.span.line - 1][told.span.column - 1 :].startswith("between")
     assert "'isotropic damper'" in (told.hint or "")
     followed, complaints = read(text.replace("- damper", "- isotropic damper"))
-    assert followed is not None and not complaints.items
+    assert followed is not None
+    assert not complaints.items
 
 
 @pytest.mark.parametrize("damper", ["damper", "isotropic damper"])
@@ -159,4 +161,5 @@ def test_both_spellings_keep_the_two_dampers_apart(damper: str, write: Any) -> N
     system, _ = read(DUMBBELL.format(damper=damper, ends=ENDS))
     assert system is not None
     again, complaints = read(write(system))
-    assert again == system and not complaints.errors
+    assert again == system
+    assert not complaints.errors
