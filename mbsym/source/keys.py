@@ -112,7 +112,7 @@ LOAD_MEANINGS = {
     "newtonian gravity": "Newtonian field of a centre: expanded about a point of the orbit, or exact",
     "uniform gravity": "the same acceleration everywhere",
     "spring": "on a coordinate or between two points",
-    "damper": "viscous, on a coordinate or along the line between two points: R = coefficient rate^2 / 2, with the rate "
+    "damper": "viscous, on a coordinate or along the line between two points: R = coefficient rate^2/2, with the rate "
     "of the coordinate or of the distance (which must not be zero, unless the points stay on one axis)",
     "isotropic damper": "viscous, against all relative motion of two points: R = coefficient |V_1 - V_2|^2 / 2; not "
     "along the line, so that it makes a couple",
