@@ -1,23 +1,62 @@
-"""Writing files whole or not at all."""
+"""Delivering files: one whole, or a set of them whole.
+
+A folder of reports may hold files of the user's own, so it cannot be exchanged as one.  A set goes into it in three
+steps, under a lock:
+
+1. *staged*: every file is written and flushed into a hidden folder ``.mbsym-new-...`` inside, with the new manifest;
+2. *committed*: that folder is renamed to ``.mbsym-ready``, which is one step for every observer;
+3. *installed*: the files that the set replaces are removed, then the new ones are moved to their places, the
+   manifest last.
+
+What fails or is killed before step 2 leaves the old set as it was.  What is killed after it is completed by whoever
+delivers into the folder next; until then names may be missing, but an old file never stands beside a new one of the
+same set.  What step 1 left behind is removed by the next delivery.
+
+The manifest, ``.mbsym.json``, lists each set with the SHA-256 of its files.  Only files that it lists, and that still
+are what was written, are removed when a later set does without them.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
+import shutil
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+MANIFEST = ".mbsym.json"
+
+_READY = ".mbsym-ready"
+_NEW, _PART = ".mbsym-new-", ".mbsym-part-"
+
+#: Where nothing says that its writer is gone, what lies aside for so many seconds is a stray.
+_STALE = 3600.0
+
+#: A folder's name has at most so many bytes (file systems allow 255), for endings that are put to it.
+_LONGEST_NAME = 200
+
+#: Names that some systems keep for devices.
+_RESERVED = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10)}
+
+#: Command -> file -> SHA-256, one entry a set; a command has several where it was asked for some of its files only.
+Sets = list[tuple[str, dict[str, str]]]
+
+
+# --- one file ---------------------------------------------------------------------------------------------------------
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
     """Writes aside, in the same folder, and renames: a reader sees the old file or the new one, never half of it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, aside = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    _remove_strays(path.parent, certain=False)
+    handle, aside = tempfile.mkstemp(prefix=_PART, dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(content.encode() if isinstance(content, str) else content)
-            stream.flush()
-            os.fsync(stream.fileno())
+            _fill(stream, content)
         os.chmod(aside, 0o666 & ~_umask())
         os.replace(aside, path)
     except BaseException:
@@ -25,36 +64,227 @@ def write_whole(path: Path, content: str | bytes) -> None:
         raise
 
 
+# --- a set of files ---------------------------------------------------------------------------------------------------
+
+
+def deliver(
+    folder: Path, files: Mapping[str, str | bytes], command: str, gone: Collection[str] | None = None
+) -> list[Path]:
+    """The paths of ``files`` (name -> content), delivered into ``folder`` as one set of ``command``.
+
+    Of the files that ``command`` delivered there before and that are not in this set, those named in ``gone`` are
+    removed (without ``gone``: all of them), unless somebody has changed them since.  Raises OSError where the set
+    cannot be written; then the old one is whole.
+    """
+    if any(not _is_plain(name) for name in files):
+        raise ValueError(f"names of files are wanted, not {sorted(files)}")
+    made = not folder.exists()
+    with alone(folder) as locked:
+        _recover(folder, locked)
+        for name in files:
+            if (folder / name).is_dir() and not (folder / name).is_symlink():
+                raise IsADirectoryError(f"{folder / name} is a folder")
+        stage = Path(tempfile.mkdtemp(prefix=_NEW, dir=folder))
+        try:
+            digests = {name: _staged(stage / name, content) for name, content in files.items()}
+            manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
+            _staged(stage / MANIFEST, manifest)
+            os.chmod(stage, 0o777 & ~_umask())
+            _flush_folder(stage)
+            os.rename(stage, folder / _READY)
+        except BaseException:
+            shutil.rmtree(stage, ignore_errors=True)
+            if made:
+                with suppress(OSError):
+                    folder.rmdir()
+            raise
+        try:
+            _install(folder)
+        except BaseException:  # Ctrl-C: what is committed is completed before it ends
+            with suppress(OSError):
+                _install(folder)
+            raise
+    return [folder / name for name in files]
+
+
+def read_manifest(folder: Path) -> Sets:
+    """The sets that were delivered into a folder; nothing where there is no manifest that can be read."""
+    return _read_sets(folder / MANIFEST)
+
+
+def delivered(folder: Path, command: str) -> dict[str, str]:
+    """The files of ``command`` in a folder, with the SHA-256 that they had when they were written."""
+    return {
+        name: digest for owner, files in read_manifest(folder) if owner == command for name, digest in files.items()
+    }
+
+
+def _merged(old: Sets, command: str, digests: dict[str, str], gone: Collection[str] | None) -> Sets:
+    """The sets after this delivery: what is replaced or goes is in no older set any more."""
+    merged: Sets = []
+    for owner, files in old:
+        leaving = set(digests) | ((set(files) if gone is None else set(gone)) if owner == command else set())
+        kept = {name: digest for name, digest in files.items() if name not in leaving}
+        if kept:
+            merged.append((owner, kept))
+    return [*merged, (command, digests)] if digests else merged
+
+
+def _manifest_text(sets: Sets) -> str:
+    listed = [{"command": command, "files": dict(sorted(files.items()))} for command, files in sets]
+    return json.dumps({"written by": "mbsym", "sets": listed}, indent=2) + "\n"
+
+
+def _read_sets(file: Path) -> Sets:
+    """Its names are somebody's word, which nobody follows out of the folder."""
+    try:
+        content = json.loads(file.read_bytes())
+        found = [(str(one["command"]), dict(one["files"])) for one in content["sets"]]
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+        return []
+    return [(command, {str(k): str(v) for k, v in files.items() if _is_plain(str(k))}) for command, files in found]
+
+
+def _is_plain(name: str) -> bool:
+    """A name that stays in its folder and is none of our own."""
+    return bool(name) and name == os.path.basename(name) and name not in (".", "..") and not name.startswith(".mbsym")
+
+
+def _recover(folder: Path, locked: bool) -> None:
+    """Completes what was committed and removes what was not, after a crash of another delivery."""
+    if (folder / _READY).is_dir():
+        _install(folder)
+    _remove_strays(folder, certain=locked)
+
+
+def _install(folder: Path) -> None:
+    """Step 3, from wherever it was left."""
+    ready = folder / _READY
+    if not ready.is_dir():
+        return
+    waiting = sorted(path.name for path in ready.iterdir() if path.name != MANIFEST)
+    if (ready / MANIFEST).exists():
+        staying = {name for _, files in _read_sets(ready / MANIFEST) for name in files}
+        for _, files in read_manifest(folder):
+            for name, digest in files.items():
+                if name not in staying and _digest(folder / name) == digest:
+                    (folder / name).unlink(missing_ok=True)
+        for name in waiting:
+            (folder / name).unlink(missing_ok=True)
+        for name in [*waiting, MANIFEST]:
+            os.replace(ready / name, folder / name)
+    _flush_folder(folder)
+    ready.rmdir()
+
+
+def _remove_strays(folder: Path, certain: bool) -> None:
+    """What a killed writer left aside; where one may still be at work (not ``certain``), only what is old."""
+    with suppress(OSError):
+        for path in folder.iterdir():
+            if not path.name.startswith((_NEW, _PART)):
+                continue
+            with suppress(OSError):
+                sure = certain and path.name.startswith(_NEW)
+                if sure or time.time() - path.lstat().st_mtime > _STALE:
+                    if path.is_dir() and not path.is_symlink():
+                        shutil.rmtree(path, ignore_errors=True)
+                    else:
+                        path.unlink()
+
+
+def _staged(path: Path, content: str | bytes) -> str:
+    """Writes a new file, flushed to the disk; its SHA-256."""
+    with path.open("xb") as stream:
+        data = _fill(stream, content)
+    return hashlib.sha256(data).hexdigest()
+
+
+def _fill(stream, content: str | bytes) -> bytes:  # type: ignore[no-untyped-def]
+    data = content.encode() if isinstance(content, str) else content
+    stream.write(data)
+    stream.flush()
+    os.fsync(stream.fileno())
+    return data
+
+
+def _digest(path: Path) -> str:
+    """The SHA-256 of a plain file; "" for anything else."""
+    if path.is_symlink() or not path.is_file():
+        return ""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _flush_folder(folder: Path) -> None:
+    """Names reach the disk, where a system has that."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+# --- folders ----------------------------------------------------------------------------------------------------------
+
+
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """Several files of one run together: another run that writes into the folder waits, where locks exist."""
+def alone(folder: Path) -> Iterator[bool]:
+    """Another run that writes into the folder waits, where locks exist; yields whether this one has the lock."""
     folder.mkdir(parents=True, exist_ok=True)
     try:
         import fcntl
 
         handle = os.open(folder, os.O_RDONLY)
     except (ImportError, OSError):
-        yield
+        yield False
         return
     try:
-        with suppress(OSError):  # some network file systems have no locks
+        locked = True
+        try:
             fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
+        except OSError:  # some network file systems have no locks
+            locked = False
+        yield locked
     finally:
         os.close(handle)
 
 
-def obstacle(folder: Path) -> str:
-    """Why a folder cannot be written to, known before hours of computing; empty if nothing speaks against it."""
-    for place in (folder, *folder.absolute().parents):
-        try:
-            found = place.exists()
-        except (OSError, ValueError) as error:  # a name that is too long
-            return str(error)
-        if found:
-            if not place.is_dir():
-                return f"{place} is no folder"
-            return "" if os.access(place, os.W_OK) else f"{place} is not writable"
+def folder_for(file: Path, out: Path | None) -> Path:
+    """Where the files about one description go: ``out`` itself, or a folder of its name in ``reports``."""
+    return out if out is not None else Path("reports") / safe_name(file.stem)
+
+
+def safe_name(name: str) -> str:
+    """The name of a folder like ``name``, which is one level down on any system.
+
+    Dots and blanks at the end go (``..``), names of devices get an underscore (``con``), what cannot be seen or
+    separates folders becomes one, and what is too long is cut and told apart by its hash.
+    """
+    plain = "".join(c if c.isprintable() and c not in '/\\:*?"<>|' else "_" for c in name).rstrip(". ") or "unnamed"
+    if plain.split(".")[0].rstrip().lower() in _RESERVED or plain.startswith(".mbsym"):
+        plain = f"_{plain}"
+    data = plain.encode(errors="surrogateescape")
+    if len(data) <= _LONGEST_NAME:
+        return plain
+    return data[:_LONGEST_NAME].decode(errors="ignore") + "-" + hashlib.sha256(data).hexdigest()[:8]
+
+
+def obstacle(folder: Path, inside: Path | None = None) -> str:
+    """Why a folder cannot be written to, known before hours of computing; empty if nothing speaks against it.
+
+    A folder that has to be ``inside`` another one is not written to through a link that leads out of it.
+    """
+    try:
+        if inside is not None and not folder.resolve().is_relative_to(inside.resolve()):
+            return f"{folder} is a link that leads out of {inside}"
+        for place in (folder, *folder.absolute().parents):
+            if place.exists():
+                if not place.is_dir():
+                    return f"{place} is no folder"
+                return "" if os.access(place, os.W_OK) else f"{place} is not writable"
+    except (OSError, ValueError, RuntimeError) as error:  # a name that is too long, a link that loops
+        return str(error)
     return ""
 
 
