@@ -11,7 +11,7 @@ import click
 
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, read_description, status
-from mbsym_cli.files import obstacle, write_whole
+from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str,
       mbsym extremes systems/satellite.yaml --set R=7000000 --set omega0=1/1000
       mbsym extremes systems/heavy-top.yaml --sequences
     """
-    folder = out if out is not None else Path("reports") / file.stem
+    folder = folder_for(file, out)
     try:
         sys.exit(_command(file, folder, settings, sequences, budget, quiet))
     except KeyboardInterrupt:
@@ -97,8 +97,7 @@ def _measure(
         say(f"{file.name}: drawing")
         texts: dict[str, str | bytes] = {"extremes.csv": extremes_csv(found), "extremes.json": extremes_json(found)}
         texts |= extremes_figure(found, ("svg", "png"))
-        for name, text in texts.items():
-            write_whole(folder / name, text)
+        deliver(folder, texts, "extremes")
     _print(file, found, folder, list(texts), quiet)
     return OK
 

@@ -30,6 +30,9 @@ from pathlib import Path
 
 MANIFEST = ".mbsym.json"
 
+#: Where files go that nobody gave a place.
+REPORTS = Path("reports")
+
 _READY = ".mbsym-ready"
 _NEW, _PART = ".mbsym-new-", ".mbsym-part-"
 
@@ -252,7 +255,7 @@ def alone(folder: Path) -> Iterator[bool]:
 
 def folder_for(file: Path, out: Path | None) -> Path:
     """Where the files about one description go: ``out`` itself, or a folder of its name in ``reports``."""
-    return out if out is not None else Path("reports") / safe_name(file.stem)
+    return out if out is not None else REPORTS / safe_name(file.stem)
 
 
 def safe_name(name: str) -> str:
@@ -273,8 +276,11 @@ def safe_name(name: str) -> str:
 def obstacle(folder: Path, inside: Path | None = None) -> str:
     """Why a folder cannot be written to, known before hours of computing; empty if nothing speaks against it.
 
-    A folder that has to be ``inside`` another one is not written to through a link that leads out of it.
+    A folder that has to be ``inside`` another one, as those in ``reports`` have, is not written to through a link that
+    leads out of it.
     """
+    if inside is None and folder.parent == REPORTS:
+        inside = REPORTS
     try:
         if inside is not None and not folder.resolve().is_relative_to(inside.resolve()):
             return f"{folder} is a link that leads out of {inside}"

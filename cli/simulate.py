@@ -24,7 +24,7 @@ from mbsym_cli.console import (
     read_description,
     status,
 )
-from mbsym_cli.files import alone, obstacle
+from mbsym_cli.files import alone, folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_files import write_files
 from mbsym_cli.simulation_request import ARITHMETIC, FINEST, Flags, Request, read_request
@@ -125,7 +125,7 @@ def command(
         "--step-limit": step_limit,
         "--format": formats,
     }
-    folder = out if out is not None else Path("reports") / file.stem
+    folder = folder_for(file, out)
     try:
         sys.exit(_command(file, folder, settings, texts, Flags(invariants, estimate, quiet, whole)))
     except KeyboardInterrupt:

@@ -21,7 +21,7 @@ from mbsym_cli.console import (
     read_description,
     status,
 )
-from mbsym_cli.files import obstacle, write_whole
+from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def command(
     Example:
       mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
     """
-    folder = out if out is not None else Path("reports") / file.stem
+    folder = folder_for(file, out)
     texts = {"--time": end, "--target": target, "--methods": methods, "--budget": budget}
     try:
         sys.exit(_command(file, folder, settings, texts, Request(0, 0, 0, fidelity, all_rows, quiet)))
@@ -187,9 +187,7 @@ def _write(
     title = f"{system.name}, t = 0 to {request.end:g}"
     pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
     texts |= {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
-    for name, text in texts.items():
-        write_whole(folder / name, text)
-    return [folder / name for name in texts]
+    return deliver(folder, texts, "tradeoff")
 
 
 def _print(

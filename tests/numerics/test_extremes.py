@@ -362,7 +362,7 @@ def test_sequences_are_ranked_by_distance() -> None:
 def test_the_command_writes_everything(tmp_path: Path) -> None:
     done = run("extremes", ROOT / "systems/simple-pendulum.yaml", "--out", tmp_path)
     assert done.exit_code == 0, done.output
-    names = {"extremes.csv", "extremes.json", "extremes.svg", "extremes.png"}
+    names = {"extremes.csv", "extremes.json", "extremes.svg", "extremes.png", ".mbsym.json"}
     assert {path.name for path in tmp_path.iterdir()} == names
     assert "Rates from 1e-8 to 1e8" in done.output
 
