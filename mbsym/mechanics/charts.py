@@ -7,6 +7,8 @@ orientation: the first where it is regular, the second only where body axis a3 l
 
 Where the first angle runs at a constant rate (a spin about an axis fixed in the previous body), it has to stay the
 first: {a1, a3, a2}, respectively {a1, a2, c}, is regular there, and what the body sees of axis a1 is the configuration.
+The same holds for a first angle that the equations do not know (cyclic: the whole may be turned about axis a1), and a
+cyclic third angle is like one that runs: only the direction of its axis is a configuration.
 
 Two turns {a1, a2} of a body without twist (a thin rod, a point mass: nothing depends on a turn about a body axis g) are
 the same with the third turn left out; only the direction of g matters then.
@@ -14,13 +16,14 @@ the same with the third turn left out; only the direction of g matters then.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise, product
 from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Name, names
 from mbsym.mechanics.frames import axis_vector, back, direction_cosines, forward
 from mbsym.mechanics.rest import Rest, rest
@@ -35,15 +38,21 @@ MOST_JOINTS = 4
 class Joint:
     """A joint whose angles can be replaced: ``axes`` a1, a2, a3; ``angles`` the two or three coordinates.
 
-    ``direction_only``: only the direction of body axis a3 matters (no third turn, or one that runs at a constant rate).
-    ``spinning``: the first angle runs at a constant rate, so that only the direction of axis a1 in the body matters.
+    The turns are through ``signs`` times the coordinates, plus constants.
+    ``last_free``: only the direction of body axis a3 matters (no third turn, one at a constant rate, a cyclic one).
+    ``first_free``: only the direction of axis a1 in the body matters (a first turn at a constant rate, a cyclic one).
+    ``keeps_first``: the angles that replace these begin with the same turn.
+    ``described``: the axes are those of the description.
     """
 
     body: str
     axes: tuple[int, int, int]
     angles: tuple[str, ...]
-    direction_only: bool
-    spinning: bool = False
+    signs: tuple[int, ...]
+    first_free: bool
+    last_free: bool
+    keeps_first: bool
+    described: bool = True
 
     @property
     def proper(self) -> bool:
@@ -53,16 +62,11 @@ class Joint:
     @property
     def other_axes(self) -> tuple[int, int, int]:
         first, second, third = self.axes
-        if self.spinning:
+        if self.keeps_first:
             return (first, third, second) if self.proper else (first, second, 6 - first - second)
         if self.proper:
             return second, first, third
         return second, 6 - first - second, third
-
-    @property
-    def singular_kind(self) -> str:
-        """The generator of the second angle that vanishes where the angles are singular."""
-        return "cosine" if self.proper else "sine"
 
 
 @dataclass(frozen=True)
@@ -81,37 +85,63 @@ class Chart:
 
     @property
     def label(self) -> str:
-        """``satellite {3, 2, 1}`` for each replaced joint."""
+        """``satellite {3, 2, 1}`` for each joint with other axes than the description's."""
         parts = []
         for joint, other in zip(self.joints, self.replaced, strict=True):
-            if other:
-                axes = joint.other_axes[: len(joint.angles)]
+            if other or not joint.described:
+                axes = (joint.other_axes if other else joint.axes)[: len(joint.angles)]
                 parts.append(f"{joint.body} {{{', '.join(map(str, axes))}}}")
         return ", ".join(parts)
 
 
-def joints(system: System, turning: Sequence[str]) -> tuple[Joint, ...]:
-    """The joints whose angles occur nowhere else, so that they may be replaced by others."""
+def joints(system: System, turning: Sequence[str], cyclic: Sequence[str] = ()) -> tuple[Joint, ...]:
+    """The joints whose angles occur nowhere else, so that they may be replaced by others.
+
+    ``turning`` are the coordinates that run at a constant rate, ``cyclic`` those that the equations do not know.
+    """
     found = []
     for body in system.bodies:
         turns = list(body.rotation.turns())
-        angles = [angle.name for _, angle in turns if isinstance(angle, Name) and angle.name in system.coordinates]
+        forms = [linear_form(angle) for _, angle in turns]
+        read = [x for x in map(_coordinate, forms) if x is not None and x[0] in system.coordinates]
+        angles, signs = tuple(name for name, _ in read), tuple(sign for _, sign in read)
         axes = [axis for axis, _ in turns]
         distinct = len(set(angles)) == len(turns) and all(a != b for a, b in pairwise(axes))
         if len(turns) not in (2, 3) or not distinct:
             continue
         steady = [name in turning for name in angles]
-        spinning = steady == [True, False, False]
-        if (any(steady[:2]) and not spinning) or _used_elsewhere(system, body, angles):
+        # A first turn that runs has to stay the first; then no third one can stay the third.
+        if steady[1] or (steady[0] and steady != [True, False, False]) or _used_elsewhere(system, body, angles):
             continue
+        free = steady[0] or angles[0] in cyclic
         if len(turns) == 3:
-            found.append(Joint(body.name, (axes[0], axes[1], axes[2]), tuple(angles), steady[2], spinning))
+            last = steady[2] or angles[2] in cyclic
+            keeps_first = steady[0] or (free and not last)
+            found.append(Joint(body.name, (axes[0], axes[1], axes[2]), angles, signs, free, last, keeps_first))
             continue
         for third in (6 - axes[0] - axes[1], axes[0]):
             if _has_no_twist(system, body, third):
-                found.append(Joint(body.name, (axes[0], axes[1], third), tuple(angles), True))
+                found.append(Joint(body.name, (axes[0], axes[1], third), angles, signs, free, True, False))
                 break
     return tuple(found[:MOST_JOINTS])
+
+
+def _coordinate(form: LinearForm | None) -> tuple[str, int] | None:
+    """(name, sign) of an angle +-x + k pi."""
+    if form is None or form.constant or len(form.coefficients) != 1 or abs(form.coefficients[0][1]) != 1:
+        return None
+    name, sign = form.coefficients[0]
+    return name, int(sign)
+
+
+def cyclic_angles(found: Rest) -> tuple[str, ...]:
+    """The constant coordinates that occur neither in f(q, q', t) nor in M(q): any value is as good as another."""
+    ring = found.ring
+    open_ = [x for x in found.constant if not any(ring.depends_on(f, x) for f in found.forcing)]
+    if not open_:
+        return ()
+    mass = [x for row in found.mass_matrix() for x in row]
+    return tuple(name for name in open_ if not any(ring.depends_on(x, name) for x in mass))
 
 
 def _used_elsewhere(system: System, body: Body, angles: Sequence[str]) -> bool:
@@ -156,7 +186,12 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
 
 def charts(first: Rest) -> tuple[Chart, ...]:
     """Charts that together cover every configuration once (but for what cannot be replaced)."""
-    replaceable = joints(first.system, first.turning)
+    described = {body.name: body.rotation.axes for body in first.system.bodies}
+    first = _with_cyclic_first_angles(first)
+    replaceable = tuple(
+        replace(joint, described=described[joint.body][: len(joint.angles)] == joint.axes[: len(joint.angles)])
+        for joint in joints(first.system, first.turning, cyclic_angles(first))
+    )
     found = []
     for choice in product((False, True), repeat=len(replaceable)):
         current = rest(_with_other_angles(first.system, replaceable, choice)) if any(choice) else first
@@ -165,22 +200,51 @@ def charts(first: Rest) -> tuple[Chart, ...]:
         for joint, other in zip(replaceable, choice, strict=True):
             if other:
                 seen = rows(current, joint)
-                across = [k for k in (0, 1, 2) if k != (joint.axes[2] if joint.spinning else joint.axes[0]) - 1]
+                across = [k for k in (0, 1, 2) if k != (joint.axes[2] if joint.keeps_first else joint.axes[0]) - 1]
                 first_axis, last_axis = joint.axes[0] - 1, joint.axes[2] - 1
-                restrictions += [seen[k][first_axis] if joint.spinning else seen[last_axis][k] for k in across]
+                restrictions += [seen[k][first_axis] if joint.keeps_first else seen[last_axis][k] for k in across]
             else:
-                nonzero.append(current.ring.generator(joint.singular_kind, joint.angles[1]))
+                # What vanishes where the angles are singular: cos x2 for three different axes, else sin x2.
+                turn = current.scene.motions[joint.body].turns[1]
+                nonzero.append(turn.cosine if joint.proper else turn.sine)
         found.append(Chart(current, replaceable, choice, tuple(nonzero), tuple(restrictions)))
     return tuple(found)
 
 
+def _with_cyclic_first_angles(first: Rest) -> Rest:
+    """The same with other sequences of resting angles, where their first angle is then cyclic.
+
+    A body that may be turned about an axis of the previous one has steady motions one by one only up to that turn.
+    """
+    for joint in joints(first.system, first.turning, cyclic_angles(first)):
+        if joint.first_free or {*joint.angles} & {*first.turning}:
+            continue
+        last = joint.axes[2]
+        for axis in (x for x in (1, 2, 3) if x != joint.axes[0]):
+            second = next(x for x in (1, 2, 3) if x not in (axis, last))
+            try:
+                other = rest(_with_axes(first.system, {joint.body: (axis, second, last)[: len(joint.angles)]}))
+            except (NoClosedForm, SingularPoint):
+                continue
+            if joint.angles[0] in cyclic_angles(other):
+                first = other
+                break
+    return first
+
+
 def _with_other_angles(system: System, replaceable: Sequence[Joint], choice: Sequence[bool]) -> System:
-    changed = {}
-    for joint, other in zip(replaceable, choice, strict=True):
-        if other:
-            angles = tuple(Name(name) for name in joint.angles)
-            changed[joint.body] = Rotation(joint.other_axes[: len(angles)], angles)
-    bodies = (replace(x, rotation=changed[x.name]) if x.name in changed else x for x in system.bodies)
+    chosen = [joint for joint, other in zip(replaceable, choice, strict=True) if other]
+    return _with_axes(system, {joint.body: joint.other_axes[: len(joint.angles)] for joint in chosen})
+
+
+def _with_axes(system: System, changed: Mapping[str, tuple[int, ...]]) -> System:
+    """The system with other axes of turning for some bodies, and the same angles."""
+    bodies = (
+        replace(x, rotation=Rotation(changed[x.name], tuple(angle for _, angle in x.rotation.turns())))
+        if x.name in changed
+        else x
+        for x in system.bodies
+    )
     return replace(system, bodies=tuple(bodies))
 
 
@@ -192,11 +256,8 @@ def rows(found: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
 def features(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     """Direction cosines that tell the joint's steady configurations apart, whatever the angles."""
     seen = rows(found, joint)
-    if joint.direction_only:
-        return seen[joint.axes[2] - 1]
-    if joint.spinning:
-        return tuple(row[joint.axes[0] - 1] for row in seen)
-    return tuple(x for row in seen for x in row)
+    kept = [seen[joint.axes[2] - 1]] if joint.last_free else list(seen)
+    return tuple(x for row in kept for x in (row[joint.axes[0] - 1 : joint.axes[0]] if joint.first_free else row))
 
 
 def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
@@ -205,18 +266,21 @@ def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     With the unit vectors w_i of the turns,  f_i = w_i . tau,  so
     tau = [f1 (w2 x w3) + f2 (w3 x w1) + f3 (w1 x w2)] / w1.(w2 x w3),
     and f and tau vanish together where the angles are regular.  Components for which the division does not come out are
-    left out; they say nothing that f does not say, only more shortly.
+    left out; they say nothing that f does not say, only more shortly.  In axes that turn with a free angle the
+    components would contain it: they are left out, too.
     """
     ring, turns = found.ring, found.scene.motions[joint.body].turns
-    if len(joint.angles) != 3 or len(turns) != 3 or joint.direction_only or joint.spinning:
+    if len(joint.angles) != 3 or len(turns) != 3:
         return ()
-    axes = [axis_vector(ring, turn.axis, ring.one) for turn in turns]
+    axes = [axis_vector(ring, turn.axis, ring.number(sign)) for turn, sign in zip(turns, joint.signs, strict=True)]
     f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]
     parts: list[Polynomial] = []
-    for w in (
-        [forward(ring, turns[k + 1 :], axis) for k, axis in enumerate(axes)],
-        [back(ring, turns[:k], axis) for k, axis in enumerate(axes)],
+    for free, w in (
+        (joint.last_free, [forward(ring, turns[k + 1 :], axis) for k, axis in enumerate(axes)]),
+        (joint.first_free, [back(ring, turns[:k], axis) for k, axis in enumerate(axes)]),
     ):
+        if free:
+            continue
         total = ring.zero_vector
         for k in range(3):
             total = ring.add(total, ring.scale(f[k], ring.cross(w[(k + 1) % 3], w[(k + 2) % 3])))

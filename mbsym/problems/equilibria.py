@@ -28,7 +28,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from flint import arb, ctx, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra import krawczyk
 from mbsym.algebra.failures import Failure, NoClosedForm
@@ -67,6 +67,8 @@ EXACT, CERTIFIED = "exact", "proved in a box"
 WITHIN = 10.0
 #: Boxes that a bisection looks at.
 MOST_BOXES = 6_000
+#: Other values of coordinates that may have any, where their verdicts are compared: t, or 2 atan(t) of angles.
+ELSEWHERE = (fmpq(1, 3), fmpq(-2), fmpq(7, 5))
 #: More unknowns than this are not searched for by bisection.
 MOST_BISECTED = 3
 
@@ -314,6 +316,7 @@ class _ChartSearch:
             if any(d > 0 and ring.generators[k].name in self.occurring for k, d in enumerate(x.degrees()))
         ]
         self.nonzero += usual
+        self.singular_where = usual
         self.reason = self._obstacle(used)
 
     def _for_all_times(self, x: Polynomial) -> Iterator[Polynomial]:
@@ -379,7 +382,7 @@ class _ChartSearch:
     # --- exactly ---
 
     def _solve_exactly(self) -> None:
-        table = Unknowns(self.ring, self.equations)
+        table = Unknowns(self.ring, [*self.equations, *self.singular_where])
         equations = [table.polynomial(x) for x in self.equations] + table.relations()
         usable = [x for x in self.nonzero if table.holds(x)]
         result = solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
@@ -607,7 +610,8 @@ class _ChartSearch:
         """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates."""
         features, done = [], set(self.free)
         for joint in self.chart.joints:
-            if set(joint.angles) & set(self.free):
+            cyclic = joint.angles[:1] * joint.first_free + joint.angles[2:] * joint.last_free
+            if set(joint.angles) & set(self.free) - set(cyclic):
                 continue
             features += [place.ball(x) for x in direction_features(self.found, joint)]
             done |= set(joint.angles)
@@ -634,7 +638,19 @@ class _ChartSearch:
         """The verdict of problem 6 at a place."""
         if isinstance(self._linear, str):
             return Verdict(UNDECIDED, "", self._linear)
-        return self._linear.verdict(place)
+        found = self._linear.verdict(place)
+        ring, free = self.ring, self.free
+        every = (x for rows in self._linear.matrices for row in rows for x in row)
+        varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, free)))
+        if not varying or found.word == UNDECIDED:
+            return found
+        # Any value of these is an equilibrium, but not the same first approximation.
+        words = {self._linear.verdict(place.elsewhere(varying, t)).word for t in ELSEWHERE}
+        names = ", ".join(varying)
+        if words != {found.word}:
+            told = " or ".join(sorted(words - {found.word}))
+            return Verdict(UNDECIDED, "", f"It depends on {names}: {found.word} at 0, {told} elsewhere.")
+        return replace(found, explanation=f"{found.explanation} This is so at {names} = 0, and elsewhere in samples.")
 
 
 def _angle(s: Any, c: Any) -> Any:

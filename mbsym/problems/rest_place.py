@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flint import arb, ctx, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.polynomial_systems import inverse_modulo
 from mbsym.algebra.ring import Polynomial
@@ -19,10 +19,27 @@ class Place:
     """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic."""
 
     def __init__(self, found: Rest, balls: Mapping[str, Any], exact: Mapping[int, Any], modulus: Any) -> None:
+        self.found = found
         self.ring = found.ring
         self.modulus = modulus
         self._exact = dict(exact)
         self.balls = dict.fromkeys(found.ring.names(), arb(0)) | dict(balls)
+
+    def elsewhere(self, free: Sequence[str], t: fmpq) -> Place:
+        """The same with other values of ``free`` coordinates: t, or 2 atan(t) for an angle."""
+        ring = self.ring
+        balls = dict(self.balls)
+        exact = {k: value for k, value in self._exact.items() if ring.generators[k].argument is None}
+        for name in free:
+            if name not in ring.angles:
+                balls[name], exact[ring.index("coordinate", name)] = arb(t), fmpq_poly([t])
+                continue
+            with ctx.workprec(PRECISION):
+                balls[name] = 2 * arb(t).atan() * ring.angles[name]
+            exact.pop(ring.index("coordinate", name), None)
+            exact[ring.index("sine", name)] = fmpq_poly([2 * t / (1 + t * t)])
+            exact[ring.index("cosine", name)] = fmpq_poly([(1 - t * t) / (1 + t * t)])
+        return Place(self.found, balls, exact, self.modulus)
 
     def ball(self, x: Polynomial) -> Any:
         """An enclosure; exactly 0 where the value is proved to vanish."""
