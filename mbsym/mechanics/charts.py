@@ -224,7 +224,7 @@ def _with_cyclic_first_angles(first: Rest) -> Rest:
             second = next(x for x in (1, 2, 3) if x not in (axis, last))
             try:
                 other = rest(_with_axes(first.system, {joint.body: (axis, second, last)[: len(joint.angles)]}))
-            except (NoClosedForm, SingularPoint):
+            except Failure:
                 continue
             if joint.angles[0] in cyclic_angles(other):
                 first = other

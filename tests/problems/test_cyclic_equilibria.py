@@ -50,7 +50,7 @@ def seen_axis(one: RelativeEquilibrium, described: tuple[int, int, int]) -> tupl
     return tuple(float(round(x, 9)) + 0.0 for x in n)
 
 
-SEQUENCES = list(permutations((1, 2, 3), 3)) + [(3, 1, 3), (3, 2, 3), (1, 3, 1), (2, 1, 2), (1, 2, 1)]
+SEQUENCES = [*list(permutations((1, 2, 3), 3)), (3, 1, 3), (3, 2, 3), (1, 3, 1), (2, 1, 2), (1, 2, 1)]
 
 
 @pytest.mark.parametrize("axes", SEQUENCES, ids=str)
