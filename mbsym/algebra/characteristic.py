@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
@@ -121,7 +122,7 @@ def factor_in_lambda(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, li
     The product is the given polynomial.  Factors are sorted by degree, then by their text: the order is stable.
     """
     lam = _Variable(coefficients[0].context())
-    unit, powers = lam.assemble(coefficients).factor()
+    unit, powers = irreducible_factors(lam.assemble(coefficients))
     rest = coefficients[0] * 0 + unit
     factors = []
     for factor, multiplicity in powers:
@@ -130,7 +131,7 @@ def factor_in_lambda(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, li
         if degree == 0:
             rest *= cs[0] ** multiplicity
         else:
-            factors.append((cs, int(multiplicity)))
+            factors.append((cs, multiplicity))
     factors.sort(key=lambda item: (len(item[0]), [str(c) for c in item[0]]))
     return rest, factors
 

@@ -25,6 +25,9 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import NoClosedForm
+
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
 Monomial = tuple[int, ...]
@@ -351,7 +354,7 @@ class _Solver:
         tables = _multiplication(basis, standard, self.nvars)
         for k, table in enumerate(tables):
             minimal = table.minpoly()
-            factors = [_in_variable(p, k, self.context) for p, _ in minimal.factor()[1]]
+            factors = [_in_variable(p, k, self.context) for p, _ in irreducible_factors(minimal)[1]]
             kept = [x for x in factors if self._can_vanish(x)]
             if not kept:
                 return
@@ -474,9 +477,9 @@ def _key(x: Polynomial) -> str:
 
 def _irreducible(x: Polynomial) -> list[Polynomial]:
     try:
-        return [] if x.is_constant() else [factor for factor, _ in x.factor()[1]]
-    except OverflowError:  # python-flint sorts factors by machine integers
-        raise _TooLarge("factors with coefficients too long to be sorted") from None
+        return [] if x.is_constant() else [factor for factor, _ in irreducible_factors(x)[1]]
+    except NoClosedForm as error:
+        raise _TooLarge(error.reason) from None
 
 
 def _sum_of_squares(x: Polynomial) -> list[Polynomial]:
@@ -619,7 +622,7 @@ def _representation(tables: Sequence[Any], size: int) -> list[tuple[Univariate, 
         krylov = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
         values = [krylov.solve(other * unit) for other in tables]
         polynomials = [fmpq_poly([v[i, 0] for i in range(size)]) for v in values]
-        return [(p, tuple(x % p for x in polynomials)) for p, _ in minimal.factor()[1]]
+        return [(p, tuple(x % p for x in polynomials)) for p, _ in irreducible_factors(minimal)[1]]
     raise _TooLarge("no separating linear form was found")
 
 

@@ -28,6 +28,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz
 from flint.utils.flint_exceptions import DomainError
 
 from mbsym.algebra.base import Algebra
+from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
@@ -186,8 +187,7 @@ class Ring(Algebra):
             )
         self._check(x)
         self.spend(100 * len(x))
-        content, factors = x.factor()
-        return content, [(factor, int(exponent)) for factor, exponent in factors]
+        return irreducible_factors(x)
 
     def common_factor(self, a: Polynomial, b: Polynomial) -> Polynomial:
         """The greatest common divisor; 1, which divides both as well, where they are too long for it."""

@@ -30,6 +30,9 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import NoClosedForm
+
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]
 
@@ -534,11 +537,13 @@ def coefficients_in(p: Polynomial, generator: int) -> list[Polynomial]:
 
 
 def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
-    """(unit, [(factor, exponent), ...]); a very long polynomial counts as one factor."""
+    """(unit, [(factor, exponent), ...]); what is too long or cannot be factored counts as one factor."""
     if len(p) > MOST_FACTORED:
         return fmpq(1), [(p, 1)]
-    unit, powers = p.factor()
-    return unit, powers
+    try:
+        return irreducible_factors(p)
+    except NoClosedForm:
+        return fmpq(1), [(p, 1)]
 
 
 def _narrowed(p: Polynomial, used: tuple[int, ...], context: Any) -> Polynomial:

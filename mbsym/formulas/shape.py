@@ -20,6 +20,8 @@ from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
@@ -243,11 +245,14 @@ class _Presenter:
         for monomial, coefficient in terms.items():
             exponents = dict(monomial)
             dense[tuple([exponents.get(k, 0) for k in used])] = coefficient
-        unit, factors = context.from_dict(dense).factor()
+        try:
+            unit, factors = irreducible_factors(context.from_dict(dense))
+        except NoClosedForm:  # for reading, a sum that has factors is as good
+            return 1, [(terms, 1)]
         return int(unit), [
             (
                 {tuple([(used[i], int(e)) for i, e in enumerate(m) if e]): int(c) for m, c in factor.terms()},
-                int(exponent),
+                exponent,
             )
             for factor, exponent in factors
         ]

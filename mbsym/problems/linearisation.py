@@ -33,7 +33,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from mbsym.algebra.elimination import Definition, combination
-from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix

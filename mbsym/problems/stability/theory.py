@@ -45,6 +45,7 @@ from mbsym.algebra.characteristic import (
     resultant,
     subdiscriminants,
 )
+from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.roots import RootCount, count_roots, rational
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
@@ -679,7 +680,7 @@ def _differs(label: str, p: Polynomial, known: Signs) -> Requirement:
 def _without_known_factor(p: Coefficients, known: Signs) -> tuple[Coefficients, Polynomial]:
     """p = removed * q, with ``removed`` > 0 proved; common factors of unknown sign stay in q."""
     q, common = primitive(p)
-    unit, powers = common.factor()
+    unit, powers = irreducible_factors(common)
     removed, kept = common * 0 + abs(unit), common * 0 + (1 if unit > 0 else -1)
     for factor, multiplicity in powers:
         power = factor**multiplicity

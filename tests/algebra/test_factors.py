@@ -1,0 +1,36 @@
+"""Factors of polynomials with numbers of any length."""
+
+from __future__ import annotations
+
+from math import prod
+
+import pytest
+from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx
+
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import Limit, NoClosedForm
+
+CONTEXTS = {"integers": fmpz_mpoly_ctx, "rationals": fmpq_mpoly_ctx}
+
+
+@pytest.mark.parametrize("over", CONTEXTS)
+@pytest.mark.parametrize("large", [7, 2**31 - 1, 2**31, 10**10 + 19, 10**40])
+def test_the_product_is_factored_again(over: str, large: int) -> None:
+    """Linear polynomials with coprime coefficients are irreducible, by hand."""
+    x, y = CONTEXTS[over].get(["x", "y"], Ordering.lex).gens()
+    parts = [large * x + y, x - y + large, large * x + (large + 1), y + 1]
+    unit, powers = irreducible_factors(-6 * prod(parts) * parts[0])
+    assert unit == -6
+    assert {str(factor): exponent for factor, exponent in powers} == {
+        str(part): 2 if part is parts[0] else 1 for part in parts
+    }
+
+
+def test_a_refusal_is_a_failure_with_its_limit() -> None:
+    class Refusing:
+        def factor(self) -> None:
+            raise OverflowError("too large")
+
+    with pytest.raises(NoClosedForm, match="OverflowError: too large") as refused:
+        irreducible_factors(Refusing())
+    assert refused.value.limit is Limit.FACTORS
