@@ -1,0 +1,71 @@
+"""Claims in the pipeline: every claim of the description against what is derived, within a part of the run's work.
+
+The results themselves do not depend on claims, and claims cost the reports nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.failures import Failure
+from mbsym.mechanics.variables import angle_denominators, ring_of
+from mbsym.model.claims import Claim
+from mbsym.problems import claims, stability
+from mbsym.problems.claims import ClaimResult
+from mbsym.problems.claims.counterexample import Trials
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+
+#: All claims together may take this part of the work that a run may take, and one of them this part.
+CLAIMS_SHARE, CLAIM_SHARE = 4, 16
+
+
+def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
+    """Every claim's outcome, in the order of the description."""
+    system = analysis.system
+    if not system.claims:
+        return ()
+    for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
+        analysis.stage(number)
+    if any(claim.right is not None for claim in system.claims):
+        analysis.optional("trials")
+    symbols = claims.Symbols(system)
+    own = angle_denominators(system)
+    arguments = {id(claim): list(symbols.arguments(claim)) for claim in system.claims}
+    # Sines that only claims hold: those claims are judged in a ring of their own, and cost the others nothing.
+    further = {key: some for key, some in arguments.items() if angle_denominators(system, some) != own}
+    source = analysis
+    if further:
+        source = type(analysis)(system, analysis.problems, analysis.terms)
+        source.ring = ring_of(system, analysis.terms, [one for some in further.values() for one in some])
+    allowance = analysis.ring.work_budget // CLAIMS_SHARE
+    found = []
+    for claim in system.claims:
+        result, spent = _judged(source if id(claim) in further else analysis, claim, allowance)
+        allowance -= spent
+        found.append(result)
+    return tuple(found)
+
+
+def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:
+    """One claim and the work that it took, bounded by itself."""
+    ring = source.ring
+    work, budget = ring.work, ring.work_budget
+    ring.work, ring.work_budget = 0, min(budget // CLAIM_SHARE, max(allowance, 0))
+    try:
+        result = claims.examine(source, claim)
+    except Failure as reason:
+        result = claims.undecided(source.system, claim, str(reason))
+    spent, ring.work, ring.work_budget = ring.work, work, budget
+    return result, spent
+
+
+def trials(analysis: Analysis) -> Trials:
+    """Parameters at which claimed conditions are tried, with exact verdicts."""
+    scene, energies, linear = analysis.parameters_scene, analysis.optional("energy"), analysis.linearisation
+    cyclic = () if energies is None else energies.cyclic
+    conserved = stability.conserves_energy(scene, energies)
+    verdict_at = stability.ExactVerdicts(scene, conserved, cyclic, linear, analysis.equilibrium, analysis.signs)
+    solved = {name: value.polynomial for name, value in analysis.equilibrium.solved}
+    return Trials(analysis.system, analysis.ring, linear.M, solved, verdict_at)

@@ -1,0 +1,162 @@
+"""The pipeline on one page: numbers, titles, who needs whom.
+
+``Analysis`` computes every result when it is first asked for and remembers it, or why there is none, and the seconds
+it took.  The dependency graph is plain attribute access.  A problem is one line here: its number, its title, the module
+that explains it, and how it follows from other results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from types import ModuleType
+from typing import Any, TypeVar
+
+from mbsym.algebra.ring import TERM_BUDGET, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.analysis import approximation, judging, second_routes
+from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
+from mbsym.formulas.formula import Column, column
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.programs import Programs, programs
+from mbsym.mechanics.rest import given_values, missing_values
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.system import System
+from mbsym.problems import (
+    energy,
+    equations,
+    equilibria,
+    equilibrium,
+    integrals,
+    kinematics,
+    knowledge,
+    linearisation,
+    stability,
+)
+from mbsym.problems.checks import Check
+from mbsym.problems.claims import ClaimResult
+from mbsym.problems.claims.counterexample import Trials
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibria import Equilibria
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stability import Stability
+
+T = TypeVar("T")
+
+
+class Problem(Derived["Analysis", T]):
+    """A numbered problem: an attribute of Analysis that holds its result; ``module`` explains it."""
+
+    def __init__(self, number: int, title: str, module: ModuleType, derive: Callable[[Analysis], T]) -> None:
+        super().__init__(derive)
+        self.number, self.title, self.module = number, title, module
+
+    @property
+    def attribute(self) -> str:
+        return self.name
+
+    @property
+    def explanation(self) -> str:
+        """What ``mbsym explain`` prints."""
+        return str(self.module.__doc__).strip()
+
+
+class Analysis(Stages):
+    """Everything that can be derived from one system, lazily.
+
+    ``problems`` are the numbers that reports and self-checks are about; any attribute may be asked for nevertheless.
+    ``terms`` is the budget of terms a closed formula may have.  With ``suggests`` false no other coordinates are tried
+    where a motion is not steady.
+    """
+
+    def __init__(
+        self, system: System, problems: Iterable[int] | None = None, terms: int = TERM_BUDGET, suggests: bool = True
+    ) -> None:
+        super().__init__()
+        self.system = system
+        self.problems = ALL_PROBLEMS if problems is None else tuple(sorted(set(problems)))
+        self.terms = terms
+        self.suggests = suggests
+
+    def stage(self, number: int) -> Stage:
+        """Stage of a numbered problem, derived now if it was not before."""
+        return self.stage_of(PROBLEMS[number].attribute)
+
+    # --- what everything stands on: the system over the ring, over its parameters alone, over jets, as a program ---
+
+    @cached_property
+    def ring(self) -> Ring:
+        return ring_of(self.system, self.terms)
+
+    scene = Derived["Analysis", Scene](lambda a: a.over_ring())
+    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False))
+    signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene))
+    programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
+    expanded = Derived["Analysis", Scene](approximation.expanded)
+
+    def over_ring(self, bodies: bool = True) -> Scene:
+        """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered."""
+        return Scene(self.system, self.ring, ring_environment(self.system, self.ring), self.ring, bodies=bodies)
+
+    # --- the numbered problems ---
+
+    kinematics = Problem[Kinematics](1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene))
+    energy = Problem[Energy](2, "energy and force function", energy, lambda a: energy.energy(a.scene))
+    equations = Problem[Equations](
+        3, "nonlinear Lagrange equations", equations, lambda a: equations.equations(a.scene, a.energy)
+    )
+    residuals = Derived["Analysis", Column](
+        lambda a: column(a.ring, [-x.value for x in residuals(a.expanded).values()])
+    )
+    equilibrium = Problem[Equilibrium](
+        4,
+        "equilibrium conditions",
+        equilibrium,
+        lambda a: equilibrium.equilibrium(a.parameters_scene, [x.polynomial for x in a.residuals], a.signs),
+    )
+    first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation)
+    linearisation = Problem[Linearisation](5, "linearisation", linearisation, approximation.autonomous)
+    stability = Problem[Stability](6, "stability", stability, lambda a: a._stability())
+    integrals = Problem[tuple[Integral, ...]](
+        7,
+        "first integrals",
+        integrals,
+        lambda a: integrals.integrals(a.scene, a.energy, a.equations, a.programs),
+    )
+
+    # --- at numbers ---
+
+    equilibria = Derived["Analysis", Equilibria](lambda a: a._equilibria())
+
+    # --- what stands beside the problems: claims, and the second routes of the self-check ---
+
+    claims = Derived["Analysis", tuple[ClaimResult, ...]](judging.judged_claims)
+    trials = Derived["Analysis", Trials](judging.trials)
+    checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
+
+    def _stability(self) -> Stability:
+        linear, energies = self.linearisation, self.optional("energy")
+        cyclic = () if energies is None else energies.cyclic
+        conserved = stability.conserves_energy(self.parameters_scene, energies)
+        return stability.stability(self.parameters_scene, conserved, cyclic, linear, self.equilibrium, self.signs)
+
+    def _equilibria(self) -> Equilibria:
+        values = given_values(self.system, {})
+        missing = missing_values(self.system, values)
+        if missing:
+            hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
+            raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+        return equilibria.equilibria(self.system, values)
+
+
+#: Every numbered problem, by its number.
+PROBLEMS: dict[int, Problem[Any]] = {
+    item.number: item
+    for item in sorted((x for x in vars(Analysis).values() if isinstance(x, Problem)), key=lambda item: item.number)
+}
+ALL_PROBLEMS = tuple(PROBLEMS)
