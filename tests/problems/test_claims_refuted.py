@@ -17,6 +17,7 @@ from test_claims import PENDULUM, analysed, judged
 
 import mbsym
 from mbsym.problems.claims import (
+    BORDERS,
     DIFFERS,
     EXACT,
     FACTOR,
@@ -221,11 +222,12 @@ def test_conditions_are_refuted_by_parameters() -> None:
     line = claim_line(stronger)
     assert (line.word, line.outcome) == ("refuted", "does not hold: it is not necessary for stability")
     assert line.lines[0].startswith("for example at m = ")
-    # The controls: conditions that are right, and one that is weaker than what is needed.
+    # The controls: conditions that are right, and one that is weaker than what is needed: it follows from both.
     for result in conditions("that: k1 > 0", "as: necessary, that: 3*k2 > 0"):
         assert result.outcome == EXACT
     (weaker,) = conditions("as: necessary, that: k1 + k2 > 0")
-    assert (weaker.outcome, weaker.refuted, weaker.counterexample) == (UNDECIDED, False, None)
+    assert (weaker.outcome, weaker.refuted, weaker.counterexample) == (BORDERS, False, None)
+    assert weaker.remark.startswith("it follows from v0 of x and v0 of y")
 
 
 def test_sufficient_conditions_of_one_place_count_together() -> None:
@@ -243,7 +245,7 @@ def test_sufficient_conditions_of_one_place_count_together() -> None:
     assert stronger.refuted
     # Stronger than needed is no error in a sufficient condition, and an error in a necessary one.
     text = SPRINGS.replace("k2: real", "k2: positive")
-    assert conditions("as: sufficient, that: k1 > k2", text=text)[0].outcome == UNDECIDED
+    assert conditions("as: sufficient, that: k1 > k2", text=text)[0].outcome == EXACT
     assert conditions("as: necessary, that: k1 > k2", text=text)[0].outcome == FAILS
 
 

@@ -16,11 +16,13 @@ it in most places, so that the difference is what is wrong:  claimed - factor*de
 is an error, and it differs by the factor.
 
 A first integral I is decided by dI/dt = 0 on the equations of motion; one that fails is told its dI/dt, with q''
-replaced by M^-1 f, and a state where this is not zero.  A condition is one that stability in the first approximation
-needs, or one of those that problem 6 finds sufficient ('as' may say which: necessary, or sufficient, and then those of
-one place are taken together).  It is looked for among the conditions of problem 6; it is refuted by parameters at which
-the motion is stable without it, or, as sufficient, unstable with it, both exactly.  A number at a state is compared by
-rigorous balls with the digits that were printed: 1.234 means 1.234 +- 0.0005.
+replaced by M^-1 f, and a state where this is not zero.  A condition of stability that is to be *necessary* (key 'as')
+is proved where the conditions of problem 6 imply it, and the remark says for what it is needed; *sufficient* ones of
+one place count together, and are proved where they decide the cases of problem 6.  Without 'as' it is one of the
+conditions of problem 6, with its relation, or a necessary one.  It is refuted by parameters at which the motion is
+stable without it, or, as sufficient, unstable with it, both exactly; what is neither is undecided.  Where only cases
+of equality are open, it holds "but for border cases".  A number at a state is compared by rigorous balls with the
+digits that were printed: 1.234 means 1.234 +- 0.0005.
 
 Under roots of squares signs matter: sqrt(r**2) is r for r > 0 only.  What holds only for positive coordinates and
 parameters (those whose sign is not declared) is said to hold for these.
@@ -36,6 +38,7 @@ from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import (
+    BORDERS,
     DIFFERS,
     DIGITS,
     EQUIVALENT,
@@ -55,6 +58,7 @@ from mbsym.problems.claims.result import (
 from mbsym.problems.claims.symbols import Symbols
 
 __all__ = [
+    "BORDERS",
     "DIFFERS",
     "DIGITS",
     "EQUIVALENT",

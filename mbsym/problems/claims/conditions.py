@@ -1,4 +1,18 @@
-"""Claimed conditions of stability: those of problem 6, or refuted by exact parameters."""
+"""Claimed conditions of stability: proved from those of problem 6, refuted by exact parameters, or left undecided.
+
+With R the parameters at which every condition of problem 6 holds, and N those at which none of its inequalities is
+reversed (R in N; outside N a root has a positive real part: the motion is unstable), a claimed condition C is
+
+* one of problem 6, if it is the same inequality up to factors of known sign;
+* necessary for stability, if N lies in C;
+* necessary for asymptotic stability, if R lies in C and all roots lie to the left in R only;
+* necessary for stability in the first approximation, if without it K of a conservative part is singular: q = q0 + q1 t;
+* necessary but for border cases, if R lies in C: in N but outside R, nothing is proved;
+* sufficient, if with C (and the others of its place) the cases of problem 6 give every subsystem a stable verdict.
+
+That one set lies in another is proved by ``mbsym.algebra.signs``, or not at all.  Parameters that are no body's are
+left out: where it helps, the triangle inequalities of the moments of inertia are used, and the remark says so.
+"""
 
 from __future__ import annotations
 
@@ -8,112 +22,245 @@ from functools import partial
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.tree import (
-    subtract,
-    text,
-)
+from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
-from mbsym.problems.claims.counterexample import (
-    Counterexample,
-)
+from mbsym.problems.claims.counterexample import Counterexample
 from mbsym.problems.claims.differences import rational_ratio
-from mbsym.problems.claims.forms import in_parameters, on_relations
-from mbsym.problems.claims.result import EXACT, FAILS, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.regions import Inequality, Region, is_certain
+from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.theory import (
     ASYMPTOTIC,
     ASYMPTOTIC_BUT_CYCLIC,
     ASYMPTOTIC_BUT_TURNED,
+    CRITICAL,
     GYROSCOPIC,
     STABLE,
     STABLE_BUT_CYCLIC,
     UNSTABLE,
+    Verdict,
 )
 
-#: Verdicts of a motion that is stable; the last is about the first approximation only.
-_LINEARLY_STABLE = (
-    STABLE,
-    ASYMPTOTIC,
-    STABLE_BUT_CYCLIC,
-    ASYMPTOTIC_BUT_CYCLIC,
-    ASYMPTOTIC_BUT_TURNED,
-    GYROSCOPIC,
-)
+#: Verdicts of a motion that is stable.
+_STABLE = (STABLE, ASYMPTOTIC, STABLE_BUT_CYCLIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED)
+#: ... and the last of these is about the first approximation only.
+_LINEARLY_STABLE = (*_STABLE, GYROSCOPIC)
+_BODIES = ", with the triangle inequalities of the inertias"
 
 
 def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """Looks for the inequality among those of problem 6, factors of known sign apart, then for a counterexample.
+    """The claimed inequality against problem 6.
 
-    Sufficient conditions of one place may be refuted together even where each is one of those of problem 6.
+    Sufficient conditions of one place count together.
     """
-    ring, scene = derived.ring, derived.parameters_scene
-    symbols = Symbols(derived.system)
-    assert claim.right is not None
-    sides = [claim.equals, claim.right]
-    lower = symbols.lowering(ring, scene.environment, symbols.occurring(sides))
-    left, right = (lower(symbols.opened(side)) for side in sides)
-    strict = claim.relation in ("<", ">", "!=")
-    if claim.relation in ("<", "<="):
-        left, right = right, left
     result = ClaimResult(claim, about, EXACT)
-    if claim.role == SUFFICIENT:
-        refuted = _contradicted(derived, claim, result)
-        if refuted is not None:
-            return refuted
-    for own in (True, False):  # in the description's own symbols, then in declared parameters
-        try:
-            wanted = _essential(derived, claim, left - right, own)
-            known = list(_conditions(derived, claim, own))
-            for same in (_proportional, partial(_same_condition, derived.signs)):
-                for what, found, relation in known:
-                    if same(wanted, found, relation == "!="):
-                        equal = strict == (relation in (">", "!="))
-                        note = what + ("" if equal else ", but for the case of equality")
-                        if claim.role == SUFFICIENT:
-                            note += "; no parameters that were tried refute that those of its place are sufficient"
-                        return replace(result, remark=note)
-            kind = "" if claim.relation == "!=" else derived.signs.condition(wanted).kind
-        except NoClosedForm:
-            if own:
-                raise
-            break
-        if kind == "always" and claim.role != SUFFICIENT:
-            return replace(result, remark="it follows from the declared signs and assumptions")
-        if kind == "never":
-            return replace(result, outcome=FAILS, remark="with the declared signs and assumptions it never holds")
-    refuted = None if claim.role == SUFFICIENT else _contradicted(derived, claim, result)
+    examined = _sufficient if claim.role == SUFFICIENT else _necessary
+    return examined(derived, claim, result)
+
+
+# --- necessary conditions, and those without a role ---
+
+
+def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
+    forms = list(_forms(derived, claim))
+    for region in forms:
+        found = _trivial(region, _wanted(region, claim), result) or _one_of_problem_6(region, claim, result)
+        if found is not None:
+            return found
+    for region in forms:
+        found = _needed(region, claim, result)
+        if found is not None:
+            return found
+    refuted = _contradicted(derived, claim, result)
     if refuted is not None:
         return refuted
+    for region in forms:
+        found = _inside(derived, region, claim, result)
+        if found is not None:
+            return found
     remark = "it is not one of the conditions of problem 6 as they stand there; no parameters that were tried refute it"
     return replace(result, outcome=UNDECIDED, remark=remark)
 
 
+def _forms(derived: Derived, claim: Claim) -> Iterator[Region]:
+    """What problem 6 requires in the description's own symbols, then in declared parameters."""
+    yield Region(derived, claim, own=True)
+    try:
+        yield Region(derived, claim, own=False)
+    except NoClosedForm:
+        return
+
+
+def _wanted(region: Region, claim: Claim) -> Inequality:
+    """The claimed inequality as p > 0, p >= 0 or p != 0.  Raises NoClosedForm."""
+    derived = region.derived
+    ring, scene, symbols = derived.ring, derived.parameters_scene, Symbols(derived.system)
+    assert claim.right is not None
+    sides = [claim.equals, claim.right]
+    lower = symbols.lowering(ring, scene.environment, symbols.occurring(sides))
+    left, right = (lower(symbols.opened(side)) for side in sides)
+    if claim.relation in ("<", "<="):
+        left, right = right, left
+    return Inequality(region.cleared(left - right), {"<": ">", "<=": ">="}.get(claim.relation, claim.relation))
+
+
+def _trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimResult | None:
+    """What the declared signs, assumptions and the inertias of bodies decide by themselves."""
+    known = "the declared signs and assumptions"
+    for signs, what in (
+        (region.signs, known),
+        (region.signs_of_bodies, f"{known} and the triangle inequalities of the inertias"),
+    ):
+        if is_certain(signs, wanted):
+            return replace(result, remark=f"it follows from {what}")
+        if is_certain(signs, wanted.negated()):
+            return replace(result, outcome=FAILS, remark=f"with {what} it never holds")
+    return None
+
+
+def _one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
+    """The claim without a role that is a condition of problem 6, perhaps but for the case of equality."""
+    if claim.role == NECESSARY:
+        return None
+    wanted = _wanted(region, claim)
+    what, equality = _found_among(region, wanted, ())
+    if not what:
+        return None
+    if not equality:
+        return replace(result, remark=what)
+    outcome = EXACT if is_certain(region.not_unstable(), wanted) else BORDERS
+    return replace(result, outcome=outcome, remark=f"{what}, but for the case of equality")
+
+
+def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[str, bool]:
+    """ "it is the condition v0 of x" and whether it differs in the case of equality; "" where it is none of them."""
+    for same in (_proportional, partial(_same_condition, region.signs)):
+        for what, found in region.conditions(left_out):
+            if (wanted.relation == "!=") == (found.relation == "!=") and same(wanted, found):
+                return what, wanted.relation != found.relation
+    return "", False
+
+
+def _needed(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
+    """Proofs that nothing on the borders can contradict: of necessity for stability, or for asymptotic stability."""
+    wanted = _wanted(region, claim)
+    what, _ = _found_among(region, wanted, ("sufficient",))
+    for bodies in (False, True):
+        note = _BODIES if bodies else ""
+        if is_certain(region.not_unstable(bodies), wanted):
+            why = what or f"it follows from {region.labels()}{note}"
+            return replace(result, remark=f"{why}; without it the motion is unstable")
+        if is_certain(region.inside(bodies, asymptotic=True), wanted):
+            why = what or f"it follows from {region.labels(asymptotic=True)}{note}"
+            return replace(result, remark=f"{why}; it is necessary for asymptotic stability")
+    return None
+
+
+def _inside(derived: Derived, region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
+    """Proofs that leave borders open; a border where the motion is stable after all refutes a strict inequality."""
+    wanted = _wanted(region, claim)
+    what, _ = _found_among(region, wanted, ("sufficient",))
+    singular = region.makes_stiffness_singular(wanted.polynomial)
+    for bodies in (False, True):
+        why = what or f"it follows from {region.labels()}{_BODIES if bodies else ''}"
+        weak = replace(wanted, relation=">=")
+        on_all = wanted.relation == "!=" or is_certain(region.not_unstable(bodies), weak)
+        if singular and on_all:
+            remark = "stability in the first approximation needs it"
+            return replace(result, remark=f"{what}; {remark}" if what else remark)
+        if wanted.relation != "!=" and is_certain(region.inside(bodies), wanted):
+            remark = f"{why}; where it or another condition is an equality, nothing is proved"
+            return replace(result, outcome=BORDERS, remark=remark)
+    return None
+
+
+def _proportional(first: Inequality, second: Inequality) -> bool:
+    ratio = rational_ratio(first.polynomial, second.polynomial)
+    return ratio is not None and (first.relation == "!=" or ratio > 0)
+
+
+def _same_condition(signs: Signs, first: Inequality, second: Inequality) -> bool:
+    """Whether two polynomials are positive together (nonzero together) for all parameters."""
+    decide = signs.nonzero_condition if first.relation == "!=" else signs.condition
+    one, other = decide(first.polynomial), decide(second.polynomial)
+    if one.kind != other.kind or one.kind not in ("inequality", "nonzero"):
+        return False
+    return one.polynomial == other.polynomial and sorted(map(str, one.nonzero)) == sorted(map(str, other.nonzero))
+
+
+# --- sufficient conditions ---
+
+
+def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
+    refuted = _contradicted(derived, claim, result)
+    if refuted is not None:
+        return refuted
+    together = _of_its_place(derived, claim)
+    subject = "it" if len(together) == 1 else "the conditions of this place together"
+    remark = f"{subject} {'is' if len(together) == 1 else 'are'} neither proved sufficient nor refuted by parameters"
+    for region in _forms(derived, claim):
+        conditions = [_wanted(region, one) for one in together]
+        trivial = _trivial(region, conditions[together.index(claim)], result)
+        if trivial is not None and trivial.outcome == FAILS:
+            return trivial
+        for bodies in (False, True):
+            found = region.verdict_with(conditions, bodies)
+            if found is None:
+                continue
+            if found.word in _STABLE:
+                with_it = "with it" if len(together) == 1 else f"with {subject}"
+                note = f"{with_it}{_BODIES if bodies else ''} the motion is {_words(found)}"
+                return replace(result, remark=note)
+            if found.word in (GYROSCOPIC, CRITICAL):
+                remark = f"in the first approximation {subject} suffice{'s' if len(together) == 1 else ''}; " + (
+                    "whether the motion itself is stable is open"
+                )
+    return replace(result, outcome=UNDECIDED, remark=remark)
+
+
+def _words(verdict: Verdict) -> str:
+    return verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+
+
+def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
+    """The sufficient conditions that count together with this one."""
+    if claim.role != SUFFICIENT or not claim.place:
+        return [claim]
+    shared = (claim.kind, claim.role, claim.place)
+    return [one for one in derived.system.claims if (one.kind, one.role, one.place) == shared]
+
+
+# --- parameters that refute ---
+
+
 def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult | None:
     """The claim refuted by parameters: stable without it, or (where it is to be sufficient) unstable with it."""
-    sufficient = claim.role == SUFFICIENT
-    together = [claim]
-    if sufficient and claim.place:
-        shared = (claim.kind, claim.role, claim.place)
-        together = [one for one in derived.system.claims if (one.kind, one.role, one.place) == shared]
-    find = partial(_counterexample, derived, together, sufficient)
+    together = _of_its_place(derived, claim)
+    find = partial(_counterexample, derived, claim, together)
     found = find() if len(together) == 1 else derived.trials.once(claim.place, find)
     if found is None:
         return None
-    if sufficient:
+    if claim.role == SUFFICIENT:
         subject = "it is" if len(together) == 1 else "the conditions of this place together are"
         remark = f"{subject} not sufficient for stability"
     else:
-        in_first = dict(found.shows)["the motion"] == GYROSCOPIC
+        shows = dict(found.shows)
+        in_first = shows["the motion"].startswith(GYROSCOPIC)
         remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
+        if claim.relation in ("<", ">") and next(iter(shows.values())) == "0":
+            remark += ": with equality, too, the motion is stable"
     return replace(result, outcome=FAILS, remark=remark, counterexample=found)
 
 
-def _counterexample(derived: Derived, together: Sequence[Claim], sufficient: bool) -> Counterexample | None:
-    """Parameters that refute these conditions; None where none are found, or the formulas are too long."""
+def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -> Counterexample | None:
+    """Parameters that refute these conditions; None where none are found, or the formulas are too long.
+
+    A condition that is to be necessary is tried on its border, too: at equality the motion may be stable.
+    """
     symbols = Symbols(derived.system)
     environment = derived.parameters_scene.environment
+    sufficient = claim.role == SUFFICIENT
 
     def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
         found = []
@@ -127,45 +274,11 @@ def _counterexample(derived: Derived, together: Sequence[Claim], sufficient: boo
 
     try:
         claimed(derived.ring, environment)  # its budgets end what would be too long as numbers, too
-        return derived.trials.counterexample(claimed, sufficient, (UNSTABLE,) if sufficient else _LINEARLY_STABLE)
+        found = derived.trials.counterexample(claimed, sufficient, (UNSTABLE,) if sufficient else _LINEARLY_STABLE)
+        if found is not None or sufficient or claim.relation in ("<=", ">="):
+            return found
+        border = _wanted(Region(derived, claim, own=False), claim).polynomial
+        among = derived.trials.where_zero(border)
+        return derived.trials.counterexample(claimed, sufficient, _LINEARLY_STABLE, among)
     except NoClosedForm:
         return None
-
-
-def _conditions(derived: Derived, claim: Claim, own: bool) -> Iterator[tuple[str, Polynomial, str]]:
-    """What a condition of problem 6 is called, the polynomial that has to be positive (or not zero), the relation."""
-    for part in derived.stability.subsystems:
-        whose = ", ".join(part.coordinates)
-        sufficient = () if claim.role == NECESSARY else part.sufficient
-        for found, note in (
-            ((*part.conditions, *part.unreduced, *sufficient), ""),
-            (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
-        ):
-            for label, formula, relation in found:
-                polynomial = _essential(derived, claim, formula.polynomial, own)
-                yield f"it is the condition {label} of {whose}{note}", polynomial, relation
-
-
-def _essential(derived: Derived, claim: Claim, x: Polynomial, own: bool) -> Polynomial:
-    """x in its ``own`` symbols, or in declared parameters with relations used; denominators cleared by their signs."""
-    ring = derived.ring
-    whole = x if own else on_relations(derived, claim, in_parameters(derived, x))
-    numerator, denominators = ring.fraction(whole)
-    for factor, exponent in denominators:
-        if exponent % 2 and derived.signs.sign(factor) != "positive":
-            numerator = ring.times(numerator, factor)
-    return numerator
-
-
-def _proportional(first: Polynomial, second: Polynomial, unequal: bool) -> bool:
-    ratio = rational_ratio(first, second)
-    return ratio is not None and (unequal or ratio > 0)
-
-
-def _same_condition(signs: Signs, first: Polynomial, second: Polynomial, unequal: bool) -> bool:
-    """Whether two polynomials are positive together (nonzero together) for all parameters."""
-    decide = signs.nonzero_condition if unequal else signs.condition
-    one, other = decide(first), decide(second)
-    if one.kind != other.kind or one.kind not in ("inequality", "nonzero"):
-        return False
-    return one.polynomial == other.polynomial and sorted(map(str, one.nonzero)) == sorted(map(str, other.nonzero))

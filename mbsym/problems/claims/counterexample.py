@@ -14,11 +14,11 @@ Source: admissible inertias as in ``mbsym.model.admissibility``.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from itertools import count
+from itertools import count, islice
 from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_mat
@@ -42,6 +42,8 @@ from mbsym.problems.stability.theory import Verdict, is_positive
 SAMPLES, STATES = 400, 40
 #: Verdicts of problem 6 that are asked for, at those parameters where they could refute a condition.
 VERDICTS = 100
+#: Parameters that a border is solved for, and points on it for each.
+SOLVED_FOR, BORDER_POINTS = 3, 6
 #: What the comparison of one inequality with numbers counts for, in the measure of the ring's work.
 WORK_OF_A_TRIAL = 500
 #: Working precision of balls, in bits; a value is shown to so many digits.
@@ -168,6 +170,7 @@ class Trials:
         self.system, self.ring, self.solved = system, ring, solved
         self.numbers = Rationals({}, {})
         self._known: dict[str, Counterexample | None] = {}
+        self._dependent = {relation.name for relation in system.relations} | set(solved)
         self._mass_matrix, self._verdict_at = mass_matrix, verdict_at
         self._made: list[Trial] = []
         self._coming = self._trials()
@@ -193,14 +196,15 @@ class Trials:
         claimed: Callable[[Algebra, Mapping[str, Any]], Sequence[tuple[str, Any, str]]],
         sufficient: bool,
         words: Sequence[str],
+        among: Iterable[Trial] | None = None,
     ) -> Counterexample | None:
         """Parameters at which the claim is contradicted and problem 6 finds one of ``words``, the first if possible.
 
         ``claimed`` gives (text, left - right, relation) of every inequality.  A necessary condition is contradicted
-        where one of them fails, sufficient ones where all hold.
+        where one of them fails, sufficient ones where all hold.  ``among`` are other parameters than the usual ones.
         """
         asked, best = 0, None
-        for trial in self:
+        for trial in self if among is None else among:
             if asked == VERDICTS:
                 break
             try:
@@ -224,6 +228,41 @@ class Trials:
                 break
         return best
 
+    def where_zero(self, x: Polynomial) -> Iterator[Trial]:
+        """Parameters at which a polynomial in free parameters vanishes: one of them is solved for.
+
+        Only factors that are linear in a parameter are used.
+        """
+        ring = self.ring
+        free = {name for name in self.system.parameter_names if name not in self._dependent}
+        for factor, _ in [] if x.is_constant() else ring.factored(x)[1]:
+            degrees = factor.degrees()
+            linear = [
+                g.name
+                for k, g in enumerate(ring.generators)
+                if g.kind == "parameter" and g.name in free and degrees[k] == 1
+            ]
+            for name in linear[:SOLVED_FOR]:
+                for trial in islice(self, BORDER_POINTS):
+                    values = {other: Fraction(int(y.p), int(y.q)) for other, y in trial.values.items() if other in free}
+                    found = self._trial(values | {name: Fraction(0)}, factor, name)
+                    if found is not None:
+                        yield found
+
+    def _trial(self, free: Mapping[str, Fraction], factor: Polynomial, name: str) -> Trial | None:
+        """Where ``factor``, linear in the parameter ``name``, vanishes; None where no body is like that."""
+
+        def value_at(number: int) -> Any:
+            values = dict(free) | {name: Fraction(number)}
+            return Carrier(self.ring, self.numbers, {key: self.numbers.number(y) for key, y in values.items()})(factor)
+
+        try:
+            constant = value_at(0)
+            root = -constant / (value_at(1) - constant)
+            return self._made_of(dict(free) | {name: Fraction(int(root.p), int(root.q))})
+        except (*NOT_THERE, KeyError):
+            return None
+
     def once(self, place: str, find: Callable[[], Counterexample | None]) -> Counterexample | None:
         """What ``find`` gives for the conditions of one place, which are taken together and searched for once."""
         if place not in self._known:
@@ -231,17 +270,23 @@ class Trials:
         return self._known[place]
 
     def _trials(self) -> Iterator[Trial]:
-        numbers = self.numbers
         for free in parameter_samples(self.system, tuple(self.solved)):
             try:
-                values = completed(self.system, numbers, free, partial(_solved, self.ring, numbers, self.solved))
-                carry = Carrier(self.ring, numbers, values)
-                if is_positive(fmpq_mat([[carry(x) for x in row] for row in self._mass_matrix.polynomials])):
-                    yield Trial(values)
+                made = self._made_of(free)
             except NOT_THERE:
                 continue
             except KeyError:
                 return
+            if made is not None:
+                yield made
+
+    def _made_of(self, free: Mapping[str, Fraction]) -> Trial | None:
+        """All parameters from the free ones; None where M is not positive definite.  Raises as ``completed`` does."""
+        numbers = self.numbers
+        values = completed(self.system, numbers, free, partial(_solved, self.ring, numbers, self.solved))
+        carry = Carrier(self.ring, numbers, values)
+        massive = is_positive(fmpq_mat([[carry(x) for x in row] for row in self._mass_matrix.polynomials]))
+        return Trial(values) if massive else None
 
 
 def _solved(

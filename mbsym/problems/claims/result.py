@@ -30,6 +30,7 @@ from mbsym.problems.stability import Stability
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
 FACTOR = "holds up to a factor"
+BORDERS = "holds but for border cases"
 EQUIVALENT = "holds up to a total time derivative"
 DIGITS = "holds to the digits printed"
 NUMERICAL = "verified numerically"
@@ -113,7 +114,7 @@ class ClaimResult:
 
     @property
     def holds(self) -> bool:
-        return self.outcome in (EXACT, RELATIONS, FACTOR, EQUIVALENT, DIGITS, NUMERICAL)
+        return self.outcome in (EXACT, RELATIONS, FACTOR, BORDERS, EQUIVALENT, DIGITS, NUMERICAL)
 
     @property
     def refuted(self) -> bool:

@@ -1,0 +1,285 @@
+"""Claimed conditions against regions of stability that are known by hand: a claim that holds is true everywhere.
+
+Three families whose stability is elementary, with random polynomials of the parameters in them:
+
+* M = 1, potential energy (p x^2 + 2 q x y + r y^2)/2:  stable where p > 0 and p r - q^2 > 0, unstable where p, r or
+  p r - q^2 is negative;
+* x'' + d x' + k x = 0:  asymptotically stable where d > 0 and k > 0, unstable where one of them is negative;
+* a particle on a turntable, x'' - 2 w y' + (p - w^2) x = 0, y'' + 2 w x' + (r - w^2) y = 0: with K1 = p - w^2,
+  K2 = r - w^2 and B = K1 + K2 + 4 w^2 the roots of mu^2 + B mu + K1 K2 are negative and simple where B, K1 K2 and
+  B^2 - 4 K1 K2 are positive; a minimum where K1 and K2 are.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+import mbsym
+from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
+from mbsym.report.claims import claim_line
+
+CASES = Path(__file__).parents[1] / "cases" / "statements"
+STABLE, LINEAR, UNSTABLE, BORDER = "stable", "stable in the first approximation", "unstable", "border"
+RELATIONS: dict[str, Callable[[Fraction], bool]] = {
+    ">": lambda x: x > 0,
+    "<": lambda x: x < 0,
+    ">=": lambda x: x >= 0,
+    "<=": lambda x: x <= 0,
+    "!=": lambda x: x != 0,
+}
+
+
+@dataclass(frozen=True)
+class Family:
+    """``loads`` with the texts of three polynomials in {0}, {1}, {2}; ``truth`` of their values and those of w."""
+
+    text: str
+    conditions: tuple[str, ...]
+    truth: Callable[[Fraction, Fraction, Fraction, Fraction], str]
+
+
+def potential(p: Fraction, q: Fraction, r: Fraction, _: Fraction) -> str:
+    minor = p * r - q * q
+    return STABLE if p > 0 and minor > 0 else UNSTABLE if p < 0 or r < 0 or minor < 0 else BORDER
+
+
+def damped(d: Fraction, k: Fraction, _: Fraction, __: Fraction) -> str:
+    return STABLE if d > 0 and k > 0 else UNSTABLE if d < 0 or k < 0 else BORDER
+
+
+def turntable(p: Fraction, _: Fraction, r: Fraction, w: Fraction) -> str:
+    first, second = p - w * w, r - w * w
+    middle, last = first + second + 4 * w * w, first * second
+    if first > 0 and second > 0:
+        return STABLE
+    gaps = (middle, last, middle * middle - 4 * last)
+    return LINEAR if min(gaps) > 0 else UNSTABLE if min(gaps) < 0 else BORDER
+
+
+HEAD = "mbsym: 1\nname: family\nparameters: {{a: {3}, b: {3}, w: positive}}\n"
+PARTICLE = "bodies:\n  - {{name: u, connection point: [x, y, 0], coordinates: [x, y], mass: 1}}\n"
+FAMILIES = {
+    "potential": Family(
+        HEAD + PARTICLE + "loads:\n  - potential: ({0})*x**2/2 + ({1})*x*y + ({2})*y**2/2\nmotion: {{x: 0, y: 0}}\n",
+        ("({0})", "({2})", "(({0})*({2}) - ({1})**2)"),
+        potential,
+    ),
+    "damped": Family(
+        HEAD
+        + "bodies:\n  - {{name: u, connection point: [x, 0, 0], coordinates: [x], mass: 1}}\n"
+        + "loads:\n  - generalized force: {{x: -({0})*x_dot - ({1})*x}}\nmotion: {{x: 0}}\n",
+        ("({0})", "({1})", "({0})*({1})"),
+        damped,
+    ),
+    "turntable": Family(
+        HEAD
+        + "prescribed: {{chi: w}}\n"
+        + "bodies:\n  - {{name: table, rotation: {{axes: [3], angles: [chi]}}, mass: 0}}\n"
+        + "  - {{name: u, attached to: table, connection point: [x, y, 0], coordinates: [x, y], mass: 1}}\n"
+        + "loads:\n  - potential: ({0})*x**2/2 + ({2})*y**2/2\nmotion: {{x: 0, y: 0}}\n",
+        (
+            "({0} - w**2)",
+            "({2} - w**2)",
+            "({0} - w**2)*({2} - w**2)",
+            "({0} + {2} + 2*w**2)",
+            "(({0} + {2} + 2*w**2)**2 - 4*({0} - w**2)*({2} - w**2))",
+        ),
+        turntable,
+    ),
+}
+
+
+def polynomial(source: random.Random) -> str:
+    return source.choice(
+        (
+            "a", "b", "a - b", "a + b", "b - a", "(a - b)**2", "a*b", "2*a - b", "a**2 - b", "a - 1", "b**2 - a*b",
+        )
+    )  # fmt: skip
+
+
+def claimed(source: random.Random, conditions: tuple[str, ...]) -> str:
+    """A condition of the family, or something made of several, with a factor that matters or does not."""
+    one, other = source.choice(conditions), source.choice(conditions)
+    factor = source.choice(("", "", "", "2*", "-3*", "w*", "-w*", "a*", "(a - b)*", "(a - b)**2*"))
+    whole = source.choice(
+        (one, one, one, f"{one}**2", f"{one}**3", f"{one}*{other}", f"({one} + {other})", f"({one} - 1)")
+    )
+    return factor + whole
+
+
+def value(text: str, point: dict[str, Fraction]) -> Fraction:
+    """The tests' own arithmetic: Python's, on exact fractions."""
+    return Fraction(eval(text, {"__builtins__": {}}, dict(point)))
+
+
+def samples(sign: str) -> list[dict[str, Fraction]]:
+    numbers = [Fraction(k, 2) for k in range(-4, 5)] + [Fraction(1, 3), Fraction(7), Fraction(-7)]
+    if sign == "positive":
+        numbers = [x for x in numbers if x > 0]
+    return [
+        {"a": a, "b": b, "w": w} for a, b in product(numbers, numbers) for w in map(Fraction, ("1/3", "1/2", "1", "2"))
+    ]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim as the test wrote it, and what became of it; ``place`` holds the texts that count together with it."""
+
+    text: str
+    relation: str
+    role: str
+    place: tuple[tuple[str, str], ...]
+    result: ClaimResult
+
+
+def judged(
+    source: random.Random, family: Family
+) -> tuple[list[Judged], str, Callable[[dict[str, Fraction]], str], tuple[str, ...]]:
+    """A random system with random claims and right ones; the sign of its parameters, its truth, its true conditions."""
+    texts = [polynomial(source) for _ in range(3)]
+    sign = source.choice(("real", "positive"))
+    known = tuple(one.format(*(f"({x})" for x in texts)) for one in family.conditions)
+    written = []
+    for k in range(7):
+        role = source.choice(("", "necessary", "sufficient", "sufficient"))
+        place = "together" if role == "sufficient" and k % 2 else f"p{k}"
+        written.append((claimed(source, known), source.choice((*RELATIONS, ">", ">")), role, place))
+    written += [(one, ">", "sufficient", "all") for one in known[:3]]
+    written += [(one, ">", "necessary", "right") for one in known[-2:]]
+    lines = "".join(
+        f'  - {{claim: condition, that: "{one} {relation} 0"{f", as: {role}" if role else ""}, place: {place}}}\n'
+        for one, relation, role, place in written
+    )
+    analysis = mbsym.loads(family.text.format(*texts, sign) + "claims:\n" + lines)
+    found = []
+    for (one, relation, role, place), result in zip(written, analysis.claims, strict=True):
+        with_it = tuple((t, r) for t, r, o, p in written if (o, p) == (role, place))
+        found.append(Judged(one, relation, role, with_it, result))
+
+    def truth(point: dict[str, Fraction]) -> str:
+        return family.truth(*(value(text, point) for text in texts), point["w"])
+
+    return found, sign, truth, known
+
+
+def contradiction(
+    one: Judged, points: list[dict[str, Fraction]], truth: Callable[[dict[str, Fraction]], str], known: tuple[str, ...]
+) -> str:
+    """Where what was said of a claim is false; "" where nothing is."""
+
+    def holds(point: dict[str, Fraction]) -> bool:
+        return all(RELATIONS[relation](value(text, point)) for text, relation in one.place)
+
+    def alone(point: dict[str, Fraction]) -> bool:
+        return RELATIONS[one.relation](value(one.text, point))
+
+    result = one.result
+    if result.holds and one.role == "sufficient":
+        return next((f"not sufficient at {p}" for p in points if holds(p) and truth(p) != STABLE), "")
+    if result.holds:
+        if not one.role and any(same(one, other, points) for other in known):
+            return ""
+        if "without it the motion is unstable" in result.remark:
+            return next((f"not unstable at {p}" for p in points if not alone(p) and truth(p) != UNSTABLE), "")
+        wrong = (p for p in points if not alone(p) and truth(p) in (STABLE, LINEAR))
+        return next((f"not necessary at {p}" for p in wrong), "")
+    if result.refuted and result.counterexample is not None:
+        point = {name: Fraction(number) for name, number in result.counterexample.at}
+        expected = (UNSTABLE,) if one.role == "sufficient" else (STABLE, LINEAR)
+        contradicted = holds(point) if one.role == "sufficient" else not alone(point)
+        return "" if contradicted and truth(point) in expected else f"no counterexample: {point}"
+    if result.refuted:
+        return next((f"it holds at {p}" for p in points if alone(p)), "")
+    return ""
+
+
+def same(one: Judged, other: str, points: list[dict[str, Fraction]]) -> bool:
+    """Whether the claim and a true condition, with its relation, are the same off the border."""
+    test = RELATIONS[one.relation]
+    signs = [(value(one.text, p), value(other, p)) for p in points]
+    return all(test(x) == (y > 0) for x, y in signs if x != 0 and y != 0)
+
+
+@pytest.mark.parametrize("kind", FAMILIES)
+def test_what_is_said_of_a_condition_is_true_everywhere(kind: str) -> None:
+    source, words = random.Random(kind), []
+    points = {sign: samples(sign) for sign in ("real", "positive")}
+    for _ in range(10):
+        found, sign, truth, known = judged(source, FAMILIES[kind])
+        for one in found:
+            wrong = contradiction(one, points[sign], truth, known)
+            assert not wrong, (one.text, one.relation, one.role, claim_line(one.result), wrong)
+            words.append((one.role, one.result.outcome))
+    for role in ("", "necessary", "sufficient"):  # the test tests something
+        assert words.count((role, FAILS)) > 3, role
+        assert sum(words.count((role, outcome)) for outcome in (EXACT, BORDERS)) > 3, role
+
+
+# --- what was confirmed and is false ---
+
+
+def outcomes(name: str) -> dict[tuple[str, str], ClaimResult]:
+    analysis = mbsym.load(CASES / f"{name}.yaml")
+    return {(result.title.removeprefix("condition "), result.claim.role): result for result in analysis.claims}
+
+
+def test_a_condition_that_something_differs_from_zero_has_no_direction() -> None:
+    """K = (a - b)^2: stable for a > b and for b > a; at a = b the solution is q0 + q1 t."""
+    found = outcomes("claims_min")
+    assert [found[key].outcome for key in (("a > b", "necessary"), ("b > a", "necessary"), ("a > b", ""))] == [
+        FAILS
+    ] * 3
+    assert found["a != b", "necessary"].outcome == EXACT
+    for key in (("a > b", "necessary"), ("b > a", "necessary")):
+        at = {name: Fraction(number) for name, number in found[key].counterexample.at}
+        assert at["a"] != at["b"]
+        assert not value(key[0], at)
+
+
+def test_foucault_needs_no_slow_turning() -> None:
+    """The lowest position is stable in space, however fast the ground turns."""
+    found = outcomes("claims_foucault")
+    assert found["l*wz**2 < g", "necessary"].outcome == FAILS
+    assert found["l*wz**2 > g", "necessary"].outcome == FAILS
+    assert found["2*l*wz**2 < g", "necessary"].outcome == FAILS
+    # In the rotating frame K < 0 beyond it, and problem 6 knows no theorem: true or not, it is not proved.
+    assert found["l*wz**2 > g", "sufficient"].outcome == UNDECIDED
+    # Without a role it is one of the conditions of problem 6: K > 0, Routh's theorem.
+    assert found["l*wz**2 < g", ""].outcome == EXACT
+    assert "sufficient" in found["l*wz**2 < g", ""].remark
+
+
+def test_a_spin_with_a_damper_needs_the_greatest_moment() -> None:
+    """C > A is necessary (major-axis rule); C > 2 A is no body's, and C < 2 A is every body's but the lamina's."""
+    found = outcomes("claims_spin")
+    assert found["C > 2*A", "necessary"].outcome == FAILS
+    assert found["C < A", "necessary"].outcome == FAILS
+    assert found["C > A", "necessary"].outcome == EXACT
+    assert "triangle inequalities" in found["C < 2*A", "necessary"].remark
+
+
+def test_a_lamina_spins_stably_about_its_normal() -> None:
+    """A + B = C is a lamina, stable as every body about its axis of greatest moment; so is an axis of least moment."""
+    found = outcomes("s_euler_lamina")
+    for that in ("A + B - C != 0", "A + B - C > 0", "C > A"):
+        result = found[that, "necessary"]
+        assert result.outcome == FAILS, that
+        at = {name: Fraction(number) for name, number in result.counterexample.at}
+        assert (at["A"] - at["C"]) * (at["B"] - at["C"]) > 0
+        assert at["A"] + at["B"] >= at["C"]
+    middle = found["(A - C)*(B - C) > 0", "necessary"]
+    assert (middle.outcome, middle.holds) == (BORDERS, True)
+
+
+def test_coinciding_frequencies_are_not_excluded() -> None:
+    """W1 = -W2: the two tops are mirror images, their frequencies coincide, and the motion stays bounded."""
+    (result,) = outcomes("cg_claims").values()
+    assert result.outcome == FAILS
+    assert result.counterexample is not None
