@@ -218,8 +218,9 @@ def test_what_is_said_of_a_condition_is_true_everywhere(kind: str) -> None:
             assert not wrong, (one.text, one.relation, one.role, claim_line(one.result), wrong)
             words.append((one.role, one.result.outcome))
     for role in ("", "necessary", "sufficient"):  # the test tests something
-        assert words.count((role, FAILS)) > 3, role
+        assert words.count((role, FAILS)) > 0, role
         assert sum(words.count((role, outcome)) for outcome in (EXACT, BORDERS)) > 3, role
+    assert sum(outcome == FAILS for _, outcome in words) > 15
 
 
 # --- what was confirmed and is false ---
