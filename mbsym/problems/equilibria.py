@@ -9,8 +9,9 @@ Where the f_i are polynomials in sines, cosines and plain coordinates (roots and
 s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number
 field, every f_i is zero there exactly, and the list is complete.  Where they are not (an angle that also stands outside
 sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by bisection or
-from many starting points, each is proved to exist and to be unique in a box (Krawczyk), and the list **may be
-incomplete**; the result says so.
+from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the test exactly
+where it can be guessed (zero, springs at rest).  The list is complete where the bisection is and the equations bound
+every coordinate; otherwise it **may be incomplete**, and the result says so.
 
 Angles that are singular somewhere (a gimbal) are replaced there by others, so that no orientation is lost, and
 coordinates that describe one configuration twice are counted once.
@@ -43,6 +44,8 @@ from mbsym.mechanics.charts import Chart, charts, moments
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
+from mbsym.problems.rest_bounds import reach
+from mbsym.problems.rest_candidates import Candidate, candidates, only_root
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
@@ -65,6 +68,8 @@ EXACT, CERTIFIED = "exact", "proved in a box"
 
 #: Plain coordinates that no formula bounds are searched for in [-WITHIN, WITHIN], where no exact solution is possible.
 WITHIN = 10.0
+#: Farther out than this they are not searched for, even where it is proved that they are not farther out.
+FARTHEST = 1_000.0
 #: Boxes that a bisection looks at.
 MOST_BOXES = 6_000
 #: Other values of coordinates that may have any, where their verdicts are compared: t, or 2 atan(t) of angles.
@@ -272,7 +277,6 @@ class _ChartSearch:
         self.families: list[EquilibriumFamily] = []
         self.remarks: list[str] = []
         self.complete = True
-        self.points_at_zero = False
         self.family_equations: list[list[Polynomial]] = []
 
     def run(self) -> None:
@@ -461,31 +465,67 @@ class _ChartSearch:
             at = zero | dict(zip(names, box, strict=True))
             return [[ring.evaluate(x, at) for x in row] for row in slopes]
 
-        bounds = [self._range(name) for name in names]
-        starts: Iterable[Sequence[float]]
+        special = list(candidates(self.found, names, self.equations)) if not self.chart.restrictions else []
+        special = [x for x in special if not any(x.vanishes(y) for y in self.nonzero)]
+        for candidate in special:
+            place = candidate.place(self.found, self._exact_rates())
+            if not self._known([float(place.balls[name].mid()) for name in names], 1e-12):
+                self._add(place, EXACT)
+        limited = [name for name in names if not self._periodic(name)]
+        held = {k: x for k, x in reach(ring, independent, limited).items() if x <= FARTHEST}
+        bounds = [self._range(name, held.get(name)) for name in names]
+        starts: list[list[float]] = []
+        proved: tuple[krawczyk.Box, ...] = ()
         if bisect and n <= MOST_BISECTED:
             result = krawczyk.search(function, jacobian, bounds, MOST_BOXES)
-            starts = [[float(x.mid()) for x in box] for box in (*result.roots, *result.open_boxes[:200])]
-            if result.open_boxes:
-                self._incomplete(
-                    f"{len(result.open_boxes)} boxes of the bisection are undecided: there may be more equilibria"
-                )
-        else:
-            starts = from_many_points(ring, independent, slopes, names, bounds)
-            if bisect:
-                self._incomplete(f"searched for from {STARTS} points: there may be more equilibria")
-        limited = [name for name in names if not self._periodic(name)]
+            proved, left = result.roots, result.open_boxes
+            if n == 1:
+                left = self._unexplained(independent[0], left, special)
+            if left:
+                self._incomplete(f"{len(left)} boxes of the bisection are undecided: there may be more equilibria")
+            starts += [[float(x.mid()) for x in box] for box in (*proved, *left[:200])]
+        elif bisect:
+            self._incomplete(f"searched for from {STARTS} points: there may be more equilibria")
+        if not proved and (not starts or not bisect):
+            starts += from_many_points(ring, independent, slopes, names, bounds)
         if bisect and limited:
-            ranges = ", ".join(f"{name} within {_short(self._range(name)[1])}" for name in limited)
-            self._incomplete(f"looked for with {ranges} of zero only")
-        for start in starts:
+            ranges = ", ".join(f"{name} within {_short(self._range(name, held.get(name))[1])}" for name in limited)
+            if set(limited) <= held.keys():
+                self.remarks.append(f"looked for with {ranges} of zero; the equations prove that none lies farther out")
+            else:
+                self._incomplete(f"looked for with {ranges} of zero only")
+        for number, start in enumerate(starts):
             if not bisect and (self._known(start, 1e-6) or self._is_excluded(start)):
                 continue
             box = krawczyk.certified(function, jacobian, start, PRECISION)
+            closely = box is not None and (
+                number >= len(proved) or all(x.overlaps(y) for x, y in zip(box, proved[number], strict=True))
+            )
+            if number < len(proved) and not closely:
+                self._incomplete("an equilibrium that was proved to exist could not be enclosed closely")
             if box is not None and all(
                 low - 1e-9 <= float(x.mid()) <= high + 1e-9 for x, (low, high) in zip(box, bounds, strict=True)
             ):
                 self._add_certified(dict(zip(names, box, strict=True)))
+
+    def _unexplained(
+        self, equation: Polynomial, boxes: Sequence[krawczyk.Box], special: Sequence[Candidate]
+    ) -> tuple[krawczyk.Box, ...]:
+        """Open boxes of one unknown, without groups in which a known place is the only root, simple or multiple."""
+        (name,) = self.occurring
+        groups: list[list[krawczyk.Box]] = []
+        for box in sorted(boxes, key=lambda x: float(x[0].mid())):
+            if groups and groups[-1][-1][0].overlaps(box[0]):
+                groups[-1].append(box)
+            else:
+                groups.append([box])
+        left: list[krawczyk.Box] = []
+        for group in groups:
+            hull = group[0][0].union(group[-1][0])
+            inside = [x for x in special if hull.contains(x.place(self.found, {}).balls[name])]
+            if len(inside) != 1 or not only_root(self.ring, equation, name, inside[0], hull):
+                left += group
+        return tuple(left)
 
     def _is_excluded(self, start: Sequence[float]) -> bool:
         """Whether some polynomial that must not vanish is about zero there: no root of this chart will be found."""
@@ -526,13 +566,6 @@ class _ChartSearch:
         return chosen
 
     def _add_certified(self, box: Mapping[str, Any]) -> None:
-        if all(x.contains(0) for x in box.values()) and not self.points_at_zero:
-            place = self._zero()
-            if all((value := place.residue(x)) is not None and value == 0 for x in self.equations):
-                self.points_at_zero = True
-                if not self._known([0.0] * len(self.occurring), 1e-12):
-                    self._add(place, EXACT)
-                return
         place = Place(self.found, box, {}, None)
         with ctx.workprec(PRECISION):
             if any(self.ring.evaluate(x, place.balls).contains(0) for x in self.nonzero):
@@ -556,12 +589,14 @@ class _ChartSearch:
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
         return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in used
 
-    def _range(self, name: str) -> tuple[float, float]:
+    def _range(self, name: str, held: float | None = None) -> tuple[float, float]:
+        """Where ``name`` is looked for; ``held`` is a proved bound."""
         if self._periodic(name):
             # Slightly more than a turn, and not symmetric: no root on the border.
             turn = math.pi * self.ring.angles[name]
             return -turn - 0.0123, turn + 0.0171
-        return -self.within - 0.00123, self.within + 0.00171
+        farthest = self.within if held is None else held
+        return -farthest - 0.00123, farthest + 0.00171
 
     # --- candidates ---
 
