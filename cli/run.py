@@ -38,7 +38,7 @@ class Request:
 
 @click.command("run")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option("--problems", "-p", default="1-7", show_default=True, help="1-5 or 1,3,6.")
+@click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show; all of them: 1-7]")
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
@@ -48,7 +48,7 @@ class Request:
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
-    problems: str,
+    problems: str | None,
     formats: str,
     out: Path | None,
     terms: str,
@@ -75,12 +75,12 @@ def command(
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
     """
-    from mbsym.report.targets import TARGETS
+    from mbsym.report.targets import TARGETS, shown_by
 
     asked = Options()
     paths = asked.descriptions(files)
-    chosen = asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
+    chosen = shown_by(kinds) if problems is None else asked.problems(problems)
     budget = asked.whole("--terms", terms, 1, 10**12)
     if asked.complaints or budget is None:
         for path in paths:
@@ -140,6 +140,8 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
         for number in analysis.problems:
             say(f"{path.name}: problem {number}, {PROBLEMS[number].title}")
             analysis.stage(number)
+        if any(TARGETS[name].program for name in request.formats):
+            analysis.optional("programs")
         if system.claims:
             say(f"{path.name}: claims")
             _ = analysis.claims

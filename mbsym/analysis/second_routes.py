@@ -41,7 +41,7 @@ def _second_routes(analysis: Analysis) -> Iterator[tuple[str, Callable[[], Check
         yield "energy", lambda: comparison.check_energy(truth, asked["energy"])
     if closed is not None:
         yield "equations of motion", lambda: comparison.check_equations(truth, closed)
-    if 3 in analysis.problems and analysis.optional("programs") is not None:
+    if (3 in analysis.problems or "programs" in analysis.derived) and analysis.optional("programs") is not None:
         yield "straight-line program", lambda: comparison.check_program(truth, analysis.programs)
         yield "mass matrix", lambda: comparison.check_mass_matrix(truth, analysis.programs)
     if closed is not None and asked.get("equilibrium") is not None:

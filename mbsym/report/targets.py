@@ -1,8 +1,12 @@
-"""One frozen ``Target`` per kind of file.  A target says which problems it can show, so that only those are derived."""
+"""One frozen ``Target`` per kind of file.
+
+A target says which problems it shows and whether it is made from the straight-line program: unless the user names
+problems, a run derives those that its formats show (``shown_by``), and nothing else.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,7 +18,8 @@ if TYPE_CHECKING:
 class Target:
     """``needs``: the problems whose results the file can hold; of these it shows the ones that were asked for.
 
-    ``companions`` are written beside it, as a header is.
+    ``program``: it is made from the straight-line program, which is checked then.  ``companions`` are written beside
+    it, as a header is.
     """
 
     name: str
@@ -23,6 +28,7 @@ class Target:
     title: str
     text: Callable[[Analysis, Sequence[int]], str]
     companions: tuple[Target, ...] = ()
+    program: bool = False
 
     def render(self, analysis: Analysis, problems: Sequence[int]) -> str:
         """The file's whole text: the same bytes for the same description, whenever and wherever it is made."""
@@ -76,8 +82,20 @@ TARGETS = {
     for target in (
         Target("latex", "report.tex", _ALL, "an appendix for pdflatex", _latex),
         Target("wolfram", "report.wl", _ALL, "definitions in the Wolfram Language", _wolfram),
-        Target("python", "model.py", (5,), "a numpy module of the equations, from the straight-line program", _python),
-        Target("c", "model.c", (), "C99 source of the equations, with model.h", _c, (_HEADER,)),
+        Target(
+            "python",
+            "model.py",
+            (5,),
+            "a numpy module of the equations, from the straight-line program",
+            _python,
+            program=True,
+        ),
+        Target("c", "model.c", (), "C99 source of the equations, with model.h", _c, (_HEADER,), program=True),
         Target("json", "results.json", _ALL, "every result as text in Python syntax", _json),
     )
 }
+
+
+def shown_by(formats: Iterable[str]) -> tuple[int, ...]:
+    """The problems that the files of some formats can show."""
+    return tuple(sorted({number for name in formats for number in TARGETS[name].needs}))

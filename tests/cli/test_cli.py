@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from mbsym import loads
-from mbsym.analysis import PROBLEMS
+from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
 from mbsym.source.keys import BODY, LOADS, SYSTEM
@@ -24,6 +24,7 @@ from mbsym_cli.main import COMMANDS, main
 ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
 PENDULUM = SYSTEMS / "simple-pendulum.yaml"
+PROBLEM_NAMES = {problem.attribute for problem in PROBLEMS.values()}
 
 
 def mbsym(*words: object) -> Result:
@@ -46,6 +47,28 @@ def test_format_and_problems_choose(tmp_path: Path) -> None:
     results = json.loads((tmp_path / "results.json").read_text())
     assert {"kinematics", "energy", "equilibrium", "checks"} <= set(results)
     assert not {"equations", "linearisation", "stability", "integrals"} & set(results)
+
+
+@pytest.mark.parametrize(
+    ("kinds", "derived"),
+    [("c", set()), ("python", {"linearisation"}), ("c,python", {"linearisation"}), ("json", set(PROBLEM_NAMES))],
+)
+def test_only_what_the_formats_show_is_derived(
+    kinds: str, derived: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[str] = []
+    original = Derived.__get__
+
+    def watched(self: Derived, pipeline: Analysis, owner: type) -> object:  # type: ignore[type-arg]
+        made.append(self.name)
+        return original(self, pipeline, owner)
+
+    monkeypatch.setattr(Derived, "__get__", watched)
+    done = mbsym("run", SYSTEMS / "double-pendulum.yaml", "--format", kinds, "--out", tmp_path)
+    assert done.exit_code == 0, done.output
+    closed = {"kinematics", "energy", "equations", "stability", "integrals", "linearisation"}
+    assert closed & set(made) == closed & derived
+    assert "straight-line program  exact" in done.stdout or kinds == "json"
 
 
 @pytest.mark.parametrize(
