@@ -63,9 +63,7 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
 
 def trials(analysis: Analysis) -> Trials:
     """Parameters at which claimed conditions are tried, with exact verdicts."""
-    scene, energies, linear = analysis.parameters_scene, analysis.optional("energy"), analysis.linearisation
-    cyclic = () if energies is None else energies.cyclic
-    conserved = stability.conserves_energy(scene, energies)
-    verdict_at = stability.ExactVerdicts(scene, conserved, cyclic, linear, analysis.equilibrium, analysis.signs)
+    scene, linear = analysis.parameters_scene, analysis.linearisation
+    verdict_at = stability.ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     solved = {name: value.polynomial for name, value in analysis.equilibrium.solved}
     return Trials(analysis.system, analysis.ring, linear.M, solved, verdict_at)

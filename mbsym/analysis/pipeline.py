@@ -24,6 +24,7 @@ from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
 from mbsym.problems import (
+    dissipation,
     energy,
     equations,
     equilibria,
@@ -37,6 +38,7 @@ from mbsym.problems import (
 from mbsym.problems.checks import Check
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
+from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibria import Equilibria
@@ -121,6 +123,7 @@ class Analysis(Stages):
     )
     first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation)
     linearisation = Problem[Linearisation](5, "linearisation", linearisation, approximation.autonomous)
+    balance = Derived["Analysis", Balance](lambda a: a._balance())
     stability = Problem[Stability](6, "stability", stability, lambda a: a._stability())
     integrals = Problem[tuple[Integral, ...]](
         7,
@@ -140,10 +143,12 @@ class Analysis(Stages):
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
 
     def _stability(self) -> Stability:
-        linear, energies = self.linearisation, self.optional("energy")
-        cyclic = () if energies is None else energies.cyclic
-        conserved = stability.conserves_energy(self.parameters_scene, energies)
-        return stability.stability(self.parameters_scene, conserved, cyclic, linear, self.equilibrium, self.signs)
+        scene, linear = self.parameters_scene, self.linearisation
+        return stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
+
+    def _balance(self) -> Balance:
+        energies = self.optional("energy")
+        return dissipation.balance(self.parameters_scene if energies is None else self.scene, energies, self.signs)
 
     def _equilibria(self) -> Equilibria:
         values = given_values(self.system, {})

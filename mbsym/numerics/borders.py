@@ -34,7 +34,7 @@ from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario
-from mbsym.problems.stability import ExactVerdicts, conserves_energy
+from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.theory import ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, UNDECIDED, UNSTABLE, Verdict
 
 BORDER = "border of stability"
@@ -81,10 +81,7 @@ class LinearModel:
     def __init__(self, analysis: Analysis) -> None:
         linear = analysis.linearisation
         scene = analysis.parameters_scene
-        energies = analysis.stage(2).value
-        cyclic = () if energies is None else energies.cyclic
-        conserved = conserves_energy(scene, energies)
-        self.verdict_of = ExactVerdicts(scene, conserved, cyclic, linear, analysis.equilibrium, analysis.signs)
+        self.verdict_of = ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
         self.ring, self.linear = scene.ring, linear
         self.size = len(linear.coordinates)
         self.names = (*analysis.system.parameter_names, "pi")

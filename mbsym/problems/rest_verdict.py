@@ -12,16 +12,19 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
+from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
 from mbsym.problems.rest_place import PRECISION, Place
-from mbsym.problems.stability import conserves_energy
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.theory import MASS_SINGULAR, UNDECIDED, LinearSystem, Verdict, combine, verdict_at
 
 
 @dataclass(frozen=True)
 class LinearAtRest:
-    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes."""
+    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes.
+
+    ``conservative``: the energy does not grow near any of these states, in all orders.
+    """
 
     matrices: tuple[Sequence[Sequence[Polynomial]], ...]
     conservative: bool
@@ -79,7 +82,8 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
         known = energies.energy(scene)
     except Failure:
         known = None
-    cyclic = tuple(i for i, name in enumerate(names) if known is not None and name in known.cyclic)
+    balance = dissipation.balance(scene, known, knowledge.signs(scene), somewhere=True)
+    cyclic = tuple(names.index(name) for name in balance.ignorable if name not in balance.driven)
     parts = (
         mass,
         [[ring.reduce(half * (velocity[i][j] + velocity[j][i])) for j in n] for i in n],
@@ -90,7 +94,7 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    return LinearAtRest(parts, conserves_energy(scene, known), cyclic, varying, tilts, rate)
+    return LinearAtRest(parts, balance.law.bounded, cyclic, varying, tilts, rate)
 
 
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])

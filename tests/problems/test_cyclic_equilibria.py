@@ -171,8 +171,11 @@ loads:
 
 
 def test_a_verdict_at_one_place_is_not_said_of_all() -> None:
-    """y = 0 is an equilibrium for every x, with friction for x > -1 and without a brake below."""
+    """y = 0 is an equilibrium for every x, with friction for x > -1 and without a brake below.
+
+    L does not contain x, but the friction does: x is not cyclic, and drifts out of every region of friction.
+    """
     (one,) = at(DEPENDENT).equilibria
     assert one.free == ("x",)
     assert one.verdict.word == "undecided"
-    assert "depends on x" in one.verdict.explanation
+    assert "growing solutions" in one.verdict.explanation

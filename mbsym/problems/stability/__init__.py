@@ -29,7 +29,6 @@ from mbsym.problems.stability.problem import (
     ExactVerdicts,
     Stability,
     SubsystemStability,
-    conserves_energy,
     parameter_values,
     stability,
 )
@@ -38,7 +37,6 @@ __all__ = [
     "ExactVerdicts",
     "Stability",
     "SubsystemStability",
-    "conserves_energy",
     "parameter_values",
     "stability",
 ]

@@ -16,15 +16,12 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.symmetry import Spin, free_spin
-from mbsym.mechanics.variables import expressions
-from mbsym.model.system import CoordinateDamper, IsotropicDamper, PointDamper, Rayleigh, rational
-from mbsym.problems.energy import Energy
+from mbsym.model.system import rational
+from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
@@ -35,8 +32,6 @@ from mbsym.problems.stability.theory import Stability as Theory
 
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
-
-_DISSIPATIVE = (CoordinateDamper, PointDamper, IsotropicDamper, Rayleigh)
 
 
 @dataclass(frozen=True)
@@ -125,22 +120,20 @@ class Stability:
 
 def stability(
     scene: Scene,
-    energy_conserved: bool,
-    cyclic: Sequence[str],
+    balance: Balance,
     linear: Linearisation,
     equilibrium: Equilibrium,
     signs: Signs,
 ) -> Stability:
     """Judges every subsystem.
 
-    ``energy_conserved``: the nonlinear system has a generalised energy integral, dissipation apart; ``cyclic``: the
-    coordinates that occur neither in L nor in the other loads.
+    ``balance`` knows what the loads without a force function do to the energy and to cyclic momenta in all orders.
     """
     elimination = _elimination(scene)
     values = parameter_values(scene, equilibrium)
     spin = free_spin(scene.system)
     judged = tuple(
-        _judge(scene, part, elimination, signs, values, energy_conserved, cyclic, turned)
+        _judge(scene, part, elimination, signs, values, balance, turned)
         for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
     )
     numerical = _motion_at(scene, equilibrium, values)
@@ -148,7 +141,7 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         numerical = combine(
-            _enclosed(scene, linear, part.coordinates, values, energy_conserved, cyclic)
+            _enclosed(scene, linear, part.coordinates, values, balance)
             if part.theory.at_point is None
             else part.theory.at_point.verdict
             for part in judged
@@ -187,19 +180,21 @@ def _enclosed(
     linear: Linearisation,
     coordinates: Sequence[str],
     values: Mapping[str, Fraction],
-    energy_conserved: bool,
-    cyclic: Sequence[str],
+    balance: Balance,
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
     at = [linear.coordinates.index(name) for name in coordinates]
     parts = [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
+    there = balance.at(values)
     idle = tuple(
         at.index(i)
         for i in at
-        if linear.coordinates[i] in cyclic
+        if linear.coordinates[i] in there.ignorable
         and all(x.is_zero() for matrix in (linear.K, linear.N) for x in matrix.polynomials[i])
     )
-    return enclosed_verdict_with_cyclic(parts, energy_conserved, idle, PRECISION)
+    if any(name in there.driven for name in coordinates):
+        idle = ()  # their momenta are not known to be constant
+    return enclosed_verdict_with_cyclic(parts, there.law.bounded, idle, PRECISION)
 
 
 def _judge(
@@ -208,13 +203,14 @@ def _judge(
     elimination: Elimination,
     signs: Signs,
     values: Mapping[str, Fraction] | None,
-    energy_conserved: bool,
-    cyclic: Sequence[str],
+    balance: Balance,
     turned: Sequence[Polynomial],
 ) -> SubsystemStability:
-    made = _prepared(scene, part, elimination, signs, energy_conserved, cyclic, turned)
+    made = _prepared(scene, part, elimination, signs, balance, turned)
     point = None if values is None else _point(scene, made.ring, made.system.matrices, values)
-    theory = analyse(made.system, made.known, point)
+    theory = analyse(made.system, made.known)
+    if values is not None and point is not None:
+        theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
     return SubsystemStability(part.coordinates, made.matrices, made.factor, made.ring, theory)
 
 
@@ -222,11 +218,17 @@ def _judge(
 class _Prepared:
     """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
 
+    coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
     factor: Formula
     ring: Ring
     known: Signs
     system: LinearSystem
+
+    def at(self, there: Balance) -> LinearSystem:
+        """The system with what is known of energy and momenta at parameter values."""
+        driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
+        return replace(self.system, conservative=there.law.bounded, driven=driven)
 
 
 def _prepared(
@@ -234,8 +236,7 @@ def _prepared(
     part: Subsystem,
     elimination: Elimination,
     signs: Signs,
-    energy_conserved: bool,
-    cyclic: Sequence[str],
+    balance: Balance,
     turned: Sequence[Polynomial],
 ) -> _Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
@@ -243,7 +244,7 @@ def _prepared(
     idle = tuple(
         i
         for i, name in enumerate(part.coordinates)
-        if name in cyclic and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
+        if name in balance.ignorable and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
     turned = [elimination(x) for x in turned]
     ring, known = _in_parameters(scene.ring, [*rows, [turned]], signs)
@@ -251,8 +252,10 @@ def _prepared(
         rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
         turned = [ring.project(x) for x in turned]
     mass, damping, gyroscopic, stiffness, circulatory = rows
-    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, energy_conserved, idle, tuple(turned))
-    return _Prepared(matrices, factor, ring, known, system)
+    driven = tuple(i for i in idle if part.coordinates[i] in balance.driven)
+    bounded = balance.law.bounded
+    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven)
+    return _Prepared(part.coordinates, matrices, factor, ring, known, system)
 
 
 class ExactVerdicts:
@@ -261,17 +264,16 @@ class ExactVerdicts:
     def __init__(
         self,
         scene: Scene,
-        energy_conserved: bool,
-        cyclic: Sequence[str],
+        balance: Balance,
         linear: Linearisation,
         equilibrium: Equilibrium,
         signs: Signs,
     ) -> None:
         self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
-        self.energy_conserved, self.cyclic = energy_conserved, cyclic
+        self.balance = balance
         elimination, spin = _elimination(scene), free_spin(scene.system)
         self._parts = [
-            _prepared(scene, part, elimination, signs, energy_conserved, cyclic, turned)
+            _prepared(scene, part, elimination, signs, balance, turned)
             for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
         ]
 
@@ -289,14 +291,14 @@ class ExactVerdicts:
         elsewhere = _motion_at(self.scene, self.equilibrium, values)
         if elsewhere is not None:
             return elsewhere
-        found = []
+        there, found = self.balance.at(values), []
         for part, subsystem in zip(self._parts, self.linear.subsystems, strict=True):
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
                 names = subsystem.coordinates
-                found.append(_enclosed(self.scene, self.linear, names, values, self.energy_conserved, self.cyclic))
+                found.append(_enclosed(self.scene, self.linear, names, values, self.balance))
             else:
-                found.append(verdict_at(part.system, point).verdict)
+                found.append(verdict_at(part.at(there), point).verdict)
         return combine(found)
 
 
@@ -469,18 +471,3 @@ def _point(
     except NOT_THERE:
         return None
     return point
-
-
-def conserves_energy(scene: Scene, energy: Energy | None) -> bool:
-    """Whether a generalised energy integral exists, dissipation apart: no other loads, L free of the time.
-
-    Without ``energy`` (no closed form) only systems that never mention the time are known to have one.
-    """
-    for load in scene.system.loads:
-        if KINDS[type(load)].force_function is None and not isinstance(load, _DISSIPATIVE):
-            return False
-    timely = {item.name for item in scene.system.prescribed} | {"t"}
-    if energy is None:
-        return not any(timely & names(expression) for expression in expressions(scene.system))
-    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
-    return not any(scene.ring.depends_on(lagrangian, name) for name in timely)

@@ -83,11 +83,12 @@ UNWRITTEN = "not written out"
 class LinearSystem:
     """One subsystem: n x n matrices M, D, G, K, N of polynomials in the parameters.
 
-    ``conservative``: the nonlinear system has the (generalised) energy integral, apart from the dissipative forces.
+    ``conservative``: the (generalised) energy of the nonlinear system does not grow near the motion, in all orders.
     ``cyclic``: indices of coordinates that do not occur in the nonlinear equations (only their velocities do); their
-    rows and columns in K and N must vanish.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p the squared rate of a
-    steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong shapes and for a pattern
-    of zeros that no (row-scaled) symmetric or skew matrix has.
+    rows and columns in K and N must vanish.  ``driven``: those of them whose momenta are not constant although D and N
+    have no entries, because forces of higher order act on them.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p
+    the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
+    shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.
     """
 
     M: Matrix
@@ -98,6 +99,7 @@ class LinearSystem:
     conservative: bool = False
     cyclic: tuple[int, ...] = ()
     turned: tuple[Polynomial, ...] = ()
+    driven: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -587,7 +589,7 @@ def _cases_with_zero_roots(
 def _only_momenta(system: LinearSystem) -> bool:
     """Whether all coordinates are cyclic and nothing acts on them: M q'' = 0."""
     idle = all(_is_zero(matrix) for matrix in (system.D, system.G, system.K, system.N))
-    return system.conservative and idle and len(system.cyclic) == system.size
+    return system.conservative and idle and not system.driven and len(system.cyclic) == system.size
 
 
 def _coasting() -> Verdict:
@@ -645,7 +647,7 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
 def _momenta_are_constant(system: LinearSystem) -> bool:
     between = any(system.G[i][j] != 0 for i in system.cyclic for j in system.cyclic)
     acted_on = any(x != 0 for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i])
-    return not acted_on and not between and 0 < len(system.cyclic) < system.size
+    return not acted_on and not between and not system.driven and 0 < len(system.cyclic) < system.size
 
 
 def _first_certain(cases: Sequence[Case]) -> Verdict:

@@ -1,0 +1,551 @@
+"""What the loads without a force function do to the energy and to the momenta of cyclic coordinates, in all orders.
+
+Theorems that rest on the energy (Lagrange-Dirichlet, Routh) need  dh/dt = P <= 0  near the motion, for the generalised
+energy h = q'.dL/dq' - L and the power
+
+    P = sum Q_i q'_i,        of a dissipation function R = R_1 + R_2 + ... (parts of degree k in q')   P = -sum k R_k.
+
+That the linear part of Q vanishes is not enough: x'' + x = x'^3 is unstable.  Where coordinates turn steadily (psi' =
+omega on the motion) Routh's reduced energy takes the place of h: the sum is then over the others, provided that neither
+L nor Q contains psi and Q_psi = 0.
+
+* ``CONSERVED``: P = 0 identically.
+* ``NOT_GROWING``: P <= 0 near the motion, proved: a sum of squares and even powers with coefficients of known sign, or
+  a quadratic part of P that is negative definite in all the velocities that occur in P.
+* ``GROWS``: P >= 0 near the motion and not zero, proved by the same sums.
+* ``UNKNOWN``: anything else.
+
+A dashpot between two points whose joints are moved by a prescribed motion or a steady spin takes power from these, so
+nothing is claimed about it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from fractions import Fraction
+from functools import cached_property
+from itertools import product as choices
+from typing import Any
+
+from mbsym.algebra.characteristic import leading_minors
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.expressions.tree import (
+    Expression,
+    Name,
+    Negative,
+    Operation,
+    multiply,
+    names,
+)
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.mechanics.motion import relations, turning, unperturbed
+from mbsym.mechanics.variables import expressions
+from mbsym.model.system import (
+    INERTIAL,
+    CoordinateDamper,
+    GeneralizedForce,
+    IsotropicDamper,
+    Load,
+    PointDamper,
+    PointForce,
+    Rayleigh,
+    Torque,
+    rational,
+    velocity_name,
+)
+from mbsym.problems.energy import Energy
+
+
+class EnergyLaw(Enum):
+    """What the (generalised, reduced) energy does along every motion near the unperturbed one."""
+
+    CONSERVED = "conserved"
+    NOT_GROWING = "not growing"
+    UNKNOWN = "unknown"
+    GROWS = "growing"
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the energy is proved not to grow: what Lagrange's and Routh's theorems need."""
+        return self in (EnergyLaw.CONSERVED, EnergyLaw.NOT_GROWING)
+
+
+#: Loads whose generalised forces are formulas in q and q' and need no kinematics.
+_FORMULAS = (CoordinateDamper, Rayleigh, GeneralizedForce)
+#: A formula of more products than this is not judged product by product.
+MOST_PRODUCTS = 64
+
+
+@dataclass(frozen=True)
+class Balance:
+    """``scene`` over the ring; ``energy`` is problem 2's result, or None where it has no closed form.
+
+    ``fixed`` are numbers that stand for some of the parameters.  With ``somewhere`` the motion is any of the states of
+    rest, wherever it is: then only what holds everywhere is used.
+    """
+
+    scene: Scene
+    energy: Energy | None
+    signs: Signs
+    fixed: Mapping[int, Polynomial]
+    somewhere: bool = False
+
+    def at(self, values: Mapping[str, Any]) -> Balance:
+        """The same at parameter values; irrational ones (enclosures) keep their letters, so that less is known."""
+        ring = self.scene.ring
+        exact = {
+            ring.index("parameter", name): ring.number(value)
+            for name, value in values.items()
+            if isinstance(value, Fraction) and ring.has("parameter", name)
+        }
+        return replace(self, fixed=exact)
+
+    @cached_property
+    def law(self) -> EnergyLaw:
+        """The law of the energy."""
+        try:
+            if self._knows_the_time or not self._turns_freely:
+                return EnergyLaw.UNKNOWN
+            return _together([self._formulas(), *(self._pair(x) for x in self._others)])
+        except Failure:
+            return EnergyLaw.UNKNOWN
+
+    # --- cyclic coordinates ---
+
+    @cached_property
+    def ignorable(self) -> tuple[str, ...]:
+        """The coordinates that occur neither in L nor in any other force; their velocities may."""
+        known = () if self.energy is None else self.energy.cyclic
+        return tuple(name for name in self.scene.system.coordinates if name in known and self._unseen(name))
+
+    @cached_property
+    def driven(self) -> tuple[str, ...]:
+        """Ignorable coordinates on which forces of higher order act: their momenta need not be constant.
+
+        Where all of Q_i is linear it shows in D and N; the momentum is constant if these have no entries.
+        """
+        return tuple(name for name in self.ignorable if not self._linear(name))
+
+    def _unseen(self, name: str) -> bool:
+        """Whether Q does not depend on a coordinate."""
+        if all(name not in self._names_of(load) for load in self._without_potential):
+            return True
+        forces = self._forces
+        return forces is not None and not any(self.scene.ring.depends_on(x, name) for x in forces.values())
+
+    def _linear(self, name: str) -> bool:
+        """Whether Q of a coordinate is a linear form in coordinates and velocities, with constant coefficients."""
+        ring, own = self.scene.ring, {name, velocity_name(name)}
+        acting = [load for load in self._without_potential if self._acts_on(load, name, own)]
+        if not acting:
+            return True
+        if all(isinstance(load, CoordinateDamper) for load in acting):
+            return True
+        forces = self._forces
+        if forces is None:
+            return False
+        x, coordinates = forces[name], self.scene.system.coordinates
+        try:
+            x = self._put(x)
+            slopes = [ring.derivative(x, one) for one in coordinates]
+            slopes += [ring.velocity_derivative(x, one) for one in coordinates]
+        except Failure:
+            return False
+        moving = (*coordinates, *self.scene.system.velocities)
+        return not any(ring.dependencies(slope, moving) for slope in slopes)
+
+    def _acts_on(self, load: Load, name: str, own: set[str]) -> bool:
+        if isinstance(load, GeneralizedForce):
+            return any(coordinate == name for coordinate, _ in load.components)
+        if isinstance(load, CoordinateDamper):
+            return load.coordinate == name
+        if isinstance(load, Rayleigh):
+            return velocity_name(name) in names(load.expression)
+        return bool(own & self._names_of(load))
+
+    @cached_property
+    def _forces(self) -> dict[str, Polynomial] | None:
+        """Q in closed form, where it has one."""
+        try:
+            return generalized_forces(self.scene) if self.scene.motions else None
+        except Failure:
+            return None
+
+    # --- the parts ---
+
+    @property
+    def _without_potential(self) -> list[Load]:
+        return [load for load in self.scene.system.loads if KINDS[type(load)].force_function is None]
+
+    @property
+    def _others(self) -> list[Load]:
+        return [load for load in self._without_potential if not isinstance(load, _FORMULAS)]
+
+    @cached_property
+    def _running(self) -> tuple[str, ...]:
+        """What goes on by itself on the unperturbed motion."""
+        system = self.scene.system
+        return (*turning(self.scene), *(item.name for item in system.prescribed), "t")
+
+    @property
+    def _knows_the_time(self) -> bool:
+        """Whether L may vary with the time; without a closed form every mention counts."""
+        system = self.scene.system
+        timely = {item.name for item in system.prescribed} | {"t"}
+        if self.energy is None:
+            return any(timely & names(expression) for expression in expressions(system))
+        return any(self.scene.ring.depends_on(self._lagrangian, name) for name in timely)
+
+    @property
+    def _turns_freely(self) -> bool:
+        """Whether steadily turning coordinates are cyclic, so that a reduced energy exists."""
+        if self.energy is None:
+            return not turning(self.scene)
+        return not any(self.scene.ring.depends_on(self._lagrangian, name) for name in turning(self.scene))
+
+    @property
+    def _lagrangian(self) -> Polynomial:
+        assert self.energy is not None
+        return self.energy.kinetic_energy.polynomial + self.energy.force_function.polynomial
+
+    def _put(self, x: Polynomial) -> Polynomial:
+        return self.scene.ring.substitute(x, dict(self.fixed)) if self.fixed else x
+
+    # --- signs near the motion ---
+
+    @cached_property
+    def _here(self) -> dict[int, Polynomial]:
+        return unperturbed(self.scene) | relations(self.scene)
+
+    def _on_motion(self, x: Polynomial) -> Polynomial | None:
+        """A formula on the motion; None where it varies with the time there, or where the motion is not known."""
+        ring = self.scene.ring
+        if not self.somewhere:
+            x = ring.substitute(x, self._here)
+        elif ring.dependencies(x, self.scene.system.coordinates):
+            return None
+        return None if ring.dependencies(x, self._running) else self._put(x)
+
+    def _word(self, x: Polynomial) -> str:
+        """The sign of a formula near the motion: positive, negative, zero, nonnegative, nonpositive or unknown.
+
+        What is positive on the motion is so near it; what varies with the time there has no least value.
+        """
+        word = self.signs.sign(self._put(x))
+        if word not in ("unknown", "nonzero"):
+            return word
+        here = self._on_motion(x)
+        strict = "unknown" if here is None else self.signs.sign(here)
+        return strict if strict in ("positive", "negative") else "unknown"
+
+    # --- loads that are formulas ---
+
+    def _formulas(self) -> EnergyLaw:
+        """The power of dampers of coordinates, dissipation functions and generalised forces together."""
+        system = self.scene.system
+        loads = [load for load in self._without_potential if isinstance(load, _FORMULAS)]
+        spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
+        if any(spinning & self._names_of(load) for load in loads):
+            return EnergyLaw.UNKNOWN
+        words = [word for load in loads for word in self._losses(load)]
+        if {*words} <= {"zero"}:
+            return EnergyLaw.CONSERVED
+        if {*words} <= {"zero", "positive", "nonnegative"}:
+            return EnergyLaw.NOT_GROWING
+        if {*words} <= {"zero", "negative", "nonpositive"}:
+            return EnergyLaw.GROWS
+        ring = self.scene.ring
+        loss = ring.zero
+        for load in loads:
+            for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
+                loss = loss - ring.times(force, ring.generator("velocity", name))
+        return _Loss(self, ring, tuple(system.coordinates), self._put(ring.reduce(loss))).law
+
+    def _losses(self, load: Load) -> Iterator[str]:
+        """The signs of parts of -P, product by product."""
+        if isinstance(load, CoordinateDamper):
+            yield self._word(self.scene.lower(load.coefficient))
+        elif isinstance(load, Rayleigh):
+            for one in _products(load.expression):
+                degree = self._degree(one)
+                yield "unknown" if degree is None else "zero" if degree == 0 else self._product_word(one)
+        elif isinstance(load, GeneralizedForce):
+            for name, force in load.components:
+                for one in _products(multiply(Name(velocity_name(name)), force)):
+                    yield _OPPOSITE.get(word := self._product_word(one), word)
+
+    def _degree(self, one: _Product) -> int | None:
+        """The degree of a product in the velocities; None where it is not homogeneous."""
+        total = 0
+        for base, exponent in one.powers:
+            degrees = self._degrees(base)
+            if len(degrees) != 1:
+                return None
+            total += exponent * next(iter(degrees))
+        return total
+
+    def _degrees(self, base: Expression) -> set[int]:
+        """The degrees in the velocities of the parts of a formula; two of them where it is no polynomial in them."""
+        ring = self.scene.ring
+        parts = _by_velocities(ring, self.scene.lower(base), self.scene.system.coordinates)
+        return {0, 1} if parts is None else {sum(exponents) for exponents in parts} or {0}
+
+    def _product_word(self, one: _Product) -> str:
+        word = "positive" if one.number > 0 else "negative" if one.number < 0 else "zero"
+        for base, exponent in one.powers:
+            word = _times(word, self._power_word(base, exponent))
+        return word
+
+    def _power_word(self, base: Expression, exponent: int) -> str:
+        if exponent % 2 == 0:
+            return "nonnegative"
+        if not any(velocity in names(base) for velocity in self.scene.system.velocities):
+            return self._word(self.scene.lower(base))
+        if isinstance(base, Operation) and base.operator in "+-*":
+            words = {self._product_word(one) for one in _products(base)} - {"zero"}
+            if words <= {"positive", "nonnegative"}:
+                return "nonnegative"
+            if words <= {"negative", "nonpositive"}:
+                return "nonpositive"
+        return "unknown"
+
+    # --- loads between bodies ---
+
+    def _pair(self, load: Load) -> EnergyLaw:
+        """A dashpot, force or torque."""
+        if isinstance(load, (PointForce, Torque)):
+            still = all(self._word(self.scene.lower(x)) == "zero" for x in load.components)
+            return EnergyLaw.CONSERVED if still else EnergyLaw.UNKNOWN
+        if not isinstance(load, (PointDamper, IsotropicDamper)):
+            return EnergyLaw.UNKNOWN
+        word = self._word(self.scene.lower(load.coefficient))
+        if word == "zero":
+            return EnergyLaw.CONSERVED
+        if {*self._running} & self._names_of(load):
+            return EnergyLaw.UNKNOWN
+        if word in ("positive", "nonnegative"):
+            return EnergyLaw.NOT_GROWING
+        return EnergyLaw.GROWS if word in ("negative", "nonpositive") else EnergyLaw.UNKNOWN
+
+    def _names_of(self, load: Load) -> set[str]:
+        """The names that a load's force can depend on: those of its formulas, and of the joints between its bodies.
+
+        A dashpot along a line knows only what moves its ends with respect to each other.
+        """
+        found = {name for x in expressions(load) for name in names(x)}
+        if isinstance(load, CoordinateDamper):
+            return found | {load.coordinate, velocity_name(load.coordinate)}
+        if isinstance(load, GeneralizedForce):
+            return found | {x for name, _ in load.components for x in (name, velocity_name(name))}
+        system = self.scene.system
+        bodies: list[str] = []
+        if isinstance(load, (PointDamper, IsotropicDamper)):
+            bodies = [load.first.body, load.second.body]
+        elif isinstance(load, PointForce):
+            bodies = [load.point.body, load.axes]
+        elif isinstance(load, Torque):
+            bodies = [load.body, load.axes, load.reaction_on or INERTIAL]
+        paths = [system.path(name) for name in bodies]
+        common: set[str] = {INERTIAL}
+        if isinstance(load, PointDamper):
+            common |= {*paths[0]} & {*paths[1]}
+        for body in {name for path in paths for name in path} - common:
+            part = system.body(body)
+            moved = {name for x in expressions((part.rotation, part.connection_point)) for name in names(x)}
+            found |= moved | {velocity_name(name) for name in moved & {*system.coordinates}}
+        return found
+
+
+def _together(laws: Sequence[EnergyLaw]) -> EnergyLaw:
+    """The law of a sum of powers."""
+    acting = {law for law in laws if law is not EnergyLaw.CONSERVED}
+    if not acting:
+        return EnergyLaw.CONSERVED
+    return acting.pop() if len(acting) == 1 else EnergyLaw.UNKNOWN
+
+
+# --- products ---
+
+
+@dataclass(frozen=True)
+class _Product:
+    """``number`` times powers of formulas."""
+
+    number: Fraction
+    powers: tuple[tuple[Expression, int], ...] = ()
+
+    def __mul__(self, other: _Product) -> _Product:
+        found: dict[Expression, int] = dict(self.powers)
+        for base, exponent in other.powers:
+            found[base] = found.get(base, 0) + exponent
+        return _Product(self.number * other.number, tuple((b, e) for b, e in found.items() if e))
+
+
+def _products(expression: Expression) -> list[_Product]:
+    """Sums multiplied out, powers kept: the expression as a sum of products.
+
+    Raises Failure where there are too many.
+    """
+    value = rational(expression)
+    if value is not None:
+        return [_Product(value)]
+    match expression:
+        case Negative(operand):
+            return [_Product(-one.number, one.powers) for one in _products(operand)]
+        case Operation("+", left, right):
+            found = [*_products(left), *_products(right)]
+        case Operation("-", left, right):
+            found = [*_products(left), *_products(Negative(right))]
+        case Operation("*", left, right):
+            firsts, seconds = _products(left), _products(right)
+            if len(firsts) * len(seconds) > MOST_PRODUCTS:
+                raise Failure("too many products")
+            found = [a * b for a, b in choices(firsts, seconds)]
+        case Operation("/", left, right):
+            bottom = rational(right)
+            below = _Product(1 / bottom) if bottom else _Product(Fraction(1), ((right, -1),))
+            found = [one * below for one in _products(left)]
+        case Operation("**", base, exponent) if (times := rational(exponent)) is not None and times.denominator == 1:
+            found = [_Product(Fraction(1), ((base, int(times)),))]
+        case _:
+            found = [_Product(Fraction(1), ((expression, 1),))]
+    if len(found) > MOST_PRODUCTS:
+        raise Failure("too many products")
+    return found
+
+
+_OPPOSITE = {
+    "positive": "negative",
+    "negative": "positive",
+    "nonnegative": "nonpositive",
+    "nonpositive": "nonnegative",
+}
+
+
+def _times(left: str, right: str) -> str:
+    """The sign of a product."""
+    if "zero" in (left, right):
+        return "zero"
+    if left not in _OPPOSITE or right not in _OPPOSITE:
+        return "unknown"
+    strict = left in ("positive", "negative") and right in ("positive", "negative")
+    same = (left in ("positive", "nonnegative")) == (right in ("positive", "nonnegative"))
+    if strict:
+        return "positive" if same else "negative"
+    return "nonnegative" if same else "nonpositive"
+
+
+# --- polynomials in the velocities ---
+
+
+def _by_velocities(ring: Ring, x: Polynomial, coordinates: Sequence[str]) -> dict[tuple[int, ...], Polynomial] | None:
+    """{exponents of the velocities: coefficient}; None where a velocity stands under a root or a function."""
+    indices = [ring.index("velocity", name) for name in coordinates]
+    used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
+    speeds = [velocity_name(name) for name in coordinates]
+    for k in used:
+        if k not in indices and ring.dependencies(ring.context.gen(k), speeds):
+            return None
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in x.terms():
+        exponents = list(map(int, monomial))
+        key = tuple(exponents[index] for index in indices)
+        for index in indices:
+            exponents[index] = 0
+        parts.setdefault(key, {})[tuple(exponents)] = coefficient
+    return {key: ring.context.from_dict(part) for key, part in parts.items()}
+
+
+@dataclass(frozen=True)
+class _Loss:
+    """-P as one polynomial: its parts by degree, or its quadratic part alone."""
+
+    balance: Balance
+    ring: Ring
+    coordinates: tuple[str, ...]
+    loss: Polynomial
+
+    @property
+    def law(self) -> EnergyLaw:
+        parts = _by_velocities(self.ring, self.loss, self.coordinates)
+        if parts is None:
+            return EnergyLaw.UNKNOWN
+        if not parts:
+            return EnergyLaw.CONSERVED
+        if min(map(sum, parts)) < 2:
+            return EnergyLaw.UNKNOWN
+        if self._even(parts) or self._definite(parts) or self._by_degree(parts):
+            return EnergyLaw.NOT_GROWING
+        return EnergyLaw.UNKNOWN
+
+    def _even(self, parts: Mapping[tuple[int, ...], Polynomial]) -> bool:
+        """Even powers only, with coefficients that are not negative."""
+        return all(
+            not any(exponent % 2 for exponent in key) and self.balance._word(x) in ("positive", "nonnegative", "zero")
+            for key, x in parts.items()
+        )
+
+    def _matrix(self, parts: Mapping[tuple[int, ...], Polynomial], at: Sequence[int]) -> list[list[Polynomial]]:
+        """The matrix D of the quadratic part u.D u, twice, in the velocities ``at``."""
+        rows = []
+        for i in at:
+            row = []
+            for j in at:
+                key = tuple((k == i) + (k == j) for k in range(len(self.coordinates)))
+                row.append(parts.get(key, self.ring.zero) * (2 if i == j else 1))
+            rows.append(row)
+        return rows
+
+    def _occurring(self, parts: Mapping[tuple[int, ...], Polynomial]) -> list[int]:
+        return [k for k in range(len(self.coordinates)) if any(key[k] for key in parts)]
+
+    def _definite(self, parts: Mapping[tuple[int, ...], Polynomial]) -> bool:
+        """Whether the quadratic part is positive definite on the motion in all velocities that occur.
+
+        Terms of higher order in q' are smaller near it.
+        """
+        balance, at = self.balance, self._occurring(parts)
+        if self.ring.dependencies(self.loss, balance._running):
+            return False  # how near depends on the time
+        here = []
+        for row in self._matrix(parts, at):
+            entries = [balance._on_motion(x) for x in row]
+            if any(x is None for x in entries):
+                return False
+            here.append(entries)
+        return all(balance.signs.sign(self.ring.reduce(minor)) == "positive" for minor in leading_minors(here))
+
+    def _by_degree(self, parts: Mapping[tuple[int, ...], Polynomial]) -> bool:
+        """Every part of one degree for itself: even powers, or a quadratic form that is nowhere negative."""
+        for degree in {sum(key) for key in parts}:
+            part = {key: x for key, x in parts.items() if sum(key) == degree}
+            if not self._even(part) and not (degree == 2 and self._semidefinite(part)):
+                return False
+        return True
+
+    def _semidefinite(self, parts: Mapping[tuple[int, ...], Polynomial]) -> bool:
+        """By completing squares: a pivot that is positive, the rest reduced by it (times the pivot), and so on."""
+        ring, signs = self.ring, self.balance.signs
+        rows = self._matrix(parts, self._occurring(parts))
+        while rows:
+            size = range(len(rows))
+            pivot = next((i for i in size if signs.sign(rows[i][i]) == "positive"), None)
+            if pivot is None:
+                return all(x.is_zero() for row in rows for x in row)
+            top, rest = rows[pivot], [i for i in size if i != pivot]
+            rows = [
+                [ring.reduce(ring.times(top[pivot], rows[i][j]) - ring.times(rows[i][pivot], top[j])) for j in rest]
+                for i in rest
+            ]
+        return True
+
+
+def balance(scene: Scene, energy: Energy | None, signs: Signs, somewhere: bool = False) -> Balance:
+    """What is known of the energy and of cyclic momenta (scene over the ring, with its bodies where it has them)."""
+    return Balance(scene, energy, signs, {}, somewhere)
