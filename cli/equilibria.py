@@ -131,6 +131,12 @@ def _show(system: System, found: Equilibria, file: Path, seconds: float) -> None
         where = "the coordinates are singular there: equilibria or not is undecided"
         out.print(Text(f"  {counted(len(found.singular), 'more solution', 'more solutions')}, {where}", style="bold"))
         out.print(_table(system, found.singular, judged=False))
+    if found.beyond:
+        lengths = ", ".join(f"{name} < 0" for name in dict.fromkeys(x for one in found.beyond for x in one.beyond))
+        count = counted(len(found.beyond), "more solution", "more solutions")
+        where = "with positive lengths the bodies would be at the same places, but other forces would act"
+        out.print(Text(f"  {count} with {lengths}, not counted: {where}", style="bold"))
+        out.print(_table(system, found.beyond, judged=False))
     for number, family in enumerate(found.families, 1):
         _show_family(number, family)
     _show_summary(found)
@@ -221,7 +227,7 @@ def _show_summary(found: Equilibria) -> None:
         out.print(Text(f"  {remark}", style="yellow"))
     if found.complete:
         how = "every one exact" if all(x.proof == "exact" for x in found.equilibria) else "every one proved"
-        but = " apart from these" if found.singular else ""
+        but = " apart from these" if found.singular or found.beyond else ""
         out.print(Text(f"  the list is complete{but} ({how})", style="green"))
     else:
         out.print(Text("  the list may be incomplete", style="bold yellow"))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
@@ -98,7 +99,11 @@ class Rest:
         return tuple(name for name in self.system.coordinates if name not in self.turning)
 
     def mass_matrix(self) -> list[list[Polynomial]]:
-        """M (n x n): Newton-Euler residuals at q' = 0 and unit accelerations, without loads."""
+        """M (n x n): Newton-Euler residuals at q' = 0 and unit accelerations, without loads; made once."""
+        return self._mass_matrix
+
+    @cached_property
+    def _mass_matrix(self) -> list[list[Polynomial]]:
         ring, system = self.ring, self.system
         coordinates = system.coordinates
         columns = []

@@ -42,6 +42,7 @@ from mbsym.algebra.polynomial_systems import (
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.charts import Chart, charts, moments
 from mbsym.mechanics.charts import features as direction_features
+from mbsym.mechanics.reflections import Reflection, reflections
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.rest_bounds import reach
@@ -99,6 +100,7 @@ class RelativeEquilibrium:
     ``proof``: exact (f vanishes in a number field), or proved in a box.  ``coordinates_of``: which joints have other
     angles than the description's, because those are singular here (empty: none).  ``free``: coordinates that do not
     occur in f, so that every value of them does.  ``described``: how many sets of coordinates mean this configuration.
+    ``beyond``: the negative lengths of polar coordinates, behind their singularity.
     """
 
     values: tuple[CoordinateValue, ...]
@@ -107,6 +109,7 @@ class RelativeEquilibrium:
     coordinates_of: str = ""
     free: tuple[str, ...] = ()
     described: int = 1
+    beyond: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,8 @@ class Equilibria:
     """``complete``: nothing is missing; otherwise ``remarks`` say what was not done, and why.
 
     ``singular`` are solutions of f = 0 at which the mass matrix, and with it the coordinates, are singular: whether
-    they are equilibria is undecided.
+    they are equilibria is undecided.  ``beyond`` are solutions in which a polar coordinate that is a length is negative
+    and the forces are not those at the same places of the bodies with a positive length: no states of the system meant.
     ``turning`` are the coordinates that turn at the description's rates, ``charts`` how many sets of angles were used.
     """
 
@@ -140,6 +144,7 @@ class Equilibria:
     turning: tuple[tuple[str, float], ...] = ()
     charts: int = 1
     singular: tuple[RelativeEquilibrium, ...] = ()
+    beyond: tuple[RelativeEquilibrium, ...] = ()
 
 
 def equilibria(
@@ -169,7 +174,8 @@ def equilibria(
     listed = [_described(group) for group in _groups(found)]
     listed.sort(key=lambda x: (_ORDER.get(x.verdict.word, 9), x.coordinates_of, _sort_key(x)))
     singular = tuple(x for x in listed if x.verdict.explanation == MASS_SINGULAR)
-    listed = [x for x in listed if x not in singular]
+    beyond = tuple(x for x in listed if x.beyond and x not in singular)
+    listed = [x for x in listed if x not in singular and x not in beyond]
     if singular or any(x.verdict.explanation == MASS_SINGULAR for x in families):
         remarks.append(
             "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
@@ -182,7 +188,14 @@ def equilibria(
         for name in first.turning
     )
     return Equilibria(
-        tuple(listed), tuple(families), complete, tuple(dict.fromkeys(remarks)), turning, len(covering), singular
+        tuple(listed),
+        tuple(families),
+        complete,
+        tuple(dict.fromkeys(remarks)),
+        turning,
+        len(covering),
+        singular,
+        beyond,
     )
 
 
@@ -236,6 +249,7 @@ class _Candidate:
     place: Place
     chart: _ChartSearch
     free: tuple[str, ...]
+    beyond: tuple[str, ...] = ()
 
 
 def _groups(found: Iterable[_Candidate]) -> list[list[_Candidate]]:
@@ -261,7 +275,9 @@ def _described(group: Sequence[_Candidate]) -> RelativeEquilibrium:
         group, key=lambda c: (c.chart.chart.label, sum(abs(x.value) for x in c.values), [-x.value for x in c.values])
     )
     judged = best.chart.verdict(best.place)
-    return RelativeEquilibrium(best.values, best.proof, judged, best.chart.chart.label, best.free, len(group))
+    return RelativeEquilibrium(
+        best.values, best.proof, judged, best.chart.chart.label, best.free, len(group), best.beyond
+    )
 
 
 # --- one chart -------------------------------------------------------------------------------------------------------
@@ -604,7 +620,18 @@ class _ChartSearch:
         self.points.append(self._candidate(place, proof))
 
     def _candidate(self, place: Place, proof: str) -> _Candidate:
-        return _Candidate(self._values(place), self._features(place), proof, place, self, self.free)
+        beyond = []
+        for reflection in self._reflections:
+            if place.balls[reflection.length] < 0 and reflection.same_forces:
+                place = place.reflected(reflection.length, reflection.angle)
+            elif place.balls[reflection.length] < 0:
+                beyond.append(reflection.length)
+        return _Candidate(self._values(place), self._features(place), proof, place, self, self.free, tuple(beyond))
+
+    @cached_property
+    def _reflections(self) -> tuple[Reflection, ...]:
+        """Polar coordinates; none for the search of a family's points."""
+        return reflections(self.found)
 
     def _values(self, place: Place) -> tuple[CoordinateValue, ...]:
         return tuple(self._value(place, name) for name in self.occurring)

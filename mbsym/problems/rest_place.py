@@ -41,6 +41,20 @@ class Place:
             exact[ring.index("cosine", name)] = fmpq_poly([(1 - t * t) / (1 + t * t)])
         return Place(self.found, balls, exact, self.modulus)
 
+    def reflected(self, length: str, angle: str) -> Place:
+        """The same place of all bodies at -r, theta + pi (``mechanics.reflections``)."""
+        ring = self.ring
+        exact = {k: value for k, value in self._exact.items() if ring.generators[k].argument is None}
+        balls = dict(self.balls)
+        for kind, name in (("coordinate", length), ("sine", angle), ("cosine", angle)):
+            if exact.get(ring.index(kind, name)) is not None:
+                exact[ring.index(kind, name)] = -exact[ring.index(kind, name)]
+        exact.pop(ring.index("coordinate", angle), None)
+        with ctx.workprec(PRECISION):
+            turn = arb.pi() if balls[angle] <= 0 else -arb.pi()
+            balls[length], balls[angle] = -balls[length], balls[angle] + turn
+        return Place(self.found, balls, exact, self.modulus)
+
     def ball(self, x: Polynomial) -> Any:
         """An enclosure; exactly 0 where the value is proved to vanish."""
         residue = self.residue(x)

@@ -22,6 +22,7 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
         "remarks": list(found.remarks),
         "equilibria": [_equilibrium(one) for one in found.equilibria],
         "singular": [_equilibrium(one) for one in found.singular],
+        "beyond": [_equilibrium(one) | {"negative": list(one.beyond)} for one in found.beyond],
         "families": [
             {
                 "dimension": family.dimension,
