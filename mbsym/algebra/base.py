@@ -32,7 +32,6 @@ class Algebra:
 
     zero: Scalar
     one: Scalar
-
     def number(self, value: Fraction | int) -> Scalar:
         raise NotImplementedError
 
@@ -43,6 +42,10 @@ class Algebra:
     def sin_cos_of(self, argument: Scalar) -> tuple[Scalar, Scalar]:
         """sin and cos of an argument that is no linear form in angles."""
         raise NotImplementedError
+
+    def adds_constant(self, angle: LinearForm) -> bool:
+        """Whether sin(theta + 3/10) is wanted in terms of the sines and cosines of theta and of 3/10."""
+        return False
 
     def reciprocal(self, x: Scalar) -> Scalar:
         raise NotImplementedError
@@ -186,16 +189,27 @@ class Lowering:
         return children(expression)
 
     def angle(self, expression: Expression) -> tuple[Scalar, Scalar]:
-        """(sin, cos) of an expression."""
+        """(sin, cos) of an expression; theta + 3/10 by the addition theorem where the algebra wants it so."""
         form = self._angle_form(expression)
-        return self.algebra.sin_cos_of(self(expression)) if form is None else self.algebra.sin_cos(form)
+        if form is not None:
+            return self.algebra.sin_cos(form)
+        algebra, whole = self.algebra, linear_form(expression)
+        if whole is None or not self._is_angle(whole) or not algebra.adds_constant(whole):
+            return algebra.sin_cos_of(self(expression))
+        s, c = algebra.sin_cos(LinearForm(whole.coefficients, whole.turns))
+        fixed = algebra.sin_cos_of(algebra.number(whole.constant))
+        sine = algebra.times(s, fixed[1]) + algebra.times(c, fixed[0])
+        return algebra.reduce(sine), algebra.reduce(algebra.times(c, fixed[1]) - algebra.times(s, fixed[0]))
 
     def _angle_form(self, expression: Expression) -> LinearForm | None:
         """None for an angle of its own: a number that is no multiple of pi, a rate, anything not linear."""
         form = linear_form(expression)
-        if form is None or form.constant or any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients):
-            return None
-        return form
+        return None if form is None or form.constant or not self._is_angle(form) else form
+
+    @staticmethod
+    def _is_angle(form: LinearForm) -> bool:
+        """No rates in it: the sine of a velocity is that of a plain value."""
+        return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
 
     def _value(self, expression: Expression) -> Scalar:
         algebra = self.algebra

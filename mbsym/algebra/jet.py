@@ -110,7 +110,7 @@ class Jets(Algebra):
 
     def sin_cos(self, angle: LinearForm) -> tuple[Jet, Jet]:
         base = LinearForm(turns=angle.turns)
-        elsewhere: list[tuple[str, Fraction]] = []
+        elsewhere: list[tuple[str, Fraction, Polynomial]] = []
         first: First = {}
         for name, coefficient in angle.coefficients:
             if name in self.deviations:
@@ -118,24 +118,35 @@ class Jets(Algebra):
             form: LinearForm | None = LinearForm(((name, Fraction(1)),))
             if name in self.motion:
                 form = linear_form(self.motion[name])
-            if form is None or form.constant:
-                elsewhere.append((name, coefficient))
-            else:
-                base = base + form.scaled(coefficient)
+            if form is None or (form.constant and not self.adds_constant(form.scaled(self._basic(name)))):
+                elsewhere.append((name, coefficient, self.values[name]))
+                continue
+            base = base + LinearForm(form.coefficients, form.turns).scaled(coefficient)
+            if form.constant:
+                elsewhere.append((name, coefficient, self.ring.number(form.constant)))
         sine, cosine = self.ring.sin_cos(base)
-        for name, coefficient in elsewhere:
-            s, c = self._at_rest_elsewhere(name, coefficient)
+        for name, coefficient, value in elsewhere:
+            s, c = self._at_rest_elsewhere(name, coefficient, value)
             sine, cosine = map(self.ring.reduce, self.ring.sum_of_angles(sine, cosine, s, c))
         return self._turned(sine, cosine, Jet(self.ring.zero, first))
 
-    def _at_rest_elsewhere(self, name: str, coefficient: Fraction) -> tuple[Polynomial, Polynomial]:
-        """sin and cos of coefficient * name where the unperturbed value is no linear form in angles (1/2, l*w).
+    def adds_constant(self, angle: LinearForm) -> bool:
+        return self.ring.adds_constant(angle)
+
+    def _basic(self, name: str) -> Fraction:
+        """1/denominator: the share of a name whose sine and cosine are generators."""
+        return Fraction(1, self.ring.angles.get(name, 1))
+
+    def _at_rest_elsewhere(
+        self, name: str, coefficient: Fraction, value: Polynomial
+    ) -> tuple[Polynomial, Polynomial]:
+        """sin and cos of coefficient * value, where the unperturbed value of a name (or what a constant adds to it) is
+        no linear form in angles (1/2, l*w).
 
         Like everywhere in the ring they are made of those of name / denominator, so that both routes meet.
         """
-        denominator = self.ring.angles.get(name, 1)
-        basic = self.ring.sin_cos_of(self.values[name] * self.ring.number(Fraction(1, denominator)))
-        return self.ring.multiple_angle(*basic, int(coefficient * denominator))
+        basic = self.ring.sin_cos_of(value * self.ring.number(self._basic(name)))
+        return self.ring.multiple_angle(*basic, int(coefficient / self._basic(name)))
 
     def sin_cos_of(self, argument: Jet) -> tuple[Jet, Jet]:
         return self._turned(*self.ring.sin_cos_of(argument.value), _small(argument))

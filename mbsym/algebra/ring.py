@@ -24,7 +24,7 @@ from fractions import Fraction
 from math import comb
 from typing import Any
 
-from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz
+from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz, fmpz_poly
 from flint.utils.flint_exceptions import DomainError
 
 from mbsym.algebra.base import Algebra
@@ -55,6 +55,12 @@ MOST_FACTORED = 20_000
 #: Integers under a root are factored: so many bits may remain when the small primes are out.
 MOST_BITS = 120
 _SMALL_PRIMES = 2_000
+#: sin and cos of 2*pi/7 and 3*pi/7 are made of those of pi/7; a higher multiple is a constant of its own.
+_MOST_OF_A_NAMED_ANGLE = 3
+#: cos(pi/n) obeys its minimal polynomial, of degree at most n - 1, up to this n.
+_MOST_RELATED = 24
+#: Working precision at which the signs of constants are read off.
+_CONSTANT_BITS = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +123,7 @@ class Ring(Algebra):
         self._nonnegative = self._positive | {
             self._index["parameter", name] for name in nonnegative if ("parameter", name) in self._index
         }
+        self._independent: set[int] = set()  # nested roots whose normal forms are unique
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
         self._derivatives: dict[str, dict[int, Polynomial]] = {}
         self.angles = dict(angles)
@@ -274,6 +281,11 @@ class Ring(Algebra):
             sine, cosine = self.sum_of_angles(sine, cosine, s, c)
         return self.reduce(sine), self.reduce(cosine)
 
+    def adds_constant(self, angle: LinearForm) -> bool:
+        """Where the sines and cosines of all its names were foreseen."""
+        multiples = [coefficient * self.angles.get(name, 0) for name, coefficient in angle.coefficients]
+        return bool(multiples) and all(multiple and multiple.denominator == 1 for multiple in multiples)
+
     def sum_of_angles(
         self, s: Polynomial, c: Polynomial, other_s: Polynomial, other_c: Polynomial
     ) -> tuple[Polynomial, Polynomial]:
@@ -293,7 +305,10 @@ class Ring(Algebra):
         return (-sine if n < 0 else sine), cosine
 
     def _constant_angle(self, turns: Fraction) -> tuple[Polynomial, Polynomial]:
-        """sin and cos of turns*pi, where they are made of square roots of 2 and 3."""
+        """sin and cos of turns*pi: made of square roots for pi/4, pi/5, pi/6, pi/8, pi/10, pi/12 and their multiples.
+
+        Other fractions of pi are named constants: sin(pi/7) and cos(pi/7), related by s^2 + c^2 = 1.
+        """
         turns = turns % 2
         if turns >= 1:
             s, c = self._constant_angle(turns - 1)
@@ -301,27 +316,92 @@ class Ring(Algebra):
         if turns > Fraction(1, 2):
             s, c = self._constant_angle(1 - turns)
             return s, -c
-        if turns > Fraction(1, 4):
-            s, c = self._constant_angle(Fraction(1, 2) - turns)
-            return c, s
-        half = self.number(Fraction(1, 2))
         if turns == 0:
             return self.zero, self.one
-        if turns == Fraction(1, 4):
-            return (half * self.square_root(self.number(2)),) * 2
-        if turns == Fraction(1, 6):
-            return half, half * self.square_root(self.number(3))
-        raise NoClosedForm(f"sin and cos of {_size(turns)}*pi: only multiples of pi/4 and pi/6 are supported")
+        made = {4: self._eighth_turn, 5: self._tenth_turn, 6: self._twelfth_turn, 8: self._sixteenth_turn}
+        made |= {10: self._twentieth_turn, 12: self._twenty_fourth_turn}
+        if turns.denominator in (1, 2, 3, *made):
+            if turns > Fraction(1, 4):
+                s, c = self._constant_angle(Fraction(1, 2) - turns)
+                return c, s
+            return made[turns.denominator]()  # up to pi/4 their numerators are 1
+        several = turns.numerator if turns.numerator <= _MOST_OF_A_NAMED_ANGLE else 1
+        step = turns / several
+        angle = self.generator("parameter", "pi") * fmpq(step.numerator, step.denominator)
+        known = self._adjoined("sine", angle) is not None
+        s, c = self.sin_cos_of(angle)
+        if not known and step.numerator == 1:
+            self._relate_cosine(c, step.denominator)
+        return self.multiple_angle(s, c, several)
+
+    def _relate_cosine(self, c: Polynomial, n: int) -> None:
+        """The minimal polynomial of 2 cos(pi/n), where it is short: 8 c^3 - 4 c^2 - 4 c + 1 = 0 for n = 7."""
+        if n > _MOST_RELATED:
+            return
+        minimal, relation = fmpz_poly.cos_minpoly(2 * n), self.zero
+        for exponent, coefficient in enumerate(minimal.coeffs()):
+            relation = relation + (2 * c) ** exponent * fmpq(coefficient)
+        index = next(k for k, degree in enumerate(c.degrees()) if degree > 0)
+        self._relate(((index, minimal.degree()),), relation)
+
+    def _eighth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/4: sin = cos = sqrt(2)/2."""
+        return (self.square_root(self.number(2)) * fmpq(1, 2),) * 2
+
+    def _twelfth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/6: sin = 1/2, cos = sqrt(3)/2."""
+        return self.number(Fraction(1, 2)), self.square_root(self.number(3)) * fmpq(1, 2)
+
+    def _twenty_fourth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/12: sin = (sqrt(6) - sqrt(2))/4, cos = (sqrt(6) + sqrt(2))/4."""
+        two, three = self.square_root(self.number(2)), self.square_root(self.number(3))
+        six = self.times(two, three)
+        return (six - two) * fmpq(1, 4), (six + two) * fmpq(1, 4)
+
+    def _sixteenth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/8: cos = sqrt(2 + sqrt(2))/2, sin = (sqrt(2) - 1) cos."""
+        two = self.square_root(self.number(2))
+        cosine = self._cyclic_root(two + 2) * fmpq(1, 2)
+        return self.times(two - 1, cosine), cosine
+
+    def _tenth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/5: sin = sqrt(10 - 2 sqrt(5))/4, cos = (1 + sqrt(5))/4."""
+        five = self.square_root(self.number(5))
+        return self._cyclic_root(10 - 2 * five) * fmpq(1, 4), (five + 1) * fmpq(1, 4)
+
+    def _twentieth_turn(self) -> tuple[Polynomial, Polynomial]:
+        """pi/10: sin = (sqrt(5) - 1)/4, cos = sqrt(10 + 2 sqrt(5))/4 = sqrt(10 - 2 sqrt(5)) (1 + sqrt(5))/8."""
+        five = self.square_root(self.number(5))
+        return (five - 1) * fmpq(1, 4), self.times(self._cyclic_root(10 - 2 * five), five + 1) * fmpq(1, 8)
+
+    def _cyclic_root(self, radicand: Polynomial) -> Polynomial:
+        """sqrt(2 + sqrt(2)) or sqrt(10 - 2 sqrt(5)), whose independence of all other square roots is known.
+
+        Each generates a field that is cyclic of degree 4 over the rationals and has one quadratic subfield, with
+        sqrt(2) or sqrt(5).  So the two are disjoint, and with roots of primes they have in common only sqrt(2) and
+        sqrt(5) (nothing else of a group Z4 x Z4 is elementary): a normal form in all of them vanishes only as zero.
+        """
+        root = self._root(radicand)
+        index = next(k for k, degree in enumerate(root.degrees()) if degree > 0)
+        self._independent.add(index)
+        self._positive.add(index)
+        return root
 
     def sin_cos_of(self, argument: Polynomial) -> tuple[Polynomial, Polynomial]:
-        """An angle of its own, such as ``Omega*t``: two adjoined generators with the chain rule."""
+        """An angle of its own, such as ``Omega*t`` or ``7/10``: two adjoined generators with the chain rule."""
         if argument.is_zero():
             return self.zero, self.one
+        constant = self.constant_value(argument)
+        if constant is not None and constant < 0:
+            s, c = self.sin_cos_of(-argument)
+            return -s, c
         index = self._adjoined("sine", argument)
         if index is None:
             c = self._adjoin("cosine", argument)
             index = s = self._adjoin("sine", argument)  # adjoined later, so that it leads s^2 + c^2 - 1
             self._relate(((s, 2),), self._gens[s] ** 2 + self._gens[c] ** 2 - 1)
+            if constant is not None:
+                self._positive |= {k for k in (s, c) if self.constant_value(self._gens[k]) > 0}
             for name in self._derivatives:
                 inner = self.derivative(argument, name)
                 if not inner.is_zero():
@@ -330,6 +410,14 @@ class Ring(Algebra):
                         c: -self.times(self._gens[s], inner),
                     }
         return self._gens[index], self._gens[index + 1]
+
+    def constant_value(self, x: Polynomial) -> arb | None:
+        """An enclosure of what is a number (made of numbers, pi, and roots, sines ... of such), or None."""
+        try:
+            with ctx.workprec(_CONSTANT_BITS):
+                return self.evaluate(x, {})
+        except KeyError:  # it has a name without a value: it is no constant
+            return None
 
     # --- adjoined elements -------------------------------------------------------------------------------------------
 
@@ -621,7 +709,8 @@ class Ring(Algebra):
     def is_zero(self, x: Polynomial) -> bool | None:
         """True (proved zero), False (proved different from zero), or None where this ring cannot decide.
 
-        Sines, cosines, reciprocals and roots of primes are decided algebraically.  Behind other adjoined elements
+        Sines, cosines, reciprocals and roots of primes (and of 2 + sqrt(2), 10 - 2 sqrt(5)) are decided algebraically.
+        Behind other adjoined elements, sines of constants among them,
         (sqrt((1 + cos x)^2), log(exp x), sin(x + 1)) a nonzero normal form may hide a zero: there only balls at random
         points prove "nonzero".
         """
@@ -629,8 +718,8 @@ class Ring(Algebra):
         if numerator.is_zero():
             return True
         degrees = numerator.degrees()
-        adjoined = [g for k, g in enumerate(self.generators[: self.spare]) if degrees[k] > 0]
-        if all(g.kind == "root" and g.argument.is_constant() for g in adjoined):
+        adjoined = [(k, g) for k, g in enumerate(self.generators[: self.spare]) if degrees[k] > 0]
+        if all(k in self._independent or (g.kind == "root" and g.argument.is_constant()) for k, g in adjoined):
             return False
         return False if self._nonzero_at_random(numerator) else None
 
@@ -677,7 +766,7 @@ class ParameterRing(Ring):
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self._positive = {self.indices.index(k) for k in whole._positive if k in self.indices}
         self._nonnegative = {self.indices.index(k) for k in whole._nonnegative if k in self.indices}
-        self._relations, self._derivatives, self.angles = [], {}, {}
+        self._relations, self._derivatives, self.angles, self._independent = [], {}, {}, set()
 
     def project(self, x: Polynomial) -> Polynomial:
         """A polynomial of the whole ring in these parameters only."""

@@ -4,10 +4,11 @@ A sign is a set of possibilities, a subset of {-1, 0, 1}; the words are names of
 
     positive {1}   nonnegative {0, 1}   nonzero {-1, 1}   nonpositive {-1, 0}   negative {-1}   unknown {-1, 0, 1}
 
-Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric.
-So an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
+Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric but
+rigorous enclosures of numbers.  So an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
 that satisfy the assumptions show that nothing stronger can be proved.  The evidence, from cheap to dear:
 
+* **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
 * **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
 * **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
 * **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A;
@@ -22,13 +23,13 @@ Polynomials are ``fmpq_mpoly`` of python-flint over the rationals in the generat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from random import Random
 from typing import Any
 
-from flint import fmpq
+from flint import arb, ctx, fmpq
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
@@ -62,6 +63,8 @@ MOST_TERMS = 120
 MOST_FACTORED = 4000
 #: Sample points, and attempts to find them.
 WITNESSES, ATTEMPTS = 24, 200
+#: Working precision of enclosures of numbers.
+_NUMBER_BITS = 256
 #: Where they are sought between the bounds; signs change near the ends rather than in the middle.
 SHARES = tuple(fmpq(k, 64) for k in (1, 2, 8, 20, 32, 44, 56, 62, 63))
 #: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
@@ -124,13 +127,16 @@ class Signs:
     Words: positive, nonnegative, negative, nonpositive, nonzero, real.  Relations: ``>``, ``>=``, ``!=``.
     Raises ``ValueError`` for anything else, ``ContradictionError`` (a ValueError) when no parameters are possible as
     far as that is noticed.  ``normal`` brings polynomials to normal form where generators obey relations
-    (sqrt(2)^2 = 2): without it "sqrt(2)^2 - 2 > 0" would look like a condition.
+    (sqrt(2)^2 = 2): without it "sqrt(2)^2 - 2 > 0" would look like a condition.  ``numbers`` are the enclosures of those
+    generators that are constants.
     """
 
     context: Any
     words: tuple[str, ...]
     assumptions: tuple[tuple[Polynomial, str], ...] = ()
     normal: Callable[[Polynomial], Polynomial] | None = None
+    #: Enclosures of the generators that are numbers (sqrt(2), sin(3/10)), by index.
+    numbers: Mapping[int, arb] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if len(self.words) != self.context.nvars():
@@ -200,7 +206,7 @@ class Signs:
 
     def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
         """The same knowledge with further assumptions."""
-        return Signs(self.context, self.words, (*self.assumptions, *more), self.normal)
+        return Signs(self.context, self.words, (*self.assumptions, *more), self.normal, self.numbers)
 
     def _decided(self, answer: bool, nonzero: tuple[Polynomial, ...] = ()) -> Condition:
         one = self.context.constant(1)
@@ -260,6 +266,9 @@ class Signs:
         return {}
 
     def _irreducible(self, p: Polynomial, after: int) -> SignSet:
+        number = self._by_value(p)
+        if number is not None:
+            return number
         if len(p) > MOST_TERMS:
             return self._by_terms(p)
         key = str(p), after
@@ -267,6 +276,21 @@ class Signs:
             small, q = self._restricted(p) if after < 0 else (self, p)
             self._answers[key] = small._search(q, after)
         return self._answers[key]
+
+    def _by_value(self, p: Polynomial) -> SignSet | None:
+        """The sign of a number, where its enclosure excludes zero; None for what has parameters or may be zero."""
+        used = [k for k, degree in enumerate(p.degrees()) if degree > 0] if self.numbers else []
+        if not used or not all(k in self.numbers for k in used):
+            return None
+        with ctx.workprec(_NUMBER_BITS):
+            total = arb(0)
+            for exponents, coefficient in p.terms():
+                term = arb(coefficient)
+                for k in used:
+                    for _ in range(int(exponents[k])):
+                        term = term * self.numbers[k]
+                total = total + term
+            return None if total.contains(0) or not total.is_finite() else frozenset({1 if total > 0 else -1})
 
     @cached_property
     def _restrictions(self) -> dict[tuple[int, ...], Signs]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
+from fractions import Fraction
 from math import lcm
 from typing import Any
 
@@ -33,6 +34,9 @@ from mbsym.expressions.tree import (
     walk,
 )
 from mbsym.model.system import EXACT, NewtonianGravity, System, acceleration_name, velocity_name
+
+#: The sines and cosines of so many constant angles have places in the ring.
+MOST_CONSTANT_ANGLES = 256
 
 _NODES = (Number, Name, Negative, Operation, Call)
 
@@ -141,7 +145,7 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
 
     def note(argument: Expression) -> None:
         form = linear_form(argument)
-        if form is None or form.constant:
+        if form is None:
             return
         for name, coefficient in form.coefficients:
             found[name] = lcm(found.get(name, 1), coefficient.denominator)
@@ -150,17 +154,31 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
                 for other, factor in inner.coefficients if inner is not None else ():
                     found[other] = lcm(found.get(other, 1), (factor * coefficient).denominator)
 
-    for body in system.bodies:
-        for _, angle in body.rotation.turns():
-            note(angle)
-    for expression in expressions(system):
-        for node in walk(expression):
-            if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
-                note(node.argument)
-    for argument in arguments:
+    for argument in (*_angles(system), *arguments):
         note(argument)
     declared = [*system.coordinates, *(item.name for item in system.prescribed), *system.parameter_names, "t"]
     return {name: found[name] for name in declared if name in found}
+
+
+def _angles(system: System) -> Iterator[Expression]:
+    """Every angle of a joint, and every argument of a sine, cosine or tangent."""
+    for body in system.bodies:
+        for _, angle in body.rotation.turns():
+            yield angle
+    for expression in expressions(system):
+        for node in walk(expression):
+            if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
+                yield node.argument
+
+
+def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set[tuple[Fraction, Fraction]]:
+    """The different constants (turns, radians), turns*pi + radians, that the angles of a system contain.
+
+    Those that an unperturbed motion brings are among them.
+    """
+    values = (entry.value for entry in system.motion)
+    forms = (linear_form(x) for x in (*_angles(system), *arguments, *values))
+    return {(form.turns % 2, form.constant) for form in forms if form is not None and (form.turns or form.constant)}
 
 
 def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expression] = ()) -> Ring:
@@ -183,7 +201,7 @@ def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expres
         angle_denominators(system, arguments),
         positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
         nonnegative=[parameter.name for parameter in system.parameters if parameter.sign == "nonnegative"],
-        spare=min(adjunctions, 64),
+        spare=min(adjunctions, 64) + 2 * min(len(constant_angles(system, arguments)), MOST_CONSTANT_ANGLES),
         terms=terms,
     )
 

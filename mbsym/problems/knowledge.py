@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
+from flint import arb
+
 from mbsym.algebra.failures import Failure, SingularPoint
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
@@ -28,7 +30,11 @@ def signs(scene: Scene) -> Signs:
     for index, g in enumerate(ring.generators):
         if g.kind == "root":
             words[index] = "positive" if g.argument.is_constant() else "nonnegative"
-    known = _with_reciprocals(scene, Signs(ring.context, tuple(words)))
+    numbers = _numbers(ring)
+    for index, value in numbers.items():
+        if value > 0 or value < 0:
+            words[index] = "positive" if value > 0 else "negative"
+    known = _with_reciprocals(scene, Signs(ring.context, tuple(words), numbers=numbers))
     words = list(known.words)
     definitions = _definitions(scene)
     for item in scene.system.notation:
@@ -42,9 +48,16 @@ def signs(scene: Scene) -> Signs:
         word = Signs(ring.context, tuple(words)).sign(definition)
         if word not in ("unknown", "zero"):
             words[ring.index("parameter", item.name)] = word
-    plain = Signs(ring.context, tuple(words))
-    told = Signs(ring.context, tuple(words), _assumptions(scene, plain))
+    plain = Signs(ring.context, tuple(words), numbers=numbers)
+    told = Signs(ring.context, tuple(words), _assumptions(scene, plain), numbers=numbers)
     return _with_reciprocals(scene, told.assuming(_bounds(scene, told)))
+
+
+def _numbers(ring: Ring) -> dict[int, arb]:
+    """Enclosures of the adjoined generators that are numbers, such as sqrt(2), sin(3/10) and 1/sin(3/10)."""
+    adjoined = [k for k, g in enumerate(ring.generators[: ring.spare]) if g.argument is not None]
+    values = {k: ring.constant_value(ring.context.gen(k)) for k in adjoined}
+    return {k: value for k, value in values.items() if value is not None}
 
 
 def _bounds(scene: Scene, told: Signs) -> list[tuple[Polynomial, str]]:
@@ -68,7 +81,7 @@ def _with_reciprocals(scene: Scene, known: Signs) -> Signs:
             words[index] = {"nonnegative": "positive", "nonpositive": "negative"}.get(word, word)
             if words[index] in ("unknown", "zero"):
                 words[index] = "nonzero"
-    return Signs(known.context, tuple(words), known.assumptions)
+    return Signs(known.context, tuple(words), known.assumptions, known.normal, known.numbers)
 
 
 def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ...]:

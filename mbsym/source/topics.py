@@ -81,7 +81,9 @@ Formulas in a description
     accelerations x_ddot: in claims of equations of motion and of values
     time          t: in loads and claims
 
-Angles are in radians (30 degrees are pi/6).  There are no units: take all numbers in one consistent system of them.
+Angles are in radians (30 degrees are pi/6); any number may be an angle, and fractions of pi and decimals stay exact:
+sin(pi/12) is made of roots, sin(pi/7) and sin(0.7853) are constants of their own.  There are no units: take all
+numbers in one consistent system of them.
 2*x, not 2x."""
 
 #: Claims as they stand in a description.
