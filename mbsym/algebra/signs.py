@@ -5,7 +5,8 @@ A sign is a set of possibilities, a subset of {-1, 0, 1}; the words are names of
     positive {1}   nonnegative {0, 1}   nonzero {-1, 1}   nonpositive {-1, 0}   negative {-1}   unknown {-1, 0, 1}
 
 Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric but
-rigorous enclosures of numbers.  So an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
+rigorous enclosures of numbers.  So
+an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
 that satisfy the assumptions show that nothing stronger can be proved.  The evidence, from cheap to dear:
 
 * **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
@@ -127,8 +128,8 @@ class Signs:
     Words: positive, nonnegative, negative, nonpositive, nonzero, real.  Relations: ``>``, ``>=``, ``!=``.
     Raises ``ValueError`` for anything else, ``ContradictionError`` (a ValueError) when no parameters are possible as
     far as that is noticed.  ``normal`` brings polynomials to normal form where generators obey relations
-    (sqrt(2)^2 = 2): without it "sqrt(2)^2 - 2 > 0" would look like a condition.  ``numbers`` are the enclosures of those
-    generators that are constants.
+    (sqrt(2)^2 = 2): without it "sqrt(2)^2 - 2 > 0" would look like a condition.  ``numbers`` are the enclosures of
+    those generators that are constants.
     """
 
     context: Any
