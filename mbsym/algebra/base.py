@@ -32,6 +32,7 @@ class Algebra:
 
     zero: Scalar
     one: Scalar
+
     def number(self, value: Fraction | int) -> Scalar:
         raise NotImplementedError
 

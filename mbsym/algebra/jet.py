@@ -137,9 +137,7 @@ class Jets(Algebra):
         """1/denominator: the share of a name whose sine and cosine are generators."""
         return Fraction(1, self.ring.angles.get(name, 1))
 
-    def _at_rest_elsewhere(
-        self, name: str, coefficient: Fraction, value: Polynomial
-    ) -> tuple[Polynomial, Polynomial]:
+    def _at_rest_elsewhere(self, name: str, coefficient: Fraction, value: Polynomial) -> tuple[Polynomial, Polynomial]:
         """sin and cos of coefficient * value, where the unperturbed value of a name (or what a constant adds to it) is
         no linear form in angles (1/2, l*w).
 

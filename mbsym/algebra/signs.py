@@ -5,9 +5,9 @@ A sign is a set of possibilities, a subset of {-1, 0, 1}; the words are names of
     positive {1}   nonnegative {0, 1}   nonzero {-1, 1}   nonpositive {-1, 0}   negative {-1}   unknown {-1, 0, 1}
 
 Signs multiply and add as sets, every piece of evidence is intersected with the others, and no evidence is numeric but
-rigorous enclosures of numbers.  So
-an answer may be weaker than the truth (``unknown``), never wrong.  The search stops early where exact sample points
-that satisfy the assumptions show that nothing stronger can be proved.  The evidence, from cheap to dear:
+rigorous enclosures of numbers.  So an answer may be weaker than the truth (``unknown``), never wrong.  The search stops
+early where exact sample points that satisfy the assumptions show that nothing stronger can be proved.  The evidence,
+from cheap to dear:
 
 * **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
 * **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
