@@ -401,7 +401,8 @@ class Ring(Algebra):
             index = s = self._adjoin("sine", argument)  # adjoined later, so that it leads s^2 + c^2 - 1
             self._relate(((s, 2),), self._gens[s] ** 2 + self._gens[c] ** 2 - 1)
             if constant is not None:
-                self._positive |= {k for k in (s, c) if self.constant_value(self._gens[k]) > 0}
+                with ctx.workprec(_CONSTANT_BITS):
+                    self._positive |= {k for k, x in ((s, constant.sin()), (c, constant.cos())) if x > 0}
             for name in self._derivatives:
                 inner = self.derivative(argument, name)
                 if not inner.is_zero():
