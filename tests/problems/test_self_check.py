@@ -471,9 +471,17 @@ CAUGHT = [
     ),
     Mistake(
         "a dashpot between points that pushes",
-        "mechanics.loads.springs:_point_damper_action",
+        "mechanics.loads.springs:_closing",
         "subtract(speeds[1], speeds[0])",
         "subtract(speeds[0], speeds[1])",
+        "machine",
+        DYNAMICS,
+    ),
+    Mistake(
+        "a damper between points that does not act along their line",
+        "mechanics.loads.springs:_point_damper_action",
+        "algebra.scale(algebra.reduce(algebra.times(coefficient, rate)), pair.span)",
+        "algebra.scale(coefficient, closing)",
         "machine",
         DYNAMICS,
     ),
