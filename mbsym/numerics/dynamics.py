@@ -1,9 +1,10 @@
 """One scenario as codes ready to compile: right-hand side, energy, Jacobian, momenta.
 
     x = (q, q'),    x' = rhs(t, x) = (q', M^-1 f)
-    energy   h = q'.dL/dq' - L         conserved where L does not depend on t and all forces have a force function
+    energy               T - U
+    generalised energy   h = q'.dL/dq' - L = T2 - T0 - U    conserved where L does not depend on t and no other force works
 
-For a scleronomic system h = T - U.  All codes take (t, q, q') and come from one specialised program.
+Where nothing is prescribed (T0 = 0) the two are one.  All codes take (t, q, q') and come from one specialised program.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mbsym.algebra.increment import Increment, Increments
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
+from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import Programs, coasting_scene, programs
@@ -105,14 +107,52 @@ class Dynamics:
         return self._code(list(gradient(self._specialised, kinetic + force, positions)))
 
     @cached_property
-    def energy(self) -> Code:
-        """(t, q, q') -> (h, T): h = q'.dL/dq' - L and the kinetic energy, against which its drift is measured."""
-        fresh = self._specialised
+    def relative_energy(self) -> Code:
+        """(t, q, q') -> (h, T) of the Lagrangian relative to the frames that fall: how h changes, in all digits.
+
+        From T2 - T0 - U it differs by what is constant wherever that is, and by the large terms that cancel.
+        """
         kinetic, force = self._lagrangian
-        total = -(kinetic + force)
-        for name, momentum in zip(self.system.velocities, self.momenta.outputs, strict=True):
+        return self._code([self._jacobi(kinetic + force, self.momenta.outputs), kinetic], thorough=True)
+
+    @cached_property
+    def energies(self) -> Code:
+        """(t, q, q') -> (T - U, T2 - T0 - U), T of the motion in inertial space."""
+        found, fresh = self._programs, self._specialised
+        wanted = [found.energy, found.kinetic_energy, found.force_function]
+        energy, kinetic, force = substituted(found.program, wanted, fresh)
+        lagrangian = kinetic + force
+        momenta = gradient(fresh, lagrangian, [fresh.input(name) for name in self.system.velocities])
+        return self._code([energy, self._jacobi(lagrangian, momenta)])
+
+    @cached_property
+    def natural(self) -> bool:
+        """Whether T - U and T2 - T0 - U are one: T vanishes at rest, as it does where nothing is prescribed."""
+        still = bound(self.scenario)
+        still.bound |= {name: still.zero for name in self.system.velocities}
+        (kinetic,) = substituted(self._programs.program, [self._programs.kinetic_energy], still)
+        return still.vanishes(kinetic)
+
+    @cached_property
+    def energy_rate(self) -> EnergyRate:
+        """dh/dt before numbers are put in."""
+        return energy_rate(self.system, self.ring)
+
+    @cached_property
+    def energy_power(self) -> Code:
+        """(t, q, q') -> the terms of dh/dt that do not vanish at these numbers, h = T2 - T0 - U."""
+        terms = substituted(self.energy_rate.program, self.energy_rate.terms, self._specialised)
+        return Code(
+            self._specialised, self.inputs, tuple(term for term in terms if not self._specialised.vanishes(term))
+        )
+
+    def _jacobi(self, lagrangian: Node, momenta: Sequence[Node]) -> Node:
+        """q'.p - L."""
+        fresh = self._specialised
+        total = -lagrangian
+        for name, momentum in zip(self.system.velocities, momenta, strict=True):
             total = total + fresh.product(fresh.input(name), momentum)
-        return self._code([total, kinetic], thorough=True)
+        return total
 
     def energy_change(self, reference: Sequence[Fraction]) -> Code:
         """(t, q, q') -> h(t, q, q') - h(0, reference), where ``reference`` holds exact numbers (q, q').
@@ -125,5 +165,5 @@ class Dynamics:
         for name, value in zip(self.inputs, start, strict=True):
             base = fresh.number(value)
             pairs[name] = Increment(fresh, base, fresh.difference(fresh.input(name), base))
-        found = fresh.evaluate(self.energy.outputs[:1], pairs, Increments(fresh, pairs))
+        found = fresh.evaluate(self.relative_energy.outputs[:1], pairs, Increments(fresh, pairs))
         return self._code([found[0].change], thorough=True)

@@ -39,8 +39,10 @@ SINGULAR_AT_ONCE = 1e-24
 class Trajectory:
     """States at ``times`` (m of them): ``states`` has shape (2n, m), rows in the order (q, q').
 
-    ``energy`` is h = q'.dL/dq' - L and ``kinetic`` the kinetic energy, each of shape (m,).  ``breakdown`` says why the
-    trajectory ends before the last time asked for; ``interrupted`` that the user stopped it.
+    ``energy`` is T - U, ``generalized_energy`` h = T2 - T0 - U (one and the same where nothing is prescribed),
+    ``change`` h(t) - h(0) in all its digits, and ``kinetic`` the kinetic energy that it is measured by, each of shape
+    (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
+    stopped it.
     """
 
     system: System
@@ -49,6 +51,8 @@ class Trajectory:
     times: Any
     states: Any
     energy: Any
+    generalized_energy: Any
+    change: Any
     kinetic: Any
     work: Work
     seconds: float
@@ -56,14 +60,35 @@ class Trajectory:
     interrupted: bool = False
 
     @property
+    def energy_scale(self) -> float:
+        """What changes of energy are measured by: the largest kinetic energy; |h(0)| where nothing moves, else 1."""
+        return float(np.max(np.abs(self.kinetic), initial=0.0) or abs(self.generalized_energy[0]) or 1.0)
+
+    @property
     def drift(self) -> Any:
-        """(h - h(0)) / scale, with the largest kinetic energy (or |h(0)|, if it is larger than 0) as the scale."""
-        scale = np.max(np.abs(self.kinetic), initial=0.0) or abs(self.energy[0]) or 1.0
-        return (self.energy - self.energy[0]) / scale
+        """(h - h(0)) / ``energy_scale``."""
+        return self.change / self.energy_scale
 
     @property
     def whole(self) -> bool:
         """Whether it reaches the last time asked for."""
+        return self.breakdown is None and not self.interrupted
+
+
+@dataclass(frozen=True)
+class Integrated:
+    """States (2n, m) at ``times``, what they cost, and why they end early, if they do."""
+
+    times: Any
+    states: Any
+    work: Work
+    seconds: float
+    breakdown: Breakdown | None
+    interrupted: bool
+
+    @property
+    def whole(self) -> bool:
+        """Whether they reach the last time asked for."""
         return self.breakdown is None and not self.interrupted
 
 
@@ -75,11 +100,39 @@ def simulate(
     scalar: str = "float64",
     watch: Callable[[float], None] = lambda t: None,
 ) -> Trajectory:
-    """x(t) for t in ``times`` (increasing, the first is 0) by a method; ``watch`` is told the time reached.
+    """x(t) for t in ``times`` (increasing, the first is 0) by a method, with its energies.
 
-    Never raises Breakdown or KeyboardInterrupt: both end the trajectory early.  Raises Unusable where the method does
-    not apply to the system.
+    ``watch`` is told the time reached.  Never raises Breakdown or KeyboardInterrupt: both end the trajectory early.
+    Raises Unusable where the method does not apply to the system.
     """
+    run = integrated(dynamics, method, setting, times, scalar, watch)
+    energy, generalized, change, kinetic = _energies(dynamics, np.vstack([run.times, run.states]), scalar)
+    return Trajectory(
+        system=dynamics.system,
+        method=method.traits.name,
+        setting=setting,
+        times=run.times,
+        states=run.states,
+        energy=energy,
+        generalized_energy=generalized,
+        change=change,
+        kinetic=kinetic,
+        work=run.work,
+        seconds=run.seconds,
+        breakdown=run.breakdown,
+        interrupted=run.interrupted,
+    )
+
+
+def integrated(
+    dynamics: Dynamics,
+    method: Method,
+    setting: Setting,
+    times: Sequence[float],
+    scalar: str = "float64",
+    watch: Callable[[float], None] = lambda t: None,
+) -> Integrated:
+    """The states alone; see ``simulate``."""
     work = Work()
     initial = np.array([float(x) for x in dynamics.scenario.state])
     breakdown, interrupted = _at_once(dynamics, initial), False
@@ -96,7 +149,8 @@ def simulate(
             for t in times[1:]:
                 state = run.advance(float(t))
                 if not np.all(np.abs(state) < LARGEST):
-                    message = "a coordinate or velocity has left every bound"
+                    bad = "is not a number" if np.any(np.isnan(state)) else "has left every bound"
+                    message = f"a coordinate or velocity {bad}"
                     raise Breakdown(BLOW_UP, message, float(t), np.array(state, dtype=float))
                 states[reached] = state
                 reached += 1
@@ -113,20 +167,23 @@ def simulate(
         states[reached], kept = breakdown.state, np.append(kept, breakdown.time)
         reached += 1
     matrix = np.ascontiguousarray(states[:reached].T)
-    energy = compiled_kernel(dynamics, "energy", EXTENDED if scalar == EXTENDED else FLOAT64)(np.vstack([kept, matrix]))
-    return Trajectory(
-        system=dynamics.system,
-        method=method.traits.name,
-        setting=setting,
-        times=kept,
-        states=matrix,
-        energy=energy[0],
-        kinetic=energy[1],
-        work=replace(work),
-        seconds=seconds,
-        breakdown=breakdown,
-        interrupted=interrupted,
-    )
+    return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted)
+
+
+def _energies(dynamics: Dynamics, points: Any, scalar: str) -> tuple[Any, Any, Any, Any]:
+    """(T - U, h, h - h(0), T) at points (t, q, q') in columns."""
+    kind = EXTENDED if scalar == EXTENDED else FLOAT64
+    with np.errstate(all="ignore"):
+        relative, kinetic = compiled_kernel(dynamics, "relative_energy", kind)(points)
+        change = relative - relative[0]
+        if dynamics.natural:
+            return relative, relative, change, kinetic
+        energy, generalized = compiled_kernel(dynamics, "energies", kind)(points)
+        plain = generalized - generalized[0]
+        # Relative to a frame that falls h may differ by a function of time; where it does, the plain difference counts.
+        rounding = 1e3 * np.finfo(float).eps * np.max(np.abs(np.vstack([energy, generalized, kinetic])), initial=0.0)
+        alike = np.abs(plain - change) <= 1e-6 * np.max(np.abs(kinetic), initial=0.0) + rounding
+    return energy, generalized, change if np.all(alike) else plain, kinetic
 
 
 def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:

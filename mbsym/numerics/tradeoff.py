@@ -142,7 +142,7 @@ class _Judge:
         self.reference = reference
         size = np.max(np.abs(reference.states), axis=1)
         self.scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
-        self.energy = kernels({"energy": dynamics.energy})["energy"]
+        self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
         self.spent = 0.0
 
     def measure(self, candidate: Candidate) -> Measured:

@@ -28,11 +28,15 @@ BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step 
 
 @dataclass(frozen=True)
 class Setting:
-    """How finely: a ``tolerance`` (relative and absolute, per step) or a ``step``; at most ``step_limit`` steps."""
+    """How finely: a ``tolerance`` (relative and absolute, per step) or a ``step``; at most ``step_limit`` steps.
+
+    No step that a tolerance chooses is longer than ``longest``, where that is given (Taylor series take no notice).
+    """
 
     tolerance: float | None = None
     step: float | None = None
     step_limit: int = 10_000_000
+    longest: float | None = None
 
 
 @dataclass

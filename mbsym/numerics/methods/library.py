@@ -41,6 +41,8 @@ class LibraryRun:
         self.state = np.array([float(x) for x in dynamics.scenario.state])
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE), "atol": tolerance}
+        if setting.longest is not None:
+            self._options["max_step"] = setting.longest
         if method.traits.implicit:
             self._jacobian_kernel = compiled_kernel(dynamics, "jacobian")
             self._options["jac"] = self._jacobian

@@ -50,7 +50,7 @@ GROWTH, SHRINKAGE, SAFETY = 6.0, 0.2, 0.75
 INTEGRAL = {5: Fraction(4, 100), 8: Fraction(3, 100)}
 
 # Places in the arrays that the machine code and Python share.
-TIME, TIME_CARRY, START, STEP, LAST, UNTIL, RELATIVE, ABSOLUTE, PREVIOUS = range(9)
+TIME, TIME_CARRY, START, STEP, LAST, UNTIL, RELATIVE, ABSOLUTE, PREVIOUS, LONGEST = range(10)
 STEPS, REJECTED, EVALUATIONS, FRESH, INFINITE, CAREFUL = range(6)
 REACHED, PAUSED, STOPPED = range(3)
 
@@ -292,7 +292,7 @@ def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -
     least = f.number(Fraction(SHRINKAGE), "double")
     factor = factor.compare(">", least).choose(factor, least)
     grown = step * factor.converted(s.clock)
-    longest = f.number(Fraction(10) ** 30, s.clock)
+    longest = f.load(s.clock, clock, LONGEST)
     f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, STEP)
     lower = f.number(Fraction(log(1e-4)), "double")
     kept = size.compare(">", lower).choose(size, lower)
@@ -384,7 +384,7 @@ class _Arrays:
         self.dtype, self.clock_type = chosen.dtype, _dtype(clock_kind(chosen))
         self.x, self.carry = aligned(self.size, self.dtype), aligned(self.size, self.dtype)
         self.x[:] = initial_state(dynamics, self.dtype)
-        self.clock = aligned(9, self.clock_type)
+        self.clock = aligned(10, self.clock_type)
         self.work = Work()
         self.time = 0.0
         self.state = self.x.copy()
@@ -480,7 +480,9 @@ class AdaptiveRun(_Arrays):
         self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
         self.clock[PREVIOUS] = log(1e-4)
         f = compiled_kernel(dynamics, "right_hand_side", scalar)
-        self.clock[STEP] = self._first_step(f, max(tolerance, smallest), tolerance)
+        self.clock[LONGEST] = 1e30 if setting.longest is None else setting.longest
+        first = self._first_step(f, max(tolerance, smallest), tolerance)
+        self.clock[STEP] = min(first, float(self.clock[LONGEST]))
         self._at_once = max(1, OPERATIONS_AT_A_TIME // (rows * (dynamics.right_hand_side.operations + 10)))
 
     def _first_step(self, f: Any, relative: float, absolute: float) -> float:

@@ -1,0 +1,168 @@
+"""What a run keeps constant, how that is known, and how far the run itself agrees.
+
+    dh/dt = sum_i q'_i Q_i - dL/dt (explicit)              generalised energy (``mbsym.mechanics.energy_rate``)
+    dI/dt = dI/dt(explicit) + dI/dq . q' + dI/dq' . q''    any other quantity
+
+A rate that vanishes identically in the ring is a proof.  Else it is looked at in balls of many bits at states that the
+run visits, among them those between which the quantity changes most: one ball without zero in it, and the quantity is
+not conserved; where all of them hold zero it is verified numerically along this run, unless the run changes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from random import Random
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from mbsym.algebra.derivative import gradient
+from mbsym.algebra.failures import Failure
+from mbsym.mechanics.energy_rate import EnergyRate
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.balls import enclosures
+from mbsym.numerics.kernels.interface import Code
+
+#: Bits of the balls, and what counts as zero beside the terms that cancel.
+BITS = 256
+NOTHING = arb(2) ** -120
+
+#: Visited states looked at: those at the largest changes, as many evenly along the run, and some beside the start.
+LARGEST_CHANGES, EVENLY, BESIDE = 4, 4, 2
+
+#: A run that changes a quantity by more than this part of its scale contradicts whatever states have said.
+CONTRADICTION = 1e-3
+
+#: Steps of polynomial arithmetic that a proof may cost.
+PROOF_STEPS = 1_000_000
+
+
+class Standing(Enum):
+    """How far it is known that a quantity is constant along the motion."""
+
+    PROVED = "proved"
+    VERIFIED = "verified numerically along this run"
+    CHANGING = "not conserved"
+    UNDECIDED = "undecided"
+
+    @property
+    def conserved(self) -> bool | None:
+        """True or False where that is known, None where it is not."""
+        return None if self is Standing.UNDECIDED else self is not Standing.CHANGING
+
+
+class Doubt(Enum):
+    """Why nothing is decided."""
+
+    CONTRADICTED = "its rate vanishes at the states looked at, and yet the run changes it"
+    NOT_FINITE = "its rate has no value, or no narrow enclosure, at the states looked at"
+    NO_VALUES = "it has no finite value along this run"
+
+
+@dataclass(frozen=True)
+class Conservation:
+    """Whether ``quantity`` is conserved, and ``change``: the largest |I(t) - I(0)| of the run over ``scale``."""
+
+    quantity: str
+    standing: Standing
+    change: float
+    scale: float
+    doubt: Doubt | None = None
+
+    @property
+    def broken(self) -> bool:
+        """The quantity is constant, and the run does not keep it: its numbers are wrong there."""
+        return self.standing is Standing.PROVED and not self.change <= CONTRADICTION
+
+
+def confronted(quantity: str, standing: Standing, values: Any, scale: float, doubt: Doubt | None = None) -> Conservation:
+    """A standing held against the values along the run: nothing that is not proved stands against them."""
+    if not len(values) or not np.all(np.isfinite(np.asarray(values, dtype=float))):
+        return Conservation(quantity, Standing.UNDECIDED, float("nan"), scale, Doubt.NO_VALUES)
+    change = float(np.max(np.abs(values - values[0]))) / scale
+    found = Conservation(quantity, standing, change, scale, doubt if standing is Standing.UNDECIDED else None)
+    if standing is Standing.VERIFIED and not change <= CONTRADICTION:
+        return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
+    return found
+
+
+# --- rates ---
+
+
+def energy_standing(dynamics: Dynamics, points: Any) -> tuple[Standing, Doubt | None]:
+    """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns."""
+    rate = dynamics.energy_rate
+    if not rate.terms or _vanishes(dynamics, rate):
+        return Standing.PROVED, None
+    code = dynamics.energy_power
+    return judged(dynamics, code, points) if code.outputs else (Standing.PROVED, None)
+
+
+def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
+    """Whether dh/dt is zero in the ring, for all values of the parameters."""
+    ring = ring_of(dynamics.system)
+    ring.limit_work(PROOF_STEPS)
+    try:
+        terms = rate.program.evaluate(rate.terms, ring_environment(dynamics.system, ring), ring)
+        return ring.is_zero(ring.reduce(sum(terms, ring.zero))) is True
+    except (Failure, KeyError):
+        return False
+
+
+def standing(dynamics: Dynamics, code: Code, output: int, points: Any) -> tuple[Standing, Doubt | None]:
+    """Whether one output of a code over (t, q, q') is constant along the motion."""
+    rhs = dynamics.right_hand_side
+    program = code.program
+    slopes = gradient(program, code.outputs[output], [program.input(name) for name in dynamics.inputs])
+    moving = zip(slopes[1:], rhs.outputs, strict=True)
+    terms = [slopes[0], *(program.product(slope, rate) for slope, rate in moving)]
+    return judged(dynamics, Code(program, dynamics.inputs, tuple(terms)), points)
+
+
+def judged(dynamics: Dynamics, terms: Code, points: Any) -> tuple[Standing, Doubt | None]:
+    """Whether the sum of the outputs vanishes at visited states, and at some beside the start, in balls."""
+    seen = [[float(x) for x in state] for state in np.asarray(points, dtype=float).T]
+    decided = 0
+    for place, state in enumerate([*seen, *_beside(dynamics)]):
+        with ctx.workprec(BITS):
+            found = enclosures(terms, state, BITS)
+            if not all(term.is_finite() for term in found):
+                continue
+            total, size = sum(found, arb(0)), sum((abs(term) for term in found), arb(0))
+            if not total.contains(0):
+                # A rate so small that the rounding of the constants explains it is no rate.
+                if abs(total) > NOTHING * size:
+                    return Standing.CHANGING, None
+                vanishes = True
+            else:
+                vanishes = size.is_zero() or bool(total.rad() <= NOTHING * size)
+            decided += vanishes and place < len(seen)
+    enough = decided >= min(EVENLY, len(seen))
+    return (Standing.VERIFIED, None) if enough else (Standing.UNDECIDED, Doubt.NOT_FINITE)
+
+
+def _beside(dynamics: Dynamics) -> list[list[float]]:
+    """States near the initial one: dyadic numbers, so that lengths stay lengths and roots stay real."""
+    random = Random(1)
+    start = [float(x) for x in dynamics.scenario.state]
+    return [
+        [random.randint(0, 1024) / 256, *(x + random.randint(-64, 64) / 256 * (1 + abs(x)) for x in start)]
+        for _ in range(BESIDE)
+    ]
+
+
+def visited(times: Any, states: Any, values: Any) -> Any:
+    """(t, q, q') in columns: states of a run at which a quantity changes most, and others evenly along it."""
+    count = len(times)
+    places = set(np.linspace(0, count - 1, min(EVENLY, count)).astype(int).tolist())
+    with np.errstate(all="ignore"):
+        steps = np.abs(np.diff(np.asarray(values, dtype=float)))
+    steps = np.where(np.isfinite(steps), steps, 0.0)
+    largest: Sequence[int] = np.argsort(-steps, kind="stable")[:LARGEST_CHANGES].tolist()
+    places |= {place + side for place in largest for side in (0, 1)}
+    chosen = sorted(places)
+    return np.vstack([times, np.asarray(states, dtype=float)])[:, chosen]
