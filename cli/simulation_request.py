@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
+    from mbsym.simulation import Request
 
 FORMATS = ("csv", "svg", "png")
 ARITHMETIC = ("float64", "float32", "extended")
@@ -23,22 +24,12 @@ TRIAL_STEPS = 10_000
 
 
 @dataclass(frozen=True)
-class Request:
-    """What was asked for, numbers read."""
+class Asked:
+    """What was asked for: the simulation, and what of it is written and printed."""
 
-    end: float
-    samples: int | None
-    every: float | None
-    method: str
-    tolerance: float | None
-    step: float | None
-    step_limit: int
-    arithmetic: str
+    request: Request
     formats: tuple[str, ...]
-    invariants: bool
-    estimate: bool | None
     quiet: bool
-    whole: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,9 +42,10 @@ class Flags:
     whole: bool
 
 
-def read_request(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Request:
+def read_request(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Asked:
     """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
     from mbsym.numerics.methods.table import METHODS
+    from mbsym.simulation import Request
 
     end = asked.time(texts["--time"])
     every = asked.number("--every", texts["--every"])
@@ -72,16 +64,17 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
     if step is not None and end is not None and step > end:
         asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
     request = Request(
-        end or 0.0,
-        samples,
-        every,
-        method or "auto",
-        tolerance,
-        step,
-        step_limit or 1,
-        arithmetic or "float64",
-        formats,
-        **asdict(flags),
+        time=end or 0.0,
+        samples=samples,
+        every=every,
+        method=method or "auto",
+        tolerance=tolerance,
+        step=step,
+        arithmetic=arithmetic or "float64",
+        step_limit=step_limit or 1,
+        invariants=flags.invariants,
+        estimate=flags.estimate,
+        whole=flags.whole,
     )
     if method is not None:
         _check_method(system, request, texts, asked)
@@ -90,11 +83,11 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
         if step > spacing * (1 + 1e-9):
             message = f"rows {spacing:g} apart are asked for, with steps of {step:g}: there is nothing between steps"
             asked.complain("--step", "conflicting-options", message, f"--every {step:g} gives a row a step")
-    return request
+    return Asked(request, formats, flags.quiet)
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
-    from mbsym.report.trajectory_csv import most_rows
+    from mbsym.numerics.columns import most_rows
 
     rows, option = samples, "--samples"
     if every is not None:
@@ -130,7 +123,7 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, s
         hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
         asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
     elif traits.fixed and not has_step:
-        many = f"--step {request.end / TRIAL_STEPS:.2g}" if request.end else "--step H"
+        many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
         hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
         asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
     if not traits.fixed and has_step and not has_tolerance:

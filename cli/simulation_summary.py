@@ -2,52 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym_cli.console import console, counted
 
 if TYPE_CHECKING:
-    from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.reduced import Reduced
     from mbsym.numerics.simulate import Trajectory
-    from mbsym_cli.simulate import Chosen
-    from mbsym_cli.simulation_request import Request
+    from mbsym.simulation import Simulation
 
 #: Below this much of what it was a pivot of M costs digits worth a warning.
 NEARLY_SINGULAR = 1e-8
 
 
-def print_summary(
-    file: Path,
-    dynamics: Dynamics,
-    found: Trajectory,
-    chosen: Chosen,
-    request: Request,
-    summary: Mapping[str, Any],
-    paths: Sequence[Path],
-) -> None:
+def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
     from rich.text import Text
 
     out = console()
-    out.print(Text.assemble((found.system.name, "bold"), (f"  {file}", "dim")))
-    for name, text in _lines(dynamics, found, chosen, request, summary):
+    out.print(Text.assemble((run.system.name, "bold"), (f"  {file}", "dim")))
+    for name, text in _lines(run):
         style = "yellow" if name == "warning" else "bold cyan"
         out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
     names = ", ".join(path.name for path in paths)
     out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), f": {names}"))
 
 
-def _lines(
-    dynamics: Dynamics, found: Trajectory, chosen: Chosen, request: Request, summary: Mapping[str, Any]
-) -> Iterator[tuple[str, str]]:
+def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
-    from mbsym.numerics.invariants import CHANGING
     from mbsym.numerics.simulate import least_pivot
+    from mbsym.report.simulation_words import conservation_line, error_lines, invariant_line, warnings
 
+    found, chosen, request = run.trajectory, run.chosen, run.request
     setting, work = found.setting, found.work
     measured = f": {chosen.measured}" if chosen.measured else ""
     yield "method", f"{chosen.method.traits.title} ({chosen.why}{measured})"
@@ -60,28 +49,25 @@ def _lines(
         how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
     yield "setting", f"{how}, {request.arithmetic}"
     reached = "" if found.whole else f", reached {found.times[-1]:.9g}"
-    yield "time", f"0 to {request.end:g}, {len(chosen.times)} samples{reached}"
+    yield "time", f"0 to {request.time:g}, {len(chosen.times)} samples{reached}"
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
     evaluations = counted(work.evaluations, "evaluation", "evaluations")
     jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
     yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
-    energy = summary["energy"]
-    change = "change" if energy["conserved"] == CHANGING else "drift"
-    yield "energy", f"{energy['conserved']}; largest relative {change} {energy['largest_relative_drift']:.1e}"
-    for item in summary["invariants"].values():
-        yield "invariant", f"{item['name']} ({item['status']}): largest relative drift {item['drift']:.1e}"
-    estimated = summary["estimated_error"]
-    if estimated and "final" in estimated:
-        worst = f", {estimated['largest']:.1e} at worst" if estimated["largest"] > 2 * estimated["final"] else ""
-        yield "error", f"about {estimated['final']:.1e} at the end{worst} (relative, against {estimated['against']})"
-        if estimated["largest"] > 0.1:
-            yield (
-                "warning",
-                "the end depends on the last digits of everything: the motion is chaotic, or this is too coarse",
-            )
-    ratio, at = least_pivot(dynamics, found)
+    if run.dynamics.natural:
+        yield "energy", conservation_line(run.conservation)
+    else:
+        yield "energy", f"T2 - T0 - U {conservation_line(run.conservation)}"
+        yield "", f"T - U {conservation_line(run.energy_conservation)}"
+    for kept in run.invariants:
+        yield "invariant", invariant_line(kept.conservation)
+    for place, text in enumerate(error_lines(run.error)):
+        yield "" if place else "error", text
+    for text in warnings(run.conservation, run.error):
+        yield "warning", text
+    ratio, at = least_pivot(run.dynamics, found)
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
         yield "warning", f"at t = {at:.6g} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})"
     spacing = float(chosen.times[1] - chosen.times[0])

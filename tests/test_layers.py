@@ -26,9 +26,10 @@ BELOW = {
     "problems": "expressions algebra model mechanics formulas",
     "analysis": "expressions algebra model mechanics formulas problems",
     "numerics": "expressions algebra model mechanics formulas problems analysis",
-    "report": "expressions algebra model mechanics formulas problems analysis numerics",
-    "__init__": "source analysis",
-    "cli": "expressions algebra model source mechanics formulas problems analysis numerics report __init__",
+    "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
+    "report": "expressions algebra model mechanics formulas problems analysis numerics simulation",
+    "__init__": "source analysis numerics simulation",
+    "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

@@ -132,7 +132,7 @@ def estimated(
     if not found.whole:
         return NoEstimate(Lacking.NOT_WHOLE)
     times, end = found.times, float(found.times[-1])
-    finer = times if len(times) >= MANY else np.union1d(times, np.linspace(0.0, end, GRID))
+    finer: Any = times if len(times) >= MANY else np.union1d(times, np.linspace(0.0, end, GRID))
     why = Lacking.FINEST
     for better, kind, setting in _candidates(dynamics, method, found.setting, scalar, end, completed):
         try:

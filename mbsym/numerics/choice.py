@@ -29,6 +29,9 @@ STIFF = 3.0
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
 
+#: So many steps are taken for other reasons anyway.
+OF_NO_ACCOUNT = 100
+
 #: Steps of the trial of the explicit method, and seconds of the trial of each implicit one.
 TRIAL_STEPS, TRIAL_SECONDS = 2_000, 0.3
 
@@ -76,8 +79,11 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
     decay, frequency = rates(dynamics)
     steps = decay * time_ / STABLE
     # Where the oscillations are as fast as that, they need the short steps themselves.
-    if steps <= FEW_STEPS or decay <= STIFF * frequency:
+    if decay <= STIFF * frequency or steps <= OF_NO_ACCOUNT:
         return Choice(explicit, "explicit, of high order: nothing stiff in the initial state", decay, frequency)
+    if steps <= FEW_STEPS:
+        why = f"explicit, of high order: motions die out at rates up to {decay:.3g}, about {steps:.2g} steps"
+        return Choice(explicit, why, decay, frequency)
     if scalar != FLOAT64:
         return Choice(explicit, f"the implicit methods do not compute in {scalar}", decay, frequency)
     setting = Setting(tolerance=tolerance)
@@ -89,9 +95,9 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
             best, least = METHODS[name], seconds
     if best is explicit:
         why = f"motions die out at rates up to {decay:.3g}, yet explicit steps are quicker here"
-        return Choice(best, why, decay, frequency, f"about {first:.2g} s")
+        return Choice(best, why, decay, frequency, f"about {first:.2g} s by a short trial")
     why = f"stiff: motions die out at rates up to {decay:.3g}, which would cost an explicit method {steps:.2g} steps"
-    return Choice(best, why, decay, frequency, f"about {least:.2g} s instead of {first:.2g} s")
+    return Choice(best, why, decay, frequency, f"about {least:.2g} s instead of {first:.2g} s, by short trials")
 
 
 def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: float, steps: float) -> float:

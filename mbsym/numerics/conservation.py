@@ -79,7 +79,9 @@ class Conservation:
         return self.standing is Standing.PROVED and not self.change <= CONTRADICTION
 
 
-def confronted(quantity: str, standing: Standing, values: Any, scale: float, doubt: Doubt | None = None) -> Conservation:
+def confronted(
+    quantity: str, standing: Standing, values: Any, scale: float, doubt: Doubt | None = None
+) -> Conservation:
     """A standing held against the values along the run: nothing that is not proved stands against them."""
     if not len(values) or not np.all(np.isfinite(np.asarray(values, dtype=float))):
         return Conservation(quantity, Standing.UNDECIDED, float("nan"), scale, Doubt.NO_VALUES)

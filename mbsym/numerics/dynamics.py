@@ -2,7 +2,7 @@
 
     x = (q, q'),    x' = rhs(t, x) = (q', M^-1 f)
     energy               T - U
-    generalised energy   h = q'.dL/dq' - L = T2 - T0 - U    conserved where L does not depend on t and no other force works
+    generalised energy   h = q'.dL/dq' - L = T2 - T0 - U    conserved where L is free of t and no other force works
 
 Where nothing is prescribed (T0 = 0) the two are one.  All codes take (t, q, q') and come from one specialised program.
 """
@@ -129,7 +129,7 @@ class Dynamics:
     def natural(self) -> bool:
         """Whether T - U and T2 - T0 - U are one: T vanishes at rest, as it does where nothing is prescribed."""
         still = bound(self.scenario)
-        still.bound |= {name: still.zero for name in self.system.velocities}
+        still.bound.update(dict.fromkeys(self.system.velocities, still.number(0)))
         (kinetic,) = substituted(self._programs.program, [self._programs.kinetic_energy], still)
         return still.vanishes(kinetic)
 

@@ -179,13 +179,17 @@ def _wrapped(q: Any, v: Any) -> tuple[Any, Any]:
 
 
 def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
-    """|h - h(0)| over the largest kinetic energy on a logarithmic scale, or h itself where it may well change."""
+    """|h - h(0)| over the largest kinetic energy on a logarithmic scale, or h itself where it may well change.
+
+    h is the generalised energy, which is the energy where nothing is prescribed.
+    """
     figure = _page(10, 3.4 + (0.3 if note else 0), _title(found.system), note)
     axis = figure.subplots(1, 1)
     axis.set_xlabel("$t$")
+    energy = "energy" if found.generalized_energy is found.energy else "generalised energy"
     if not conserved:
-        axis.plot(*thinned(found.times, found.energy), color=BLUE)
-        axis.set_title("energy")
+        axis.plot(*thinned(found.times, found.generalized_energy), color=BLUE)
+        axis.set_title(energy)
         _label(axis, "$h$")
         _span(axis, found.times)
         return figure
@@ -209,6 +213,6 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     axis.yaxis.set_major_locator(LogLocator(numticks=8))
     axis.yaxis.set_minor_locator(NullLocator())
     axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(found.kinetic) else "$|h-h_0|$")
-    axis.set_title("relative drift of the energy")
+    axis.set_title(f"relative drift of the {energy}")
     _span(axis, found.times)
     return figure

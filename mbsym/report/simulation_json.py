@@ -7,39 +7,32 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from math import isfinite
 from typing import Any
 
-from mbsym.numerics.methods.interface import Method
-from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
+from mbsym.report.simulation_words import conservation_json, error_json
+from mbsym.simulation import Simulation
 
 PACKAGES = ("mbsym", "numpy", "scipy", "llvmlite", "python-flint", "heyoka")
 
 
-def simulation_json(
-    found: Trajectory,
-    scenario: Scenario,
-    method: Method,
-    why: str,
-    scalar: str,
-    asked: Sequence[float],
-    more: Mapping[str, Any],
-    files: Sequence[str],
-) -> str:
-    """The file's text; ``asked`` are the times asked for, ``more`` is added as it is."""
-    system = found.system
+def simulation_json(run: Simulation, files: Sequence[str]) -> str:
+    """The file's text; ``files`` are those that belong to it."""
+    system, found, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
     state = [float(x) for x in scenario.state]
-    content = {
+    traits = chosen.method.traits
+    content: dict[str, Any] = {
         "system": system.name,
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),
-        "time": {"from": 0.0, "to": float(asked[-1]), "samples": len(asked)},
+        "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},
         "reached": {"time": float(found.times[-1]), "samples": len(found.times)},
-        "method": {"name": method.traits.name.lower(), "title": method.traits.title, "why": why},
-        "arithmetic": scalar,
+        "method": {"name": traits.name.lower(), "title": traits.title, "why": chosen.why},
+        "arithmetic": run.arithmetic,
         "tolerance": found.setting.tolerance,
         "step": found.setting.step,
         "step_limit": found.setting.step_limit,
@@ -48,9 +41,29 @@ def simulation_json(
         "work": vars(found.work),
         "files": list(files),
         "versions": versions(),
-        **more,
+        "energy": {"is": "T - U", **conservation_json(run.energy_conservation)},
+    }
+    if not run.dynamics.natural:
+        content["generalized_energy"] = {"is": "T2 - T0 - U", **conservation_json(run.conservation)}
+    content |= {
+        "invariants": {
+            kept.column: {"name": kept.conservation.quantity, **conservation_json(kept.conservation)}
+            for kept in run.invariants
+        },
+        "estimated_error": error_json(run.error),
+        "resting": _resting(chosen.resting),
     }
     return json.dumps(_plain(content), indent=2, ensure_ascii=False) + "\n"
+
+
+def _resting(found: Reduced | None) -> dict[str, Any] | None:
+    """Which coordinates rest, how that is known, and the operations of one right-hand side with and without them."""
+    if found is None:
+        return None
+    known = {"coordinates": list(found.names), "how": found.reduction.how, "taken_out": found.proved}
+    return known | (
+        {"operations": dict(zip(("whole", "reduced"), found.operations, strict=True))} if found.proved else {}
+    )
 
 
 def _ended(found: Trajectory) -> dict[str, Any] | None:

@@ -1,7 +1,8 @@
 """A trajectory as plain CSV: one line of names, then numbers that read back exactly (``%.17g``); no comments.
 
-Columns: ``t``, the coordinates, ``<name>_dot``, ``energy`` (h = q'.dL/dq' - L), ``relative_drift`` ((h - h(0)) over the
-largest kinetic energy), then whatever else was asked for.  A trajectory that ends early is told by its file's name and
+Columns: ``t``, the coordinates, ``<name>_dot``, ``energy`` (T - U), where something is prescribed
+``generalized_energy`` (h = T2 - T0 - U, else the same), ``relative_drift`` ((h - h(0)) over the largest kinetic
+energy), then whatever else was asked for.  A trajectory that ends early is told by its file's name and
 by ``simulation.json``, not by anything in the table: whoever reads it with default options gets numbers only.
 """
 
@@ -12,39 +13,26 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.model.system import System
+from mbsym.numerics.columns import columns
 from mbsym.numerics.simulate import Trajectory
-
-#: A table has at most so many numbers.
-MOST_NUMBERS = 10_000_000
 
 #: Rows turned into text at a time: numbers of Python take more room than those of an array.
 BLOCK = 10_000
 
 
-def columns(system: System) -> tuple[str, ...]:
-    """The names of the columns; a coordinate called ``energy`` keeps its name."""
-    own = ["t", *system.coordinates, *system.velocities]
-    # No declared name ends in an underscore.
-    return (*own, *(name + "_" if name in own else name for name in ("energy", "relative_drift")))
-
-
-def most_rows(system: System, more: int = 0) -> int:
-    """How many rows fit into a table of a bearable size."""
-    return MOST_NUMBERS // (len(columns(system)) + more)
-
-
 def trajectory_csv(found: Trajectory, more: Mapping[str, Any] | None = None) -> str:
     """The file's text; ``more`` maps names of further columns to their values, of shape (m,)."""
-    further = dict(more or {})
-    table = np.vstack([found.times, found.states, found.energy, found.drift, *further.values()])
-    return written([*columns(found.system), *further], table.astype(float).T)
+    further, natural = dict(more or {}), found.generalized_energy is found.energy
+    energies = [found.energy] if natural else [found.energy, found.generalized_energy]
+    table = [found.times, *found.states, *energies, found.drift, *further.values()]
+    return written([*columns(found.system, natural), *further], table)
 
 
-def written(names: Sequence[str], rows: Any) -> str:
-    """A header and rows of numbers."""
+def written(names: Sequence[str], table: Sequence[Any]) -> str:
+    """A header and the columns of a table, a block of rows after the other."""
     line = ",".join(["%.17g"] * len(names))
     pieces = [",".join(names)]
-    for start in range(0, len(rows), BLOCK):
-        pieces.append("\n".join(line % tuple(row) for row in rows[start : start + BLOCK].tolist()))
+    for start in range(0, len(table[0]), BLOCK):
+        block = np.array([column[start : start + BLOCK] for column in table], dtype=float)
+        pieces.append("\n".join(line % tuple(row) for row in block.T.tolist()))
     return "\n".join([*pieces, ""])

@@ -259,9 +259,10 @@ def test_the_change_of_energy_near_the_equilibrium(name: str) -> None:
     change = dynamics.energy_change(rest)
     state = [0.0, *(float(x + Fraction(1e-8)) for x in rest)]
     exact_state = [Fraction(x) for x in state]
-    direct = enclosures(dynamics.relative_energy, exact_state, 900)[0] - enclosures(dynamics.relative_energy, [0, *rest], 900)[0]
+    energy = dynamics.relative_energy
+    direct = enclosures(energy, exact_state, 900)[0] - enclosures(energy, [0, *rest], 900)[0]
     assert abs(float(enclosures(change, exact_state, 900)[0] / direct) - 1) < 1e-14
-    run = kernels({"change": change, "energy": dynamics.relative_energy})
+    run = kernels({"change": change, "energy": energy})
     plain = run["energy"](np.array(state))[0] - run["energy"](np.array([0.0, *map(float, rest)]))[0]
     better = run["change"](np.array(state))[0]
     assert abs(better / float(direct) - 1) < 1e-7

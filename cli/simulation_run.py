@@ -1,0 +1,96 @@
+"""One simulation for ``mbsym simulate``: run, written, summed up; what goes wrong becomes a line and an exit code."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, status
+from mbsym_cli.options import Options
+from mbsym_cli.progress import progress
+from mbsym_cli.simulation_files import write_files
+from mbsym_cli.simulation_request import Asked
+from mbsym_cli.simulation_summary import broken, print_summary
+
+if TYPE_CHECKING:
+    from mbsym.numerics.scenario import Scenario
+    from mbsym.simulation import Simulation
+
+
+def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
+    """The exit code; ``options`` takes the complaint of a method that does not apply here."""
+    from mbsym.algebra.failures import Failure, SingularPoint
+    from mbsym.numerics.methods.interface import Unusable
+    from mbsym.simulation import simulate
+
+    try:
+        with _watching(file, wanted) as (watch, stage):
+            found = simulate(given, wanted.request, watch, stage)
+        return _delivered(file, folder, found, wanted)
+    except Unusable as error:
+        options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
+        options.refused(file)
+        return BAD_INPUT
+    except SingularPoint as error:
+        print(f"{file}: error[singular]: singular at these values: {error}", file=sys.stderr)
+        print(f"{file}: nothing was written.", file=sys.stderr)
+        return BROKEN_DOWN
+    except Failure as error:
+        print(f"{file}: error[no-program]: there is no program for these equations: {error}", file=sys.stderr)
+        print(f"{file}: nothing was written.", file=sys.stderr)
+    except OSError as error:
+        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+    except MemoryError:
+        print(f"{file}: out of memory; ask for fewer --samples", file=sys.stderr)
+    return FAILED
+
+
+def _delivered(file: Path, folder: Path, found: Simulation, asked: Asked) -> int:
+    if found.no_invariants:
+        print(f"no first integrals: {found.no_invariants}", file=sys.stderr)
+    paths = write_files(folder, found, asked)
+    if not asked.quiet:
+        print_summary(file, found, paths)
+    return _code(file, found, paths)
+
+
+def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
+    from mbsym.numerics.accuracy import Lacking, NoEstimate
+
+    if found.ended is not None:
+        print(broken(file, found.ended, found.trajectory, paths), file=sys.stderr)
+        return BROKEN_DOWN
+    stopped = isinstance(found.error, NoEstimate) and found.error.why is Lacking.INTERRUPTED
+    if found.trajectory.interrupted or stopped:
+        kept = f"; kept up to t = {found.times[-1]:.9g} in {paths[0].parent}" if found.trajectory.interrupted else ""
+        print(f"{file}: interrupted{kept}", file=sys.stderr)
+        return INTERRUPTED
+    return OK
+
+
+Watch: TypeAlias = Callable[[float], None]
+Stage: TypeAlias = Callable[[str], AbstractContextManager[object]]
+
+
+@contextmanager
+def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
+    """A bar while it integrates, a spinner before and after."""
+    from mbsym.simulation import COMPILING, ESTIMATING, INTEGRATING
+
+    said = {COMPILING: "compiling", ESTIMATING: "the same more finely, to see how good it is"}
+    bars: list[Watch] = []
+
+    @contextmanager
+    def stage(what: str) -> Iterator[None]:
+        if what != INTEGRATING:
+            with status(asked.quiet, f"{file.name}: {said[what]}"):
+                yield
+            return
+        with progress(asked.quiet, file.name, asked.request.time) as bar:
+            bars.append(bar)
+            yield
+
+    yield (lambda t: bars[-1](t)), stage

@@ -1,0 +1,110 @@
+"""What is said of a run: conservation and error as words, for the terminal, for ``simulation.json`` and for figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
+from mbsym.numerics.conservation import Conservation, Standing
+
+#: From here on a run and a better one have little in common.
+UNLIKE = 0.1
+
+
+def standing_words(found: Conservation) -> str:
+    """``conserved (proved)``, ``not conserved``, ``undecided (why)``."""
+    if found.standing in (Standing.PROVED, Standing.VERIFIED):
+        return f"conserved ({found.standing.value})"
+    reason = f" ({found.doubt.value})" if found.doubt is not None else ""
+    return found.standing.value + reason
+
+
+def conservation_line(found: Conservation) -> str:
+    """With how far the run keeps it: a drift is an error, a change is none."""
+    what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
+    return f"{standing_words(found)}; largest relative {what} {found.change:.1e}"
+
+
+def invariant_line(found: Conservation) -> str:
+    """``momentum of psi (proved): largest relative drift 1e-12``."""
+    if found.standing in (Standing.PROVED, Standing.VERIFIED):
+        return f"{found.quantity} ({found.standing.value}): largest relative drift {found.change:.1e}"
+    return f"{found.quantity}: {conservation_line(found)}"
+
+
+def against_words(found: Against) -> str:
+    """``dop853, tolerance 1e-12, extended, steps up to 0.005``."""
+    setting = found.setting
+    how = f"step {setting.step:.3g}" if setting.tolerance is None else f"tolerance {setting.tolerance:.0e}"
+    longest = f", steps up to {setting.longest:.3g}" if setting.longest is not None else ""
+    return f"{found.method}, {how}, {found.scalar}{longest}"
+
+
+def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
+    """The error in words; nothing where none was asked for or the run says itself why it ended."""
+    if isinstance(found, NoEstimate):
+        if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.INTERRUPTED):
+            yield f"not estimated: {found.why.value}"
+        return
+    against = f"of each quantity's size; against {against_words(found.against)}"
+    if found.largest <= found.rounding:
+        yield f"no more than the rounding of one number, {found.rounding:.1e} ({against})"
+    else:
+        worst = f", {found.largest:.1e} at worst" if found.largest > 2 * found.final else ""
+        yield f"about {found.final:.1e} at the end{worst} ({against})"
+    resting = [q for q in found.quantities if q.rests]
+    if resting:
+        names = ", ".join(q.name for q in resting)
+        error = max(q.largest for q in resting)
+        yield f"{names} rest: the {error:.1e} that the run makes of it is measured by what the motion could do"
+
+
+def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> Iterator[str]:
+    """What makes a run doubtful."""
+    if conservation.broken:
+        yield (
+            f"the {conservation.quantity} is conserved, and this run does not keep it: it is too coarse; choose a "
+            "smaller --tolerance or --step"
+        )
+    if isinstance(error, ErrorEstimate) and error.largest > UNLIKE:
+        yield (
+            "this run and a better one have little in common: the motion is chaotic or starts at an unstable rest, the "
+            "run has stepped over something short, or it is too coarse"
+        )
+
+
+def conservation_json(found: Conservation) -> dict[str, Any]:
+    """``conserved`` is true, false or null; ``how`` says how that is known."""
+    return {
+        "conserved": found.standing.conserved,
+        "how": found.standing.value,
+        "doubt": found.doubt.value if found.doubt is not None else None,
+        "largest_relative_drift": found.change,
+        "relative_to": found.scale,
+    }
+
+
+def error_json(found: ErrorEstimate | NoEstimate) -> dict[str, Any]:
+    """The estimate with what it was made of, or why there is none."""
+    if isinstance(found, NoEstimate):
+        return {"available": False, "why": found.why.value}
+    against = found.against
+    return {
+        "available": True,
+        "final": found.final,
+        "largest": found.largest,
+        "how": "difference from a better run, each quantity relative to its scale",
+        "against": {
+            "method": against.method,
+            "arithmetic": against.scalar,
+            "tolerance": against.setting.tolerance,
+            "step": against.setting.step,
+            "longest_step": against.setting.longest,
+        },
+        "over": {"from": 0.0, "to": found.end, "samples": found.samples},
+        "quantities": {
+            q.name: {"final": q.final, "largest": q.largest, "size": q.size, "scale": q.scale, "rests": q.rests}
+            for q in found.quantities
+        },
+    }
