@@ -146,7 +146,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
     from rich.table import Table
     from rich.text import Text
 
-    from mbsym.report.verdicts import short_verdict
+    from mbsym.problems.stability.sentences import short
 
     columns = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
     others = any(x.coordinates_of for x in listed)
@@ -166,7 +166,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
         colour = _COLOURS.get(one.verdict.word.split(" ")[0], "yellow")
         cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
         if judged:
-            cells += [Text(short_verdict(one.verdict.word), style=colour), one.verdict.theorem]
+            cells += [Text(short(one.verdict.word), style=colour), one.verdict.theorem]
         cells += [one.proof] if boxes else []
         cells += [one.coordinates_of] if others else []
         table.add_row(*cells)
@@ -190,7 +190,7 @@ def _text(item: CoordinateValue) -> str:
 def _show_family(number: int, family: EquilibriumFamily) -> None:
     from rich.text import Text
 
-    from mbsym.report.verdicts import short_verdict
+    from mbsym.problems.stability.sentences import short
 
     out = console()
     angles = f"; angles of {family.coordinates_of}" if family.coordinates_of else ""
@@ -203,18 +203,18 @@ def _show_family(number: int, family: EquilibriumFamily) -> None:
         shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
         out.print(Text(f"    {shown} = 0"))
     sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
-    out.print(Text(f"    for example {sample}: {short_verdict(family.verdict.word)}"))
+    out.print(Text(f"    for example {sample}: {short(family.verdict.word)}"))
 
 
 def _show_summary(found: Equilibria) -> None:
     from rich.text import Text
 
-    from mbsym.report.verdicts import short_verdict
+    from mbsym.problems.stability.sentences import short
 
     out = console()
     count = counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
     words = Counter(one.verdict.word for one in found.equilibria)
-    kinds = "; ".join(f"{n} {short_verdict(word)}" for word, n in words.items())
+    kinds = "; ".join(f"{n} {short(word)}" for word, n in words.items())
     families = f", {counted(len(found.families), 'family', 'families')}" if found.families else ""
     out.print(Text.assemble((count + families, "bold"), f": {kinds}" if kinds else ""))
     twice = {one.described for one in found.equilibria if one.described > 1}

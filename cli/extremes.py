@@ -107,8 +107,8 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
     from rich.text import Text
 
     from mbsym.numerics.extremes import sentences
+    from mbsym.problems.stability.sentences import short
     from mbsym.report.extremes_tables import tables
-    from mbsym.report.verdicts import short_verdict
 
     out = console()
     if not quiet:
@@ -119,8 +119,8 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
         for columns, rows in tables(found):
             # Where nobody's screen is the limit, every line is as long as it must be.
             (out if out.is_terminal else Console(width=WIDE, highlight=False)).print(_table(columns, rows))
-    for sentence in sentences(found):
-        out.print(Text(f"- {short_verdict(sentence)}"))
+    for sentence in sentences(found, short):
+        out.print(Text(f"- {sentence}"))
     for reason in found.left_out:
         out.print(Text(f"- left out: {reason}", style="yellow"))
     if not quiet:

@@ -35,7 +35,8 @@ from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario
 from mbsym.problems.stability import ExactVerdicts
-from mbsym.problems.stability.theory import ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC, UNDECIDED, UNSTABLE, Verdict
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 
 BORDER = "border of stability"
 
@@ -64,12 +65,12 @@ class Judged:
     def wrong(self, scalar: str) -> bool:
         """Whether the floats contradict an exact verdict that was reached."""
         said = self.floats[scalar]
-        if self.exact.word == UNDECIDED:
+        if self.exact.word == Word.UNDECIDED:
             return False
-        stable = self.exact.word in (ASYMPTOTIC, ASYMPTOTIC_BUT_CYCLIC)
-        if self.exact.word == UNSTABLE:
-            return said != UNSTABLE
-        return said == UNSTABLE or (said == ASYMPTOTIC and not stable)
+        stable = self.exact.word in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_CYCLIC)
+        if self.exact.word == Word.UNSTABLE:
+            return said != Word.UNSTABLE
+        return said == Word.UNSTABLE or (said == Word.ASYMPTOTIC and not stable)
 
 
 class LinearModel:
@@ -222,15 +223,15 @@ class LinearModel:
 
     def judged(self, given: Scenario) -> Judged:
         """The exact verdict, and what floats say."""
-        floats = {}
+        floats: dict[str, str] = {}
         for scalar in FULL:
             values = self.eigenvalues(given, scalar)
             if values is None:
-                floats[scalar] = UNDECIDED
+                floats[scalar] = Word.UNDECIDED
                 continue
             size, growth = np.max(np.abs(values)), np.max(values.real)
             limit = ON_THE_AXIS * size
-            floats[scalar] = UNSTABLE if growth > limit else ASYMPTOTIC if growth < -limit else NO_GROWTH
+            floats[scalar] = Word.UNSTABLE if growth > limit else Word.ASYMPTOTIC if growth < -limit else NO_GROWTH
         return Judged(self.verdict_of(given.parameters), floats)
 
     def borders(self, given: Scenario, overrides: dict[str, Expression]) -> Iterator[Ladder]:
@@ -258,18 +259,18 @@ class LinearModel:
             try:
                 return self.verdict_of(scaled(given, overrides, name, factor).parameters).word
             except (Incomplete, SingularPoint, ValueError, ZeroDivisionError):
-                return UNDECIDED
+                return Word.UNDECIDED
 
         places = {k: OFF * Fraction(2) ** k for k in POWERS}
         words = {k: word(place) for k, place in places.items()}
         for k in sorted(POWERS[:-1], key=lambda k: abs(k + 0.5)):
             below, above = words[k], words[k + 1]
-            if below != above and UNDECIDED not in (below, above):
+            if below != above and Word.UNDECIDED not in (below, above):
                 low, high = places[k], places[k + 1]
                 while high - low > low / 10**20:
                     middle = (low + high) / 2
                     found = word(middle)
-                    if found == UNDECIDED:
+                    if found == Word.UNDECIDED:
                         beside = [word(middle * (1 + sign * BESIDE)) for sign in (-1, 1)]
                         if len({*beside}) > 1 or beside[0] not in (below, above):
                             return middle, middle  # exactly on the border

@@ -8,7 +8,7 @@ said in sentences follows from the rows and from nothing else.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -28,6 +28,7 @@ from mbsym.numerics.digits import FEW, FULL, Arithmetic, Digits, Quantity, Truth
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR, Ladder, Probe, ladders
 from mbsym.numerics.scenario import Scenario
+from mbsym.problems.stability.word import Word
 
 #: Sums are called good where float64 keeps at least so many digits.
 GOOD = 10.0
@@ -250,8 +251,8 @@ def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth
 # --- what follows ---
 
 
-def sentences(found: Extremes) -> Iterator[str]:
-    """Where the model breaks down, in plain words; each follows from the rows."""
+def sentences(found: Extremes, say: Callable[[Word], str] = str) -> Iterator[str]:
+    """Where the model breaks down, in plain words; each follows from the rows.  ``say`` puts a verdict into words."""
     if found.falling is not None:
         yield (
             f"Gravity and the acceleration of {', '.join(found.falling.frames)} are joined before numbers are put in: "
@@ -267,7 +268,7 @@ def sentences(found: Extremes) -> Iterator[str]:
     ):
         yield from _range(found, kind, title)
     yield from _ratios(found)
-    yield from _verdicts(found)
+    yield from _verdicts(found, say)
     yield from _formulas(found)
 
 
@@ -327,12 +328,12 @@ def _ratios(found: Extremes) -> Iterator[str]:
         )
 
 
-def _verdicts(found: Extremes) -> Iterator[str]:
+def _verdicts(found: Extremes, say: Callable[[Word], str]) -> Iterator[str]:
     borders = [row for row in found.verdicts if row.kind == BORDER]
     subjects = dict.fromkeys(row.subject.rsplit(" from ", 1)[0] for row in borders)
     for subject in subjects:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
-        words = {row.subject.rsplit(" ", 1)[1]: row.judged.exact.word for row in own}
+        words = {row.subject.rsplit(" ", 1)[1]: say(row.judged.exact.word) for row in own}
         below, above = words.get("below", ""), words.get("above", "")
         text = f"{subject}: a border, {below} below and {above} above, decided exactly down to a distance of "
         text += f"{min(row.size for row in own):.0e}"

@@ -51,19 +51,9 @@ from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
 from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
-from mbsym.problems.stability.theory import (
-    ASYMPTOTIC,
-    ASYMPTOTIC_BUT_CYCLIC,
-    ASYMPTOTIC_BUT_TURNED,
-    CRITICAL,
-    GYROSCOPIC,
-    MASS_SINGULAR,
-    STABLE,
-    STABLE_BUT_CYCLIC,
-    UNDECIDED,
-    UNSTABLE,
-    Verdict,
-)
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.verdict import Verdict, undecided
+from mbsym.problems.stability.word import Word
 
 EXACT, CERTIFIED = "exact", "proved in a box"
 
@@ -173,10 +163,10 @@ def equilibria(
             break
     listed = [_described(group) for group in _groups(found)]
     listed.sort(key=lambda x: (_ORDER.get(x.verdict.word, 9), x.coordinates_of, _sort_key(x)))
-    singular = tuple(x for x in listed if x.verdict.explanation == MASS_SINGULAR)
+    singular = tuple(x for x in listed if x.verdict.coordinates_singular)
     beyond = tuple(x for x in listed if x.beyond and x not in singular)
     listed = [x for x in listed if x not in singular and x not in beyond]
-    if singular or any(x.verdict.explanation == MASS_SINGULAR for x in families):
+    if singular or any(x.verdict.coordinates_singular for x in families):
         remarks.append(
             "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
             "which is to be seen in other coordinates"
@@ -218,15 +208,15 @@ _ORDER = {
     word: k
     for k, word in enumerate(
         (
-            ASYMPTOTIC,
-            ASYMPTOTIC_BUT_TURNED,
-            ASYMPTOTIC_BUT_CYCLIC,
-            STABLE,
-            STABLE_BUT_CYCLIC,
-            GYROSCOPIC,
-            CRITICAL,
-            UNDECIDED,
-            UNSTABLE,
+            Word.ASYMPTOTIC,
+            Word.ASYMPTOTIC_BUT_TURNED,
+            Word.ASYMPTOTIC_BUT_CYCLIC,
+            Word.STABLE,
+            Word.STABLE_BUT_CYCLIC,
+            Word.GYROSCOPIC,
+            Word.CRITICAL,
+            Word.UNDECIDED,
+            Word.UNSTABLE,
         )
     )
 }
@@ -699,20 +689,20 @@ class _ChartSearch:
     def verdict(self, place: Place) -> Verdict:
         """The verdict of problem 6 at a place."""
         if isinstance(self._linear, str):
-            return Verdict(UNDECIDED, "", self._linear)
+            return undecided(Because.NO_EQUATIONS, self._linear)
         found = self._linear.verdict(place)
         ring, free = self.ring, self.free
         every = (x for rows in self._linear.matrices for row in rows for x in row)
         varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, free)))
-        if not varying or found.word == UNDECIDED:
+        if not varying or found.word is Word.UNDECIDED:
             return found
         # Any value of these is an equilibrium, but not the same first approximation.
         words = {self._linear.verdict(place.elsewhere(varying, t)).word for t in ELSEWHERE}
         names = ", ".join(varying)
         if words != {found.word}:
             told = " or ".join(sorted(words - {found.word}))
-            return Verdict(UNDECIDED, "", f"It depends on {names}: {found.word} at 0, {told} elsewhere.")
-        return replace(found, explanation=f"{found.explanation} This is so at {names} = 0, and elsewhere in samples.")
+            return undecided(Because.DIFFERS_ALONG, names, found.word, told)
+        return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
 
 
 def _angle(s: Any, c: Any) -> Any:

@@ -16,7 +16,10 @@ from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
-from mbsym.problems.stability.theory import MASS_SINGULAR, UNDECIDED, LinearSystem, Verdict, combine, verdict_at
+from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.verdict import Verdict, combine, undecided
 
 
 @dataclass(frozen=True)
@@ -35,8 +38,7 @@ class LinearAtRest:
 
     def verdict(self, place: Place) -> Verdict:
         if self.varying:
-            why = f"The first approximation varies with {', '.join(self.varying)}; nothing is claimed."
-            return Verdict(UNDECIDED, "", why)
+            return undecided(Because.VARIES, ", ".join(self.varying))
         values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
         exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
         rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
@@ -54,8 +56,7 @@ class LinearAtRest:
             else:
                 parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
                 verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
-        # Singular coordinates make every other part of the linear equations meaningless.
-        return next((v for v in verdicts if v.explanation == MASS_SINGULAR), None) or combine(verdicts)
+        return combine(verdicts, self.conservative)
 
     def _rate(self, place: Place) -> fmpq | None:
         """The rate of a steady spin that may be turned in space, where it is a rational number."""

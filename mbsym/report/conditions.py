@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability import Stability, SubsystemStability
-from mbsym.problems.stability.theory import UNDECIDED, Case, Requirement
+from mbsym.problems.stability.requirements import Case, Requirement
 
 
 @dataclass(frozen=True)
@@ -98,16 +97,6 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
         for case in found
         if not case.never
     ]
-
-
-def depends(part: SubsystemStability) -> bool:
-    """Whether nothing is proved because it is different for different parameters."""
-    return part.theory.verdict.word == UNDECIDED and bool(cases(part.ring, part.theory.cases))
-
-
-def whole_depends(found: Stability) -> bool:
-    """Whether nothing is proved of the whole because that of a subsystem depends on the parameters."""
-    return found.verdict.word == UNDECIDED and any(map(depends, found.subsystems))
 
 
 @dataclass(frozen=True)

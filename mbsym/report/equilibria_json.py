@@ -9,7 +9,7 @@ from typing import Any
 
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
-from mbsym.problems.stability.theory import Verdict
+from mbsym.problems.stability.verdict import Verdict
 
 
 def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equilibria) -> str:

@@ -17,13 +17,13 @@ from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.stability.spectrum import Spectrum, numbers
+from mbsym.problems.stability.word import Word
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
-from mbsym.report.conditions import Reference, Shown, cases, depends, provided, statements, whole_depends
+from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
 from mbsym.report.latex_description import call, expression, load_in_words
 from mbsym.report.programs import programs_of
-from mbsym.report.verdicts import DEPENDS
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -96,9 +96,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
-        depends=depends,
-        whole_depends=whole_depends,
-        DEPENDS=DEPENDS,
+        DEPENDS=Word.DEPENDS,
         claims=analysis.claims,
         repair=repair,
         checks=analysis.checks,

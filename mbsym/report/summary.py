@@ -16,12 +16,14 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
+from mbsym.problems.stability.requirements import Method
+from mbsym.problems.stability.sentences import short, with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
-from mbsym.problems.stability.theory import EVEN_METHOD, UNDECIDED, UNWRITTEN
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 from mbsym.report.claims import ClaimLine, claim_line
-from mbsym.report.conditions import Statement, depends, provided, statements, whole_depends
+from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.results_json import statement_text
-from mbsym.report.verdicts import DEPENDS, short_verdict
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -123,18 +125,18 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
     for part in found.subsystems:
         items = list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
-        if depends(part) and items:
-            necessary = part.theory.method == EVEN_METHOD and part.theory.kind != "conservative"
-            verdict = f"{DEPENDS}; {'necessary ' if necessary else ''}conditions:"
+        if part.theory.verdict.word is Word.DEPENDS and items:
+            necessary = part.theory.method is Method.EVEN and not part.theory.potential
+            verdict += f"; {'necessary ' if necessary else ''}conditions:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         for item in items:
             yield f"  {_condition(item)}"
     if len(found.subsystems) > 1:
-        yield f"whole system: {DEPENDS if whole_depends(found) else _verdict(found.verdict)}"
+        yield f"whole system: {_verdict(found.verdict)}"
     if presumed:
         yield f"all this {presumed}"
     if found.numerical is not None:
-        why = found.numerical.explanation if found.numerical.word == UNDECIDED else ""
+        why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
@@ -157,7 +159,7 @@ def root_text(root: RootNumbers) -> str:
 
 
 def _condition(item: Statement) -> str:
-    if item.label == UNWRITTEN:
+    if item.formula is None and item.never is None:
         return f"a condition is {item.note}"
     if item.never is not None:
         value = str(item.never)
@@ -166,8 +168,8 @@ def _condition(item: Statement) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}"
 
 
-def _verdict(verdict: Any) -> str:
-    return short_verdict(verdict.word) + (f" ({verdict.theorem})" if verdict.theorem else "")
+def _verdict(verdict: Verdict) -> str:
+    return with_theorem(short(verdict.word), verdict.theorem)
 
 
 def _clause(sentence: str) -> str:

@@ -31,7 +31,10 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import RATIO, SINGULAR, ladders, scaled, singular
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
-from mbsym.problems.stability.theory import UNDECIDED, UNSTABLE, LinearSystem, Verdict, verdict_at
+from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 from mbsym.report.extremes_tables import HEADER, extremes_csv, extremes_json, tables
 from mbsym.source import load
 from mbsym_cli.main import main
@@ -192,7 +195,7 @@ def test_floats_are_wrong_where_frequencies_meet() -> None:
     nearest = ladder.probes[-1].scenario
     judged = model.judged(nearest)
     assert judged.exact.word == "gyroscopically stabilised only"
-    assert judged.floats[FLOAT64] == UNSTABLE
+    assert judged.floats[FLOAT64] == Word.UNSTABLE
     assert judged.wrong(FLOAT64)
     digits = model.digits(nearest)["eigenvalues"]
     assert digits.digits[FLOAT64] < 11
@@ -214,16 +217,16 @@ NOTHING = [[0, 0], [0, 0]]
 @pytest.mark.parametrize("exponent", [4, 8, 12, 14, 30])
 def test_krein_collision(exponent: int) -> None:
     """x'' + g y' - k1 x = 0, y'' - g x' - k2 y = 0 is stable iff g > sqrt k1 + sqrt k2; k = (1, 4), border 3."""
-    for sign, expected in ((1, "gyroscopically stabilised only"), (-1, UNSTABLE)):
+    for sign, expected in ((1, "gyroscopically stabilised only"), (-1, Word.UNSTABLE)):
         g = 3 + sign * F(1, 10**exponent)
         found = verdict_at(constant_system(ONE, NOTHING, [[0, g], [-g, 0]], [[-1, 0], [0, -4]]), {})
         assert found.verdict.word == expected
     on_it = verdict_at(constant_system(ONE, NOTHING, [[0, 3], [-3, 0]], [[-1, 0], [0, -4]]), {})
-    assert on_it.verdict.word == UNDECIDED
+    assert on_it.verdict.word == Word.UNDECIDED
     assert on_it.roots.imaginary_multiplicity == 2
     damped = [[F(1, 1000), 0], [0, F(1, 1000)]]
     kelvin = verdict_at(constant_system(ONE, damped, [[0, 10], [-10, 0]], [[-1, 0], [0, -4]]), {})
-    assert kelvin.verdict.word == UNSTABLE
+    assert kelvin.verdict.word == Word.UNSTABLE
 
 
 def test_clohessy_wiltshire() -> None:
@@ -236,7 +239,7 @@ def test_clohessy_wiltshire() -> None:
         [[-3 * n * n, 0, 0], [0, 0, 0], [0, 0, n * n]],
     )
     found = verdict_at(system_, {})
-    assert found.verdict.word == UNDECIDED
+    assert found.verdict.word == Word.UNDECIDED
     assert (found.roots.zero, found.roots.imaginary, found.roots.right) == (2, 4, 0)
 
 
@@ -308,9 +311,9 @@ def test_near_the_singular_angle_only_the_question_costs_digits(whole: Any) -> N
 def test_borders_of_the_rigid_satellite(whole: Any) -> None:
     """A = 12, B = 9, C = 15: Lagrange's region C > A > B ends at A = B and at C = A."""
     found = {row.subject: row.judged.exact.word for row in whole.verdicts if row.kind == BORDER}
-    assert found["A -> 9 from below"] == UNSTABLE
+    assert found["A -> 9 from below"] == Word.UNSTABLE
     assert found["A -> 9 from above"] == "stable"
-    assert found["C -> 12 from below"] == UNSTABLE
+    assert found["C -> 12 from below"] == Word.UNSTABLE
     assert found["C -> 12 from above"] == "stable"
 
 

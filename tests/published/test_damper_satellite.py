@@ -26,20 +26,12 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.model.system import System
-from mbsym.problems.stability.theory import (
-    ASYMPTOTIC,
-    ASYMPTOTIC_BUT_CYCLIC,
-    ASYMPTOTIC_BUT_TURNED,
-    CRITICAL,
-    STABLE_BUT_CYCLIC,
-    UNSTABLE,
-    LinearSystem,
-    Verdict,
-    analyse,
-    combine,
-    ignoring_cyclic,
-    verdict_at,
-)
+from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.routh import ignoring_cyclic
+from mbsym.problems.stability.symbolic import analyse
+from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.word import Word
 from mbsym.source import to_yaml
 
 FREE, DRIVEN = SHIPPED / "satellite-with-damper.yaml", SHIPPED / "satellite-with-damper-driven.yaml"
@@ -281,16 +273,16 @@ def test_conditions_are_those_of_the_reference(path: Any) -> None:
     }
     assert {(str(formula), relation) for _, formula, relation in part(a).conditions} == wanted
     first = part(a).theory.cases[0]
-    assert (first.verdict.word, first.verdict.theorem) == (ASYMPTOTIC_BUT_TURNED, "Lyapunov-Malkin")
+    assert (first.verdict.word, first.verdict.theorem) == (Word.ASYMPTOTIC_BUT_TURNED, "Lyapunov-Malkin")
 
 
 VERDICTS = {
-    "S_stable": ASYMPTOTIC_BUT_TURNED,
-    "S2_strong_stable": ASYMPTOTIC_BUT_TURNED,
-    "U_unstable": UNSTABLE,
-    "U2_strong_unstable": UNSTABLE,
-    "V_divergence": UNSTABLE,
-    "D_degenerate_lambda_eq_omega": CRITICAL,
+    "S_stable": Word.ASYMPTOTIC_BUT_TURNED,
+    "S2_strong_stable": Word.ASYMPTOTIC_BUT_TURNED,
+    "U_unstable": Word.UNSTABLE,
+    "U2_strong_unstable": Word.UNSTABLE,
+    "V_divergence": Word.UNSTABLE,
+    "D_degenerate_lambda_eq_omega": Word.CRITICAL,
 }
 
 
@@ -314,7 +306,7 @@ def test_the_six_sets_get_the_right_verdicts(path: Any, name: str) -> None:
     assert set(SETS) == set(VERDICTS)
     assert a.stability.numerical is not None
     assert a.stability.numerical.word == VERDICTS[name]
-    assert (VERDICTS[name] == ASYMPTOTIC_BUT_TURNED) == SETS[name]["RH_stable_exact"]
+    assert (VERDICTS[name] == Word.ASYMPTOTIC_BUT_TURNED) == SETS[name]["RH_stable_exact"]
 
 
 @BOTH
@@ -341,7 +333,7 @@ def test_verdicts_of_the_shipped_descriptions() -> None:
         for item in a.system.relations:
             assert Lowering(numbers, exact)(item.value) == exact[item.name]
         assert a.stability.numerical is not None
-        assert a.stability.numerical.word == ASYMPTOTIC_BUT_TURNED
+        assert a.stability.numerical.word == Word.ASYMPTOTIC_BUT_TURNED
         assert not any(check.failed for check in a.checks)
 
 
@@ -412,16 +404,16 @@ def test_roots_of_turned_spins_are_struck_only_where_they_are() -> None:
     plain = linear(m, d, zero, k, zero)
     struck = linear(m, d, zero, k, zero, turned=(one, four))
     other = linear(m, d, zero, k, zero, turned=(one, one * 9))
-    assert analyse(plain, PLAIN).verdict.word != ASYMPTOTIC_BUT_TURNED
-    assert verdict_at(plain, {}).verdict.word == CRITICAL
-    assert analyse(struck, PLAIN).verdict.word == ASYMPTOTIC_BUT_TURNED
-    assert verdict_at(struck, {}).verdict.word == ASYMPTOTIC_BUT_TURNED
-    assert verdict_at(other, {}).verdict.word == CRITICAL
+    assert analyse(plain, PLAIN).verdict.word != Word.ASYMPTOTIC_BUT_TURNED
+    assert verdict_at(plain, {}).verdict.word == Word.CRITICAL
+    assert analyse(struck, PLAIN).verdict.word == Word.ASYMPTOTIC_BUT_TURNED
+    assert verdict_at(struck, {}).verdict.word == Word.ASYMPTOTIC_BUT_TURNED
+    assert verdict_at(other, {}).verdict.word == Word.CRITICAL
     twice = linear(
         m, [[0, 0, 0], [0, 0, 0], [0, 0, 1]], zero, [[4, 0, 0], [0, 4, 0], [0, 0, 1]], zero, turned=(one, four)
     )
-    assert verdict_at(twice, {}).verdict.word == CRITICAL  # only one pair belongs to the spin
-    assert analyse(twice, PLAIN).verdict.word != ASYMPTOTIC_BUT_TURNED
+    assert verdict_at(twice, {}).verdict.word == Word.CRITICAL  # only one pair belongs to the spin
+    assert analyse(twice, PLAIN).verdict.word != Word.ASYMPTOTIC_BUT_TURNED
 
 
 def test_constant_momenta_do_not_spoil_asymptotic_stability() -> None:
@@ -429,12 +421,12 @@ def test_constant_momenta_do_not_spoil_asymptotic_stability() -> None:
     idle = linear([[1]], nothing, nothing, nothing, nothing, conservative=True, cyclic=(0,))
     damped = linear([[1]], [[1]], nothing, [[1]], nothing, conservative=True)
     free, settled = (verdict_at(system, {}).verdict for system in (idle, damped))
-    assert (free.word, settled.word) == (STABLE_BUT_CYCLIC, ASYMPTOTIC)
-    assert combine([free, settled]).word == ASYMPTOTIC_BUT_CYCLIC
-    assert combine([free, Verdict(ASYMPTOTIC_BUT_TURNED)]).word == ASYMPTOTIC_BUT_TURNED
-    assert combine([free, Verdict(UNSTABLE), settled]).word == UNSTABLE
+    assert (free.word, settled.word) == (Word.STABLE_BUT_CYCLIC, Word.ASYMPTOTIC)
+    assert combine([free, settled]).word == Word.ASYMPTOTIC_BUT_CYCLIC
+    assert combine([free, Verdict(Word.ASYMPTOTIC_BUT_TURNED)]).word == Word.ASYMPTOTIC_BUT_TURNED
+    assert combine([free, Verdict(Word.UNSTABLE), settled]).word == Word.UNSTABLE
     undamped = linear([[1]], nothing, nothing, [[1]], nothing, conservative=True)
-    assert combine([verdict_at(undamped, {}).verdict, settled]).word == CRITICAL  # as before
+    assert combine([verdict_at(undamped, {}).verdict, settled]).word == Word.CRITICAL  # as before
 
 
 def test_cyclic_coordinates_are_ignored_beside_dissipation() -> None:
@@ -493,7 +485,7 @@ motion: {c: {value: 0, rate: 1}, a: 0, b: 0, z: 0}
 """
 
 
-@pytest.mark.parametrize(("moment", "word"), [(15, ASYMPTOTIC_BUT_TURNED), (5, UNSTABLE)])
+@pytest.mark.parametrize(("moment", "word"), [(15, Word.ASYMPTOTIC_BUT_TURNED), (5, Word.UNSTABLE)])
 def test_a_spin_that_the_damper_is_coupled_to_is_judged_after_routh(moment: int, word: str) -> None:
     """Energy is dissipated at constant momentum: only the spin about the axis of the largest moment is stable."""
     a = mbsym.loads(INCLINED + f"values: {{C: {moment}, k: 40, cd: 0.4}}\n")
@@ -507,7 +499,7 @@ def test_a_spin_that_the_damper_is_coupled_to_is_judged_after_routh(moment: int,
     roots = count_roots(point.characteristic)
     assert roots == point.roots
     assert (roots.zero, roots.imaginary) == (2, 2)  # c and its momentum; the direction of the axis
-    assert (roots.right > 0) == (word == UNSTABLE)
+    assert (roots.right > 0) == (word == Word.UNSTABLE)
 
 
 def test_trajectory_rows_start_where_the_descriptions_start() -> None:

@@ -22,7 +22,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.model.system import System
-from mbsym.problems.stability.theory import STABLE_BUT_CYCLIC, UNSTABLE
+from mbsym.problems.stability.word import Word
 from mbsym.source import read, to_text, to_yaml
 
 GYROSTAT, CLEBSCH = SHIPPED / "gyrostat.yaml", SHIPPED / "clebsch.yaml"
@@ -407,7 +407,7 @@ def test_the_fourth_integral_needs_the_newtonian_field() -> None:
 
 @pytest.mark.parametrize(
     ("moments", "word"),
-    [((4, 5, 6), STABLE_BUT_CYCLIC), ((5, 6, 4), "gyroscopically stabilised only"), ((4, 6, 5), UNSTABLE)],
+    [((4, 5, 6), Word.STABLE_BUT_CYCLIC), ((5, 6, 4), "gyroscopically stabilised only"), ((4, 6, 5), Word.UNSTABLE)],
 )
 def test_verdicts_of_permanent_rotations(moments: tuple[int, int, int], word: str) -> None:
     """About the largest axis faster than sqrt(N): stable; about the middle axis: unstable."""

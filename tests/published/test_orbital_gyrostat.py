@@ -19,7 +19,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.problems.equilibria import equilibria
-from mbsym.problems.stability.theory import GYROSCOPIC, STABLE, UNSTABLE
+from mbsym.problems.stability.word import Word
 
 FILE = SHIPPED / "orbital-gyrostat.yaml"
 REFERENCE = reference("orbit-gyrostat-and-clebsch")["gyrostat_orbit"]
@@ -136,7 +136,7 @@ def test_conditions_that_are_sufficient(a: Analysis) -> None:
     found = set()
     for part in a.stability.subsystems:
         case = part.theory.cases[0]
-        assert case.verdict.word == STABLE
+        assert case.verdict.word == Word.STABLE
         assert not case.any_of
         for wanted in case.all_of:
             assert wanted.condition.kind == "inequality"
@@ -157,11 +157,11 @@ def test_a_condition_of_the_wrong_sign_is_not_confirmed() -> None:
 
 
 VERDICTS = {
-    "stable": STABLE,
-    "h=0 classical B>A>C": STABLE,
-    "unstable pitch": UNSTABLE,
-    "stabilised by rotor (B<A, B<C)": STABLE,
-    "static yaw instability": UNSTABLE,
+    "stable": Word.STABLE,
+    "h=0 classical B>A>C": Word.STABLE,
+    "unstable pitch": Word.UNSTABLE,
+    "stabilised by rotor (B<A, B<C)": Word.STABLE,
+    "static yaw instability": Word.UNSTABLE,
 }
 
 
@@ -172,7 +172,7 @@ def test_examples_of_the_reference(example: dict[str, Any]) -> None:
     a = at_values(FILE, **values, h2=values["h"])
     assert a.stability.numerical is not None
     assert a.stability.numerical.word == VERDICTS[example["name"]]
-    assert (a.stability.numerical.word == STABLE) == all(example["sufficient"])
+    assert (a.stability.numerical.word == Word.STABLE) == all(example["sufficient"])
     whole = fmpq_poly([1])
     for part in a.stability.subsystems:
         point = part.theory.at_point
@@ -200,7 +200,7 @@ def horner(p: fmpq_poly, x: Any) -> Any:
     return total
 
 
-@pytest.mark.parametrize(("moments", "word"), [((9, 7, 8), GYROSCOPIC), ((30, 21, 29), UNSTABLE)])
+@pytest.mark.parametrize(("moments", "word"), [((9, 7, 8), Word.GYROSCOPIC), ((30, 21, 29), Word.UNSTABLE)])
 def test_gyroscopic_stabilisation_is_no_stability(moments: tuple[int, int, int], word: str) -> None:
     """In the region of DeBra and Delp (B < C < A) the roots may be imaginary without K > 0."""
     values = dict(zip("ABC", moments, strict=True)) | {"h": 0}
@@ -208,7 +208,7 @@ def test_gyroscopic_stabilisation_is_no_stability(moments: tuple[int, int, int],
     assert a.stability.numerical is not None
     assert a.stability.numerical.word == word
     roots = sympy.Poly(COUPLED.subs(values), SYMBOLS["s"]).nroots()
-    assert all(abs(sympy.re(x)) < 1e-12 for x in roots) == (word == GYROSCOPIC)
+    assert all(abs(sympy.re(x)) < 1e-12 for x in roots) == (word == Word.GYROSCOPIC)
 
 
 @pytest.mark.parametrize(

@@ -17,18 +17,9 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.equilibria import CoordinateValue, equilibria
-from mbsym.problems.stability.theory import (
-    ASYMPTOTIC,
-    ASYMPTOTIC_BUT_CYCLIC,
-    CRITICAL,
-    GYROSCOPIC,
-    STABLE,
-    STABLE_BUT_CYCLIC,
-    UNDECIDED,
-    UNSTABLE,
-    Verdict,
-    combine,
-)
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.word import Word
 from mbsym.report.summary import summary
 
 THREE_BODIES = """
@@ -120,21 +111,23 @@ def verdict(a: Analysis) -> Verdict:
     return a.stability.numerical
 
 
-@pytest.mark.parametrize(("mu", "word"), [("0.0121505", GYROSCOPIC), ("0.0385", GYROSCOPIC), ("0.0386", UNSTABLE)])
+@pytest.mark.parametrize(
+    ("mu", "word"), [("0.0121505", Word.GYROSCOPIC), ("0.0385", Word.GYROSCOPIC), ("0.0386", Word.UNSTABLE)]
+)
 def test_triangular_points_at_numbers(tmp_path: Path, mu: str, word: str) -> None:
     """Routh's border is mu = (1 - sqrt(23/27))/2 = 0.03852..."""
     found = verdict(analysed(tmp_path, THREE_BODIES, MU=mu))
     assert found.word == word
-    assert found.theorem == ("" if word == GYROSCOPIC else "Lyapunov's first method")
+    assert found.theorem == ("" if word == Word.GYROSCOPIC else "Lyapunov's first method")
 
 
 @pytest.mark.parametrize(
     ("damping", "rest", "word"),
     [
-        (("0", "0"), "pi", STABLE_BUT_CYCLIC),
-        (("0", "0"), "0", UNSTABLE),
-        (("0.1", "0.2"), "pi", ASYMPTOTIC_BUT_CYCLIC),
-        (("0.1", "0.2"), "0", UNSTABLE),
+        (("0", "0"), "pi", Word.STABLE_BUT_CYCLIC),
+        (("0", "0"), "0", Word.UNSTABLE),
+        (("0.1", "0.2"), "pi", Word.ASYMPTOTIC_BUT_CYCLIC),
+        (("0.1", "0.2"), "0", Word.UNSTABLE),
     ],
 )
 def test_furuta_pendulum_without_friction(tmp_path: Path, damping: tuple[str, str], rest: str, word: str) -> None:
@@ -144,7 +137,7 @@ def test_furuta_pendulum_without_friction(tmp_path: Path, damping: tuple[str, st
     assert {one.values[-1].text: one.verdict.word for one in listed}[rest] == word
 
 
-@pytest.mark.parametrize(("omega", "word"), [("7.292e-5", STABLE), ("0.45", UNSTABLE)])
+@pytest.mark.parametrize(("omega", "word"), [("7.292e-5", Word.STABLE), ("0.45", Word.UNSTABLE)])
 def test_foucault_pendulum_at_a_latitude(tmp_path: Path, omega: str, word: str) -> None:
     """det K is (g/l - Omega^2 sin(lam)^2) (g/l - Omega^2) m^2: at 0.45 = Omega only the second factor is negative."""
     found = verdict(analysed(tmp_path, FOUCAULT, OMEGA=omega))
@@ -152,15 +145,15 @@ def test_foucault_pendulum_at_a_latitude(tmp_path: Path, omega: str, word: str) 
 
 
 def test_theorems_of_other_parts_do_not_carry_a_weaker_verdict() -> None:
-    weak = Verdict(GYROSCOPIC, "", "The nonlinear system is open.")
-    assert combine([weak, Verdict(STABLE, "Lagrange-Dirichlet")]).theorem == ""
-    mixed = combine([Verdict(STABLE, "Lagrange-Dirichlet"), Verdict(ASYMPTOTIC, "Kelvin-Chetaev")])
-    assert (mixed.word, mixed.theorem) == (CRITICAL, "")
+    weak = Verdict(Word.GYROSCOPIC, (), (Reason(Because.GYROSCOPIC_ENCLOSED),))
+    assert combine([weak, Verdict(Word.STABLE, ("Lagrange-Dirichlet",))]).theorem == ""
+    mixed = combine([Verdict(Word.STABLE, ("Lagrange-Dirichlet",)), Verdict(Word.ASYMPTOTIC, ("Kelvin-Chetaev",))])
+    assert (mixed.word, mixed.theorem) == (Word.CRITICAL, "")
 
 
 def test_an_undecided_verdict_says_why(tmp_path: Path) -> None:
     a = analysed(tmp_path, THREE_BODIES.replace("sqrt(3)/2", "4/5"), MU="0.01")
-    assert verdict(a).word == UNDECIDED
+    assert verdict(a).word == Word.UNDECIDED
     (line,) = summary(a, [6], []).problems
     assert any(
         text.startswith("at the given values: undecided: the motion does not exist there") for text in line.lines
@@ -199,7 +192,7 @@ motion: {x: 0}
     (part,) = mbsym.loads(description).stability.subsystems
     assert str(part.factor) == "(k - a)**2*(k - b)**2"
     assert str(part.matrices[3].rows[0][0]) == "2*c*(k - a)"
-    for word, k, a in ((STABLE, 1, 3), (UNSTABLE, 3, 1)):
+    for word, k, a in ((Word.STABLE, 1, 3), (Word.UNSTABLE, 3, 1)):
         (part,) = mbsym.loads(f"{description}values: {{m: 1, b: 7, c: -1, k: {k}, a: {a}}}\n").stability.subsystems
         assert part.theory.at_point is not None
         assert part.theory.at_point.verdict.word == word

@@ -30,22 +30,19 @@ from mbsym.problems.claims.differences import rational_ratio
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.stability.theory import (
-    ASYMPTOTIC,
-    ASYMPTOTIC_BUT_CYCLIC,
-    ASYMPTOTIC_BUT_TURNED,
-    CRITICAL,
-    GYROSCOPIC,
-    STABLE,
-    STABLE_BUT_CYCLIC,
-    UNSTABLE,
-    Verdict,
-)
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 
 #: Verdicts of a motion that is stable.
-_STABLE = (STABLE, ASYMPTOTIC, STABLE_BUT_CYCLIC, ASYMPTOTIC_BUT_CYCLIC, ASYMPTOTIC_BUT_TURNED)
+_STABLE = (
+    Word.STABLE,
+    Word.ASYMPTOTIC,
+    Word.STABLE_BUT_CYCLIC,
+    Word.ASYMPTOTIC_BUT_CYCLIC,
+    Word.ASYMPTOTIC_BUT_TURNED,
+)
 #: ... and the last of these is about the first approximation only.
-_LINEARLY_STABLE = (*_STABLE, GYROSCOPIC)
+_LINEARLY_STABLE = (*_STABLE, Word.GYROSCOPIC)
 _BODIES = ", with the triangle inequalities of the inertias"
 
 
@@ -212,7 +209,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 with_it = "with it" if len(together) == 1 else f"with {subject}"
                 note = f"{with_it}{_BODIES if bodies else ''} the motion is {_words(found)}"
                 return replace(result, remark=note)
-            if found.word in (GYROSCOPIC, CRITICAL):
+            if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 remark = f"in the first approximation {subject} suffice{'s' if len(together) == 1 else ''}; " + (
                     "whether the motion itself is stable is open"
                 )
@@ -246,7 +243,7 @@ def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimR
         remark = f"{subject} not sufficient for stability"
     else:
         shows = dict(found.shows)
-        in_first = shows["the motion"].startswith(GYROSCOPIC)
+        in_first = shows["the motion"].startswith(Word.GYROSCOPIC)
         remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
         if claim.relation in ("<", ">") and next(iter(shows.values())) == "0":
             remark += ": with equality, too, the motion is stable"
@@ -274,7 +271,7 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
 
     try:
         claimed(derived.ring, environment)  # its budgets end what would be too long as numbers, too
-        found = derived.trials.counterexample(claimed, sufficient, (UNSTABLE,) if sufficient else _LINEARLY_STABLE)
+        found = derived.trials.counterexample(claimed, sufficient, (Word.UNSTABLE,) if sufficient else _LINEARLY_STABLE)
         if found is not None or sufficient or claim.relation in ("<=", ">="):
             return found
         border = _wanted(Region(derived, claim, own=False), claim).polynomial

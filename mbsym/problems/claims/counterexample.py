@@ -36,7 +36,8 @@ from mbsym.mechanics.states import SEED
 from mbsym.model.admissibility import NumberTensor, inertia_violation, number_of, offset_violation
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
-from mbsym.problems.stability.theory import Verdict, is_positive
+from mbsym.problems.stability.exact import is_positive
+from mbsym.problems.stability.verdict import Verdict
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40

@@ -18,7 +18,9 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import in_parameters, on_relations
 from mbsym.problems.claims.result import Derived
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.theory import UNDECIDED, Case, Requirement, Verdict, combine
+from mbsym.problems.stability.requirements import Case, Requirement
+from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.word import Word
 
 #: More labels than these are not listed.
 _MOST_LABELS = 4
@@ -192,7 +194,7 @@ class Region:
     def _verdict_of(self, part: SubsystemStability, known: Signs) -> Verdict | None:
         """The verdict of the first case that holds, if all before it do not."""
         theory = part.theory
-        if theory.verdict.word != UNDECIDED:
+        if theory.verdict.word not in (Word.UNDECIDED, Word.DEPENDS):
             return theory.verdict
         for case in theory.cases:
             word = self._state(part, case, known)

@@ -1,6 +1,6 @@
 """Verdicts of problem 6 at a point that is known by enclosures: algebraic numbers, or boxes with a certified root.
 
-The theorems are those of ``theory``; what is strict (a sign, a half-plane) is read off balls, and nothing is
+The theorems are those of ``theorems``; what is strict (a sign, a half-plane) is read off balls, and nothing is
 claimed that a ball leaves open.  Two facts make purely imaginary roots provable.  Without dissipation and circulation
 the spectrum of  M x'' + G x' + K x = 0  is symmetric about both axes: an isolated simple root whose ball meets the
 imaginary axis has its mirror image -conj(lambda) in the same ball, so it lies on the axis.  And with G = 0 the roots
@@ -15,21 +15,10 @@ from typing import Any
 
 from flint import acb_mat, arb, arb_mat, ctx
 
-from mbsym.problems.stability.theory import (
-    ASYMPTOTIC,
-    CRITICAL,
-    GYROSCOPIC,
-    KELVIN_CHETAEV,
-    LAGRANGE,
-    LYAPUNOV,
-    MASS_SINGULAR,
-    ROUTH,
-    STABLE,
-    UNDECIDED,
-    UNSTABLE,
-    Verdict,
-    drifting,
-)
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded, drifting, undecided
+from mbsym.problems.stability.word import Word
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
 
@@ -52,7 +41,7 @@ def enclosed_verdict_with_cyclic(
 ) -> Verdict:
     """By enclosures, cyclic coordinates ignored after Routh where their momenta are constant."""
     plain = enclosed_verdict(parts, conservative, bits)
-    if not cyclic or plain.word == UNSTABLE or plain.explanation == MASS_SINGULAR:
+    if not cyclic or plain.word is Word.UNSTABLE or plain.coordinates_singular:
         return plain
     keep, ctx.prec = ctx.prec, bits
     try:
@@ -60,12 +49,12 @@ def enclosed_verdict_with_cyclic(
     finally:
         ctx.prec = keep
     if reduced is None:
-        return Verdict(UNDECIDED, "", "Cyclic coordinates give zero roots, and no theorem decides about the rest.")
+        return undecided(Because.CYCLIC_ZERO_ROOTS)
     return drifting(enclosed_verdict(reduced, conservative, bits))
 
 
 def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:
-    """Routh's reduction of ``theory.ignoring_cyclic`` with M_cc^-1 in balls; None where a momentum is not constant."""
+    """Routh's reduction of ``routh.ignoring_cyclic`` with M_cc^-1 in balls; None where a momentum is not constant."""
     m, d, g, _, n = parts
     others = [i for i in range(len(m)) if i not in cyclic]
     acted_on = not all(_no([rows[i] for i in cyclic]) for rows in (d, n))
@@ -90,27 +79,41 @@ def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows]
 
 def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) -> Verdict:
     if not _positive(m):
-        return Verdict(UNDECIDED, "", MASS_SINGULAR)
-    undamped, potential, free_of_gyroscopic = _no(d), _no(n), _no(g)
-    if undamped and potential and _positive(k):
+        return undecided(Because.MASS_SINGULAR)
+    shown = {
+        Fact.MASS_POSITIVE: True,
+        Fact.UNDAMPED: _no(d),
+        Fact.DAMPING_SEMIDEFINITE: _semidefinite(d),
+        Fact.DAMPING_POSITIVE: _positive(d),
+        Fact.NOT_GYROSCOPIC: _no(g),
+        Fact.POTENTIAL: _no(n),
+        Fact.STIFFNESS_POSITIVE: _positive(k),
+        Fact.ENERGY_NEVER_GROWS: conservative,
+    }
+    facts = frozenset(fact for fact, holds in shown.items() if holds)
+    undamped = facts >= {Fact.UNDAMPED, Fact.POTENTIAL}
+    if undamped and Fact.STIFFNESS_POSITIVE in facts:
         if not conservative:
-            return Verdict(CRITICAL, "", "K > 0, but no energy integral of the nonlinear system is known.")
-        why = "K > 0: the (changed) potential energy has a strict minimum."
-        return Verdict(STABLE, LAGRANGE if free_of_gyroscopic else ROUTH, why)
-    if potential and _positive(d) and _positive(k):
-        return Verdict(ASYMPTOTIC, KELVIN_CHETAEV, "K > 0 and complete dissipation.")
+            return concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY))
+        return concluded(facts)
+    if facts >= {Fact.POTENTIAL, Fact.DAMPING_POSITIVE, Fact.STIFFNESS_POSITIVE}:
+        return concluded(facts)
     roots, simple = eigenvalues(m, _sum(d, g), _sum(k, n))
     if roots is None:
-        return Verdict(UNDECIDED, "", "The roots could not be enclosed.")
-    right = sum(bool(root.real > 0) for root in roots)
-    if right:
-        return Verdict(UNSTABLE, LYAPUNOV, "A root with positive real part.")
+        return concluded(facts, why_not=Because.NOT_ENCLOSED)
+    if any(bool(root.real > 0) for root in roots):
+        return concluded({Fact.ROOT_RIGHT})
     if all(root.real < 0 for root in roots):
-        return Verdict(ASYMPTOTIC, LYAPUNOV, "All roots have negative real parts.")
-    if undamped and potential and simple and not any(root.contains(0) for root in roots) and _mirrored(roots):
-        why = "The first approximation is stable by gyroscopic forces alone; the nonlinear system is open."
-        return Verdict(GYROSCOPIC, "", why)
-    return Verdict(UNDECIDED, "", "On a border, or too close to one: no theorem of the first approximation decides.")
+        return concluded(facts | {Fact.ROOTS_LEFT})
+    if undamped and simple and not any(root.contains(0) for root in roots) and _mirrored(roots):
+        return concluded(facts | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ENCLOSED))
+    return concluded(facts, why_not=Because.NEAR_BORDER)
+
+
+def _semidefinite(rows: Rows) -> bool:
+    """Whether a symmetric matrix is positive semidefinite: positive definite but for rows that are exactly 0."""
+    kept = [i for i, row in enumerate(rows) if not all(x == 0 for x in row)]
+    return _positive([[rows[i][j] for j in kept] for i in kept])
 
 
 def eigenvalues(m: Rows, c: Rows, k: Rows) -> tuple[list[Any] | None, bool]:

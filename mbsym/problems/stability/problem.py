@@ -26,9 +26,13 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
+from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
-from mbsym.problems.stability.theory import LinearSystem, Requirement, Verdict, analyse, combine, verdict_at
-from mbsym.problems.stability.theory import Stability as Theory
+from mbsym.problems.stability.symbolic import Theory, analyse
+from mbsym.problems.stability.verdict import Verdict, combine, undecided
 
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
@@ -65,7 +69,7 @@ class SubsystemStability:
     @property
     def unreduced(self) -> tuple[tuple[str, Formula, str], ...]:
         """The open conditions as they arise: whole coefficients, minors and discriminants."""
-        wanted = [r for r in self.theory.requirements if not r.always and r.condition.kind != "unwritten"]
+        wanted = [r for r in self.theory.requirements if not r.always and not r.unwritten]
         return tuple((r.label, self._formula(r.polynomial), r.relation) for r in wanted)
 
     @property
@@ -140,13 +144,15 @@ def stability(
     spectra: tuple[Spectrum, ...] = ()
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
-        numerical = combine(
+        there = (
             _enclosed(scene, linear, part.coordinates, values, balance)
             if part.theory.at_point is None
             else part.theory.at_point.verdict
             for part in judged
         )
-    return Stability(judged, combine(part.theory.verdict for part in judged), numerical, spectra)
+        numerical = combine(there, balance.at(values).law.bounded)
+    verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
+    return Stability(judged, verdict, numerical, spectra)
 
 
 def _spectrum(
@@ -287,7 +293,7 @@ class ExactVerdicts:
             except Failure:
                 fits = False
             if not fits:
-                return Verdict("undecided", "", f"The motion does not exist there: {name} has another value.")
+                return undecided(Because.NOT_THE_VALUE, name)
         elsewhere = _motion_at(self.scene, self.equilibrium, values)
         if elsewhere is not None:
             return elsewhere
@@ -299,7 +305,7 @@ class ExactVerdicts:
                 found.append(_enclosed(self.scene, self.linear, names, values, self.balance))
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
-        return combine(found)
+        return combine(found, there.law.bounded)
 
 
 def _turned(
@@ -444,9 +450,9 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
         value = ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
             size = float(value.mid())
-            return Verdict("undecided", "", f"The motion does not exist there: {condition} = {size:.6g}, not 0.")
+            return undecided(Because.MOTION_NOT_THERE, str(condition), f"{size:.6g}")
         if not value.is_zero():
-            return Verdict("undecided", "", f"Whether the motion exists there is open: {condition} is about 0.")
+            return undecided(Because.MOTION_OPEN, str(condition))
     return None
 
 

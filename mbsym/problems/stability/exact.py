@@ -1,0 +1,183 @@
+"""Verdicts of problem 6 at rational parameter values: every root is counted exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from flint import fmpq, fmpq_mat, fmpq_poly
+
+from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.algebra.roots import RootCount, count_roots, rational
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.theorems import Fact, implied
+from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, undecided
+
+Numbers = Any  # a flint.fmpq_mat
+
+
+@dataclass(frozen=True)
+class PointVerdict:
+    """The exact result at rational parameter values.  ``roots`` is None where M is singular."""
+
+    verdict: Verdict
+    characteristic: tuple[Any, ...]
+    roots: RootCount | None
+
+
+def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerdict:
+    """The exact verdict at rational parameter values {index of the generator: value}.
+
+    Half-planes are counted exactly; whether multiple imaginary roots are semisimple is read off the minimal
+    polynomial.  Raises ValueError when a parameter that occurs has no value, or when M, D or K is not symmetric (up
+    to positive factors of the rows).
+    """
+    m, d, g, k, n = (_evaluate(matrix, point) for matrix in system.matrices)
+    if m.det() == 0:
+        return PointVerdict(undecided(Because.MASS_SINGULAR), (), None)
+    a = _first_order(m, d + g, k + n)
+    characteristic = tuple(a.charpoly().coeffs())
+    roots = count_roots(characteristic)
+    if not system.cyclic or roots.right:
+        verdict = _judge(m, d, g, k, n, system.conservative)
+        if system.turned and not roots.right and not (_no(d) and _no(n)):
+            verdict = _judge_turned(a, [_number(x, point) for x in system.turned], verdict)
+        return PointVerdict(verdict, characteristic, roots)
+    if roots.left + len(system.cyclic) == 2 * system.size:
+        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT})), characteristic, roots)
+    there = _with_numbers(system, (m, d, g, k, n))  # a damper of coefficient 0 changes no momentum
+    if only_momenta(there):
+        return PointVerdict(coasting(), characteristic, roots)
+    if momenta_are_constant(there):
+        reduced = verdict_at(ignoring_cyclic(there), point)
+        return PointVerdict(drifting(reduced.verdict), characteristic, roots)
+    return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), characteristic, roots)
+
+
+def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSystem:
+    """The system with ``numbers`` for its matrices M, D, G, K, N."""
+    context, size = system.M[0][0].context(), range(system.size)
+    m, d, g, k, n = (tuple(tuple(context.constant(matrix[i, j]) for j in size) for i in size) for matrix in numbers)
+    return replace(system, M=m, D=d, G=g, K=k, N=n)
+
+
+def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> Verdict:
+    a = _first_order(m, d + g, k + n)
+    roots = count_roots(a.charpoly().coeffs())
+    facts = _facts(m, d, g, k, n, conservative)
+    if roots.right:
+        how_many = Reason(Because.RIGHT_ROOTS, (roots.right,))
+        found = concluded(facts | {Fact.ROOT_RIGHT})
+        further = [reason for reason in found.reasons if reason.code is not Because.RIGHT_ROOT]
+        return replace(found, reasons=(how_many, *further))
+    if roots.left == roots.degree:
+        return concluded(facts | {Fact.ROOTS_LEFT})
+    if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
+        if not conservative:
+            return concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
+        return concluded(facts)
+    blocks = count_roots(a.minpoly().coeffs())
+    if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
+        return undecided(Because.JORDAN_BLOCK)
+    if roots.zero:
+        return undecided(Because.ZERO_ROOT)
+    facts |= {Fact.BOUNDED}
+    if facts >= {Fact.MASS_POSITIVE, Fact.UNDAMPED, Fact.POTENTIAL}:
+        coinciding = [Reason(Because.COINCIDENCE)] if roots.imaginary_multiplicity > 1 else []
+        return concluded(facts, Reason(Because.GYROSCOPIC_ONLY), *coinciding)
+    return concluded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
+
+
+def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> frozenset[Fact]:
+    """What the matrices show.  Raises ValueError if M, D or K is not symmetric."""
+    (_, massless, light), (_, free, negative), (_, undamped, growing) = (inertia(matrix) for matrix in (m, k, d))
+    size = m.nrows()
+    shown = {
+        Fact.MASS_POSITIVE: not massless and not light,
+        Fact.STIFFNESS_POSITIVE: not free and not negative,
+        Fact.STIFFNESS_NONSINGULAR: not free,
+        Fact.STIFFNESS_NEGATIVE_SOMEWHERE: negative > 0,
+        Fact.STIFFNESS_ODD: not free and negative % 2 == 1,
+        Fact.UNDAMPED: undamped == size,
+        Fact.DAMPING_SEMIDEFINITE: not growing,
+        Fact.DAMPING_POSITIVE: not growing and not undamped,
+        Fact.NOT_GYROSCOPIC: _no(g),
+        Fact.POTENTIAL: _no(n),
+        Fact.ENERGY_NEVER_GROWS: conservative,
+    }
+    return frozenset(fact for fact, holds in shown.items() if holds)
+
+
+def _judge_turned(a: Numbers, turned: Sequence[Any], whole: Verdict) -> Verdict:
+    """The roots that remain without those of p lambda^2 + q, (p, q) = ``turned``, decide; none has Re > 0."""
+    top, bottom = turned
+    polynomial, remainder = divmod(a.charpoly(), fmpq_poly([bottom, 0, top]))
+    if remainder != 0:
+        return whole
+    roots = count_roots(polynomial.coeffs())
+    if roots.left == roots.degree:
+        return concluded({Fact.LEFT_BUT_TURNED})
+    if roots.zero or roots.imaginary_multiplicity > 1:
+        return undecided(Because.ZERO_OR_MULTIPLE_BESIDES_TURNED)
+    return concluded({Fact.BOUNDED}, Reason(Because.IMAGINARY_BESIDES_TURNED), Reason(Because.HIGHER_ORDER))
+
+
+def inertia(matrix: Numbers) -> tuple[int, int, int]:
+    """(positive, zero, negative) eigenvalues of a symmetric rational matrix, by Descartes' rule, which is exact here.
+
+    Rows may be scaled by positive factors.  Raises ValueError if the eigenvalues are not all real.
+    """
+    cs = matrix.charpoly().coeffs()
+    zero = next(i for i, c in enumerate(cs) if c != 0)
+    positive = _changes_of_sign(cs)
+    negative = _changes_of_sign([-c if i % 2 else c for i, c in enumerate(cs)])
+    if positive + zero + negative != matrix.nrows():
+        raise ValueError("a matrix that should be symmetric is not")
+    return positive, zero, negative
+
+
+def _changes_of_sign(numbers: Sequence[Any]) -> int:
+    signs = [c > 0 for c in numbers if c != 0]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+def _evaluate(matrix: Matrix, point: Mapping[int, Fraction]) -> Numbers:
+    n = len(matrix)
+    return fmpq_mat(n, n, [_number(entry, point) for row in matrix for entry in row])
+
+
+def _number(entry: Polynomial, point: Mapping[int, Fraction]) -> Any:
+    context = entry.context()
+    missing = [i for i, degree in enumerate(entry.degrees()) if degree > 0 and i not in point]
+    if missing:
+        raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
+    return fmpq(entry(*(rational(point.get(i, 0)) for i in range(context.nvars()))))
+
+
+def _first_order(m: Numbers, c: Numbers, k: Numbers) -> Numbers:
+    """The matrix of (q, q')' = A (q, q')."""
+    n = m.nrows()
+    inverse = m.inv()
+    position, velocity = inverse * k, inverse * c
+    a = fmpq_mat(2 * n, 2 * n)
+    for i in range(n):
+        a[i, n + i] = 1
+        for j in range(n):
+            a[n + i, j] = -position[i, j]
+            a[n + i, n + j] = -velocity[i, j]
+    return a
+
+
+def is_positive(matrix: Numbers) -> bool:
+    """Whether a symmetric rational matrix is positive definite: all leading minors are positive."""
+    n, rows = matrix.nrows(), matrix.tolist()
+    return all(fmpq_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, n + 1))
+
+
+def _no(matrix: Numbers) -> bool:
+    return all(x == 0 for x in matrix.entries())

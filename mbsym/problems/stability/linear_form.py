@@ -1,0 +1,94 @@
+"""The linear form  M x'' + (D + G) x' + (K + N) x = 0  of one subsystem, as polynomials in the parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.problems.stability.theorems import Fact
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """One subsystem: n x n matrices M, D, G, K, N of polynomials in the parameters.
+
+    ``conservative``: the (generalised) energy **of the nonlinear system** does not grow near the motion, in all orders:
+    D does not tell that.
+    ``cyclic``: indices of coordinates that do not occur in the nonlinear equations (only their velocities do); their
+    rows and columns in K and N must vanish.  ``driven``: those of them whose momenta are not constant although D and N
+    have no entries, because forces of higher order act on them.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p
+    the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
+    shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.
+    """
+
+    M: Matrix
+    D: Matrix
+    G: Matrix
+    K: Matrix
+    N: Matrix
+    conservative: bool = False
+    cyclic: tuple[int, ...] = ()
+    turned: tuple[Polynomial, ...] = ()
+    driven: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.M)
+        for name, matrix in zip("MDGKN", self.matrices, strict=True):
+            if n == 0 or len(matrix) != n or any(len(row) != n for row in matrix):
+                raise ValueError(f"{name} is not a {n} x {n} matrix")
+            for i in range(n):
+                if name in "GN" and matrix[i][i] != 0:
+                    raise ValueError(f"{name} is not skew: element {i + 1}, {i + 1} is not 0")
+                if any((matrix[i][j] == 0) != (matrix[j][i] == 0) for j in range(i)):
+                    raise ValueError(f"{name} is not {'skew' if name in 'GN' else 'symmetric'}")
+        for i in self.cyclic:
+            if any(matrix[i][j] != 0 for matrix in (self.K, self.N) for j in range(n)):
+                raise ValueError(f"coordinate {i + 1} is not cyclic: it occurs in K or N")
+
+    @property
+    def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
+        return self.M, self.D, self.G, self.K, self.N
+
+    @property
+    def facts(self) -> frozenset[Fact]:
+        """What the pattern of zeros shows, and what is presumed: M > 0, as the matrix of a kinetic energy."""
+        zero = [
+            fact
+            for matrix, fact in ((self.D, Fact.UNDAMPED), (self.G, Fact.NOT_GYROSCOPIC), (self.N, Fact.POTENTIAL))
+            if is_zero(matrix)
+        ]
+        known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
+        return frozenset({Fact.MASS_POSITIVE, *zero, *known})
+
+    @property
+    def size(self) -> int:
+        return len(self.M)
+
+
+#: The kind of a system with no other forces than those of K.
+CONSERVATIVE = "conservative"
+
+
+def kind_of(system: LinearSystem) -> str:
+    """Words for the acting forces: conservative, gyroscopic conservative, dissipative, circulatory, ..."""
+    damped, gyroscopic = not is_zero(system.D), not is_zero(system.G)
+    words = ["gyroscopic"] if gyroscopic else []
+    if damped:
+        words.append("dissipative")
+    if not is_zero(system.N):
+        words.append("circulatory")
+    elif not damped:
+        words.append(CONSERVATIVE)
+    return " ".join(words)
+
+
+def add(left: Matrix, right: Matrix) -> Matrix:
+    return tuple(tuple(a + b for a, b in zip(*rows, strict=True)) for rows in zip(left, right, strict=True))
+
+
+def is_zero(matrix: Matrix) -> bool:
+    return all(entry == 0 for row in matrix for entry in row)
+
+
+def is_potential(system: LinearSystem) -> bool:
+    return all(is_zero(matrix) for matrix in (system.D, system.G, system.N))

@@ -1,0 +1,73 @@
+"""Why a verdict is what it is, as codes with data; ``sentences`` puts them into words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+
+class Because(Enum):
+    """A code; what stands in brackets are its data.  The order is that in which several are told."""
+
+    # of theorems
+    RIGHT_ROOTS = auto()  # (how many)
+    RIGHT_ROOT = auto()
+    REAL_ROOT = auto()
+    RIGHT_BY_TRACE = auto()
+    DESTROYED = auto()
+    ODD_DEGREE = auto()
+    ODD_DEGREE_REMAINS = auto()
+    COMPLETE = auto()
+    LEFT = auto()
+    TURNED_DECAYS = auto()
+    MINIMUM = auto()
+    MINIMUM_AND_DISSIPATION = auto()
+    UNDAMPED_MOTION = auto()  # (coordinates)
+    # of what no theorem carries
+    GYROSCOPIC_ONLY = auto()
+    GYROSCOPIC_ENCLOSED = auto()
+    COINCIDENCE = auto()
+    NO_ENERGY = auto()
+    IMAGINARY = auto()
+    IMAGINARY_SIMPLE = auto()
+    IMAGINARY_BESIDES_TURNED = auto()
+    UNLIKE_PARTS = auto()
+    HIGHER_ORDER = auto()
+    # of cyclic coordinates
+    COASTING = auto()
+    DRIFT = auto()
+    PARTLY_CYCLIC = auto()
+    CONSTANT_MOMENTA = auto()
+    # of what is open
+    SEE_CASES = auto()
+    CONDITIONS_UNWRITTEN = auto()
+    BORDER = auto()
+    NEAR_BORDER = auto()
+    ZERO_ROOT = auto()
+    JORDAN_BLOCK = auto()
+    ZERO_OR_MULTIPLE_BESIDES_TURNED = auto()
+    CYCLIC_ZERO_ROOTS = auto()
+    NOT_ENCLOSED = auto()
+    NO_CLOSED_FORM = auto()  # (why)
+    ALSO_ELSEWHERE = auto()  # (whatever which coordinates are)
+    DIFFERS_ALONG = auto()  # (which coordinates, word, other words)
+    NO_EQUATIONS = auto()  # (why)
+    MASS_SINGULAR = auto()
+    ORDER_LOWER = auto()
+    VARIES = auto()  # (with what)
+    NOT_THE_VALUE = auto()  # (of which parameter)
+    MOTION_NOT_THERE = auto()  # (condition, value)
+    MOTION_OPEN = auto()  # (condition)
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A code with its data."""
+
+    code: Because
+    data: tuple[object, ...] = ()
+
+    @property
+    def rank(self) -> tuple[int, tuple[str, ...]]:
+        """Where it stands among other reasons."""
+        return self.code.value, tuple(map(str, self.data))

@@ -1,0 +1,134 @@
+"""Conditions as values: what has to be positive or not zero, and which verdict follows from which."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, leading_minors
+from mbsym.algebra.signs import MOST_TERMS, Condition, Signs
+from mbsym.problems.stability.verdict import Verdict
+
+
+class Method(StrEnum):
+    """What the conditions on the characteristic polynomial say together."""
+
+    EVEN = "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
+    HURWITZ = "all roots to the left of the imaginary axis: Lienard-Chipart"
+    NONE = "none"
+
+
+class Definite(StrEnum):
+    """Whether a symmetric matrix is positive definite."""
+
+    POSITIVE = "positive definite"
+    NOT_POSITIVE = "not positive definite"
+    OPEN = "undecided"
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """``polynomial`` ``relation`` 0, as it arises (``label``: v4, discriminant, ...) and reduced by what is known.
+
+    ``by_mass``: it holds because the kinetic energy is positive definite.
+    """
+
+    label: str
+    polynomial: Polynomial
+    condition: Condition
+    relation: str = ">"
+    by_mass: bool = False
+
+    @property
+    def always(self) -> bool:
+        return self.by_mass or self.condition.kind == "always"
+
+    @property
+    def never(self) -> bool:
+        return not self.by_mass and self.condition.kind == "never"
+
+    @property
+    def unwritten(self) -> bool:
+        """Too long to be written out: neither provable nor refutable, so that no verdict can rest on it."""
+        return self.condition.kind == "unwritten"
+
+
+@dataclass(frozen=True)
+class Case:
+    """If all of ``all_of`` and, unless it is empty, at least one of ``any_of`` hold, then ``verdict``.
+
+    Cases are read in order, like an if-elif chain: a later one presumes that the earlier ones do not apply.
+    A case that requires nothing is a mistake (``ValueError``): an empty choice must not count as fulfilled.
+    """
+
+    all_of: tuple[Requirement, ...]
+    any_of: tuple[Requirement, ...]
+    verdict: Verdict
+
+    def __post_init__(self) -> None:
+        if not self.all_of and not self.any_of:
+            raise ValueError("a case needs a requirement")
+
+    @property
+    def always(self) -> bool:
+        return all(r.always for r in self.all_of) and (not self.any_of or any(r.always for r in self.any_of))
+
+    @property
+    def never(self) -> bool:
+        return any(r.never for r in self.all_of) or (bool(self.any_of) and all(r.never for r in self.any_of))
+
+
+@dataclass(frozen=True)
+class Definiteness:
+    """Sylvester: a symmetric matrix is positive definite iff all leading ``minors`` are > 0."""
+
+    word: Definite
+    requirements: tuple[Requirement, ...]
+
+    @property
+    def minors(self) -> tuple[Polynomial, ...]:
+        return tuple(r.polynomial for r in self.requirements)
+
+
+@dataclass(frozen=True)
+class Factor:
+    """An irreducible factor of the characteristic polynomial: coefficients from low to high, and multiplicity."""
+
+    coefficients: Coefficients
+    multiplicity: int
+
+
+def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
+    """Sylvester's criterion, each leading minor reduced by ``signs`` and by the minors before it being positive."""
+    requirements: list[Requirement] = []
+    for i, minor in enumerate(leading_minors(matrix), start=1):
+        condition = signs.condition(minor)
+        requirements.append(Requirement(f"minor {i} of {name}", minor, condition))
+        if condition.kind == "inequality" and len(condition.polynomial) <= MOST_TERMS:
+            signs = signs.assuming([(condition.polynomial, ">"), *((p, "!=") for p in condition.nonzero)])
+    if all(r.always for r in requirements):
+        word = Definite.POSITIVE
+    elif any(r.never for r in requirements):
+        word = Definite.NOT_POSITIVE
+    else:
+        word = Definite.OPEN
+    return Definiteness(word, tuple(requirements))
+
+
+def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
+    """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
+    return tuple(
+        Requirement(f"-({r.label})", -r.polynomial, known.condition(-r.polynomial))
+        for r in requirements
+        if r.relation == ">" and not r.by_mass and not r.unwritten
+    )
+
+
+def differs(label: str, p: Polynomial, known: Signs) -> Requirement:
+    return Requirement(label, p, known.nonzero_condition(p), "!=")
+
+
+def unwritten(p: Polynomial) -> Requirement:
+    """A condition that is left out."""
+    return Requirement("not written out", p, Condition("unwritten", p * 0 + 1))

@@ -1,0 +1,77 @@
+"""Cyclic coordinates, ignored after Routh."""
+
+from __future__ import annotations
+
+from mbsym.algebra.characteristic import Matrix, Polynomial, determinant
+from mbsym.problems.stability.linear_form import LinearSystem, is_zero
+
+
+def only_momenta(system: LinearSystem) -> bool:
+    """Whether all coordinates are cyclic and nothing acts on them: M q'' = 0."""
+    idle = all(is_zero(matrix) for matrix in (system.D, system.G, system.K, system.N))
+    return system.conservative and idle and not system.driven and len(system.cyclic) == system.size
+
+
+def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
+    """Routh's reduction, D and N without cyclic rows: cyclic velocities expressed by their constant momenta.
+
+    With c the cyclic and r the other coordinates, M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
+
+        M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
+
+    and D_R = D_rr, N_R = N_rr; everything here times det M_cc > 0.  K_R is the second derivative of the effective
+    potential.
+    """
+    if not momenta_are_constant(system):
+        raise ValueError("Routh's reduction needs cyclic coordinates without D and N and no G between them, and others")
+    cyclic = system.cyclic
+    rest = [i for i in range(system.size) if i not in cyclic]
+    block = [[system.M[i][j] for j in cyclic] for i in cyclic]
+    scale, inverse = determinant(block), adjugate(block)
+
+    def schur(main: Matrix, *pairs: tuple[Matrix, Matrix]) -> Matrix:
+        return tuple(
+            tuple(
+                scale * main[i][j]
+                - sum(
+                    (
+                        left[i][c] * inverse[a][b] * right[d][j]
+                        for left, right in pairs
+                        for a, c in enumerate(cyclic)
+                        for b, d in enumerate(cyclic)
+                    ),
+                    start=scale * 0,
+                )
+                for j in rest
+            )
+            for i in rest
+        )
+
+    m, g = system.M, system.G
+    return LinearSystem(
+        schur(m, (m, m)),
+        schur(system.D),
+        schur(g, (m, g), (g, m)),
+        schur(system.K, (g, g)),
+        schur(system.N),
+        system.conservative,
+        turned=system.turned,
+    )
+
+
+def momenta_are_constant(system: LinearSystem) -> bool:
+    between = any(system.G[i][j] != 0 for i in system.cyclic for j in system.cyclic)
+    acted_on = any(x != 0 for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i])
+    return not acted_on and not between and not system.driven and 0 < len(system.cyclic) < system.size
+
+
+def adjugate(block: Matrix) -> Matrix:
+    n = len(block)
+    one = block[0][0] * 0 + 1
+
+    def cofactor(i: int, j: int) -> Polynomial:
+        rows = [[x for col, x in enumerate(row) if col != i] for at, row in enumerate(block) if at != j]
+        value = determinant(rows) if rows else one
+        return -value if (i + j) % 2 else value
+
+    return tuple(tuple(cofactor(i, j) for j in range(n)) for i in range(n))

@@ -1,0 +1,124 @@
+"""Words of problem 6 for every output: the one place where codes become sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.word import Word
+
+#: The same few words in every table and summary, where the long ones do not fit; what is not listed is short enough.
+SHORT = {
+    Word.STABLE_BUT_CYCLIC: f"{Word.STABLE} (cyclic drift)",
+    Word.ASYMPTOTIC_BUT_CYCLIC: f"{Word.ASYMPTOTIC} (cyclic drift)",
+    Word.ASYMPTOTIC_BUT_TURNED: f"{Word.ASYMPTOTIC} (up to rotation)",
+    Word.CRITICAL: "critical (first approximation)",
+}
+
+HIGHER_ORDER = "Terms of higher order decide."
+
+
+def _counted(number: object) -> str:
+    return f"{number} root{'' if number == 1 else 's'} with positive real part."
+
+
+def _undamped(coordinates: object) -> str:
+    return f"A motion of {coordinates} stays undamped."
+
+
+#: A sentence, or what makes one of the data.
+_SENTENCES: dict[Because, str | Callable[..., str]] = {
+    Because.RIGHT_ROOTS: _counted,
+    Because.RIGHT_ROOT: "A root with positive real part.",
+    Because.REAL_ROOT: "K is not positive semidefinite: a real positive root lambda.",
+    Because.RIGHT_BY_TRACE: (
+        "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
+    ),
+    Because.DESTROYED: "Complete dissipation, and K is not positive definite.",
+    Because.ODD_DEGREE: "det K < 0: an odd degree of instability.",
+    Because.ODD_DEGREE_REMAINS: "det K < 0: an odd degree of instability, which gyroscopic forces cannot remove.",
+    Because.COMPLETE: "K > 0 and complete dissipation.",
+    Because.LEFT: "All roots have negative real parts.",
+    Because.TURNED_DECAYS: (
+        "All roots have negative real parts but those of the steady spins about other directions of space: a "
+        "disturbed motion tends to a steady spin about an axis near by, and every variable that does not change "
+        "when everything is turned in space tends to its value there."
+    ),
+    Because.MINIMUM: "K > 0: the (changed) potential energy has a strict minimum.",
+    Because.MINIMUM_AND_DISSIPATION: (
+        "K > 0 and D >= 0: the energy does not grow, and the (changed) potential energy has a strict minimum."
+    ),
+    Because.UNDAMPED_MOTION: _undamped,
+    Because.GYROSCOPIC_ONLY: (
+        "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
+        "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and the nonlinear "
+        "system is open."
+    ),
+    Because.GYROSCOPIC_ENCLOSED: (
+        "The first approximation is stable by gyroscopic forces alone; the nonlinear system is open."
+    ),
+    Because.COINCIDENCE: (
+        "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
+    ),
+    Because.NO_ENERGY: "K > 0, but no energy integral of the nonlinear system is known.",
+    Because.IMAGINARY: "No root has a positive real part, but some are imaginary.",
+    Because.IMAGINARY_SIMPLE: "All roots are imaginary and simple; the forces are not potential.",
+    Because.IMAGINARY_BESIDES_TURNED: (
+        "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
+    ),
+    Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem covers both.",
+    Because.HIGHER_ORDER: HIGHER_ORDER,
+    Because.COASTING: (
+        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs."
+    ),
+    Because.DRIFT: (
+        "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities makes the "
+        "cyclic coordinates drift away."
+    ),
+    Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
+    Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
+    Because.SEE_CASES: "It depends on the parameters; see the cases.",
+    Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
+    Because.BORDER: "On a border: no theorem of the first approximation decides.",
+    Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
+    Because.ZERO_ROOT: "A zero root: terms of higher order decide.",
+    Because.JORDAN_BLOCK: (
+        "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the "
+        "nonlinear system is not decided by them."
+    ),
+    Because.ZERO_OR_MULTIPLE_BESIDES_TURNED: (
+        "Besides the turned steady spins there are zero or multiple imaginary roots."
+    ),
+    Because.CYCLIC_ZERO_ROOTS: "Cyclic coordinates give zero roots, and no theorem decides about the rest.",
+    Because.NOT_ENCLOSED: "The roots could not be enclosed.",
+    Because.NO_CLOSED_FORM: "No closed form within the budget: {}.".format,
+    Because.ALSO_ELSEWHERE: "This is so at {} = 0, and elsewhere in samples.".format,
+    Because.DIFFERS_ALONG: "It depends on {}: {} at 0, {} elsewhere.".format,
+    Because.NO_EQUATIONS: "{}".format,
+    Because.MASS_SINGULAR: "The mass matrix is singular.",
+    Because.ORDER_LOWER: "The mass matrix is singular, so the order of the equations is lower.",
+    Because.VARIES: "The first approximation varies with {}; nothing is claimed.".format,
+    Because.NOT_THE_VALUE: "The motion does not exist there: {} has another value.".format,
+    Because.MOTION_NOT_THERE: "The motion does not exist there: {} = {}, not 0.".format,
+    Because.MOTION_OPEN: "Whether the motion exists there is open: {} is about 0.".format,
+}
+
+
+def sentence(reason: Reason) -> str:
+    found = _SENTENCES[reason.code]
+    return found if isinstance(found, str) else found(*reason.data)
+
+
+def explanation(reasons: Iterable[Reason]) -> str:
+    """The reasons, one sentence after another."""
+    return " ".join(map(sentence, reasons))
+
+
+def short(word: Word) -> str:
+    """The word where there is little room."""
+    return SHORT.get(word, word.value)
+
+
+def with_theorem(word: str, theorem: str) -> str:
+    """``stable (Routh)``."""
+    return word + (f" ({theorem})" if theorem else "")

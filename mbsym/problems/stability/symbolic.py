@@ -1,0 +1,420 @@
+"""Problem 6, the kernel: stability of M q'' + (D + G) q' + (K + N) q = 0, in symbols and at exact parameter values.
+
+M, D, K symmetric, G, N skew.  The roots of det(lambda^2 M + lambda (D + G) + K + N) decide as far as the first
+approximation goes; the theorems below go further.  Nothing is claimed on a border.
+
+* D = N = 0 (the determinant is even): roots in mu = lambda^2 real, negative and simple, by the signs of the
+  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability.
+* K > 0 besides: stable, by Lagrange-Dirichlet (G = 0) or Routh (G != 0), if the nonlinear system has its energy
+  integral.  Without K > 0 the motion is **gyroscopically stabilised only**: any complete dissipation destroys it
+  (Kelvin-Chetaev), and the nonlinear system is not decided.  det K < 0: unstable (Kelvin-Chetaev).
+* D > 0, N = 0: asymptotically stable if K > 0, unstable if K is not and det K != 0 (Kelvin-Chetaev).
+* Otherwise all Re lambda < 0 by Lienard-Chipart: asymptotically stable; one Re lambda > 0: unstable, both by
+  Lyapunov's first method.
+* A steady spin in a space without preferred directions: turned in space it is a spin again, which puts the roots
+  +- i omega into the determinant, whatever the system.  With all other roots to the left it is asymptotically stable
+  in every variable that does not change when everything is turned (Lyapunov-Malkin: the critical roots are those of a
+  family of steady motions).
+* Cyclic coordinates on which no damping acts have constant momenta: they are ignored after Routh.
+
+M is taken to be positive definite, as a mass matrix is.  Rows may be scaled, by one positive factor per row through
+all five matrices: neither the roots nor the signs of leading minors change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from mbsym.algebra.characteristic import (
+    Coefficients,
+    Polynomial,
+    characteristic_polynomial,
+    factor_in_lambda,
+    is_semisimple,
+    lienard_chipart,
+    primitive,
+    resultant,
+    subdiscriminants,
+)
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
+from mbsym.problems.stability.exact import PointVerdict, verdict_at
+from mbsym.problems.stability.linear_form import CONSERVATIVE, LinearSystem, add, is_potential, is_zero, kind_of
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.requirements import (
+    Case,
+    Definite,
+    Definiteness,
+    Factor,
+    Method,
+    Requirement,
+    against,
+    definiteness,
+    differs,
+    unwritten,
+)
+from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depends, drifting, undecided
+
+
+@dataclass(frozen=True)
+class Theory:
+    """Everything about one subsystem.
+
+    characteristic = removed * lambda^zero_power * polynomial, ``removed`` known to be positive (both polynomials are
+    empty when they were too large to be written out).  ``factors`` of ``polynomial`` are in ``variable``: lambda^2
+    where only even powers occur, else lambda.
+    """
+
+    kind: str
+    characteristic: Coefficients
+    removed: Polynomial
+    zero_power: int
+    polynomial: Coefficients
+    variable: str
+    factors: tuple[Factor, ...]
+    method: Method
+    requirements: tuple[Requirement, ...]
+    mass: Definiteness
+    stiffness: Definiteness
+    dissipation: Definiteness | None
+    cases: tuple[Case, ...]
+    verdict: Verdict
+    remarks: tuple[str, ...] = ()
+    at_point: PointVerdict | None = None
+    reduced: Theory | None = None  # with cyclic coordinates ignored after Routh
+    turned: bool = False  # the roots of a turned steady spin are left out of the requirements
+
+    @property
+    def potential(self) -> bool:
+        """Whether there are no other forces than those of K."""
+        return self.kind == CONSERVATIVE
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What remains of ``requirements``, each once."""
+        return conditions(r.condition for r in self.requirements)
+
+
+def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | None = None) -> Theory:
+    """Characteristic polynomial, conditions, cases and verdict; with ``point`` also the exact verdict there.
+
+    Without proof by ``signs`` the verdict is ``undecided`` and ``cases`` say what it depends on.  Formulas beyond the
+    budget are left out, with a remark; then nothing is claimed in symbols.
+    """
+    try:
+        found = _analyse(system, signs)
+    except TooLargeError as error:
+        found = _left_out(system, signs, str(error))
+    return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
+    nothing = Definiteness(Definite.OPEN, ())
+    return Theory(
+        kind=kind_of(system),
+        characteristic=(),
+        removed=signs.context.constant(1),
+        zero_power=0,
+        polynomial=(),
+        variable="lambda",
+        factors=(),
+        method=Method.NONE,
+        requirements=(),
+        mass=nothing,
+        stiffness=nothing,
+        dissipation=None if is_zero(system.D) else nothing,
+        cases=(),
+        verdict=undecided(Because.NO_CLOSED_FORM, reason),
+        remarks=(f"The characteristic polynomial is not written out: {reason}; at a point the verdict is exact.",),
+    )
+
+
+def _analyse(system: LinearSystem, signs: Signs) -> Theory:
+    written = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    raw = tuple(signs.normalised(c) for c in written)
+    mass = definiteness(system.M, signs, "M")
+    # A mass matrix is positive definite, so its minors may be used to judge everything else.
+    # Long ones would cost the search for combinations more than they can give.
+    minors = [r.polynomial for r in mass.requirements]
+    known = signs.assuming((p, ">") for p in minors if not p.is_constant() and len(p) <= MOST_TERMS)
+    start = Theory(
+        kind=kind_of(system),
+        characteristic=raw,
+        removed=raw[-1] * 0 + 1,
+        zero_power=0,
+        polynomial=raw,
+        variable="lambda",
+        factors=(),
+        method=Method.NONE,
+        requirements=(),
+        mass=mass,
+        stiffness=definiteness(system.K, known, "K"),
+        dissipation=None if is_zero(system.D) else definiteness(system.D, known, "D"),
+        cases=(),
+        verdict=undecided(Because.ORDER_LOWER),
+    )
+    if raw[-1] == 0:
+        return start
+    zero_power = next(i for i, c in enumerate(raw) if c != 0)
+    polynomial, removed = _without_known_factor(raw[zero_power:], known)
+    even = all(c == 0 for c in polynomial[1::2])
+    factors = _factors(polynomial[::2] if even else polynomial)
+    turned = None if even else _turned_factor(system, factors)
+    requirements, remarks = _requirements(system, factors, even, signs, known, turned)
+    if mass.word is not Definite.POSITIVE:
+        remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
+    if zero_power:
+        remarks.append(f"lambda^{zero_power} splits off: {zero_power} zero roots.")
+    found = replace(
+        start,
+        removed=removed,
+        zero_power=zero_power,
+        polynomial=polynomial,
+        variable="lambda^2" if even else "lambda",
+        factors=factors,
+        method=Method.EVEN if even else Method.HURWITZ,
+        requirements=requirements,
+        remarks=tuple(remarks),
+        turned=turned is not None,
+    )
+    if zero_power:
+        cases, reduced = _cases_with_zero_roots(system, found, known)
+    else:
+        cases, reduced = _cases(system, found, known), None
+    return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases))
+
+
+def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
+    """The position of the simple factor that a turned steady spin explains."""
+    if not system.turned:
+        return None
+    top, bottom = system.turned
+    for i, factor in enumerate(factors):
+        p = factor.coefficients
+        if len(p) == 3 and p[1] == 0 and p[0] * top == p[2] * bottom and factor.multiplicity == 1:
+            return i
+    return None
+
+
+def _requirements(
+    system: LinearSystem, factors: tuple[Factor, ...], even: bool, signs: Signs, known: Signs, turned: int | None
+) -> tuple[tuple[Requirement, ...], list[str]]:
+    """The conditions on the factors of the characteristic polynomial, and remarks on what they leave open.
+
+    Nothing is required of the factor number ``turned``.
+    """
+    requirements: list[Requirement] = []
+    remarks: list[str] = []
+    for index, factor in enumerate(factors, start=1):
+        suffix = f" of factor {index}" if len(factors) > 1 else ""
+        if index - 1 == turned:
+            remarks.append(f"Factor {index} belongs to the steady spins about other directions of space.")
+            continue
+        p = factor.coefficients
+        lead, word = p[-1], known.sign(p[-1])
+        if word == "negative":
+            p = tuple(-c for c in p)
+        alone = len(factors) == 1 and factor.multiplicity == 1
+        if alone:
+            # det M > 0 is the leading coefficient, up to a positive factor.
+            requirements.append(Requirement(_power_name(even, len(p) - 1), p[-1], signs.condition(p[-1]), by_mass=True))
+        elif word not in ("positive", "negative"):
+            p = tuple(lead * c for c in p)
+        try:
+            wanted = _even_wanted(p) if even else lienard_chipart(p)[1:]
+        except TooLargeError as error:
+            remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
+            requirements.append(unwritten(p[0]))
+            continue
+        reduced = [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
+        requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
+    if even and not is_potential(system):
+        requirements += _simple(system, factors, known, remarks)
+    elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
+        remarks.append(
+            "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: "
+            "K > 0 is necessary and sufficient, a vanishing discriminant (equal frequencies) does no harm."
+        )
+    return tuple(requirements), remarks
+
+
+def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
+    """Lienard-Chipart needs, besides a_0 and the minors, only every second coefficient: the simpler half is kept.
+
+    ``wanted`` begins with a_(n-1), ..., a_0; for even n the first of them is the minor Delta_1 and stays.
+    """
+    if degree < 3 or any(r.never for r in wanted):
+        return wanted
+    first = 1 if degree % 2 == 0 else 0
+    numbered = list(zip(range(degree - 1 - first, 0, -1), wanted[first:], strict=False))
+    halves = [[r for k, r in numbered if k % 2 == odd] for odd in (0, 1)]
+    weight = [sum(len(r.condition.polynomial) for r in half if not r.always) for half in halves]
+    left_out = halves[0] if weight[0] > weight[1] else halves[1]
+    return [r for r in wanted if not any(r is other for other in left_out)]
+
+
+def _without_implied(wanted: list[Requirement]) -> list[Requirement]:
+    """f != 0 goes without saying where a product with f is required to be positive."""
+    strict = [f for r in wanted for f in r.condition.factors]
+    found = []
+    for r in wanted:
+        left = tuple(f for f in r.condition.nonzero if not any(f in (g, -g) for g in strict))
+        if r.condition.kind == "nonzero" and not left:
+            r = replace(r, condition=Condition("always", r.condition.polynomial))
+        elif left != r.condition.nonzero:
+            r = replace(r, condition=replace(r.condition, nonzero=left))
+        found.append(r)
+    return found
+
+
+def _power_name(even: bool, i: int) -> str:
+    return f"v{2 * i}" if even else f"a{i}"
+
+
+def _even_wanted(p: Coefficients) -> list[tuple[str, Polynomial]]:
+    n = len(p) - 1
+    wanted = [(f"v{2 * i}", p[i]) for i in range(n - 1, -1, -1)]
+    if n >= 2:
+        table = subdiscriminants(p)
+        # Up to degree 3 the discriminant alone makes the roots real.
+        first = 2 if n >= 4 else n
+        wanted += [(f"subdiscriminant {k}" if k < n else "discriminant", table[k - 1]) for k in range(first, n + 1)]
+    return wanted
+
+
+def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, remarks: list[str]) -> list[Requirement]:
+    """No common roots of different factors; a factor that occurs several times must be semisimple."""
+    requirements = []
+    for i, left in enumerate(factors):
+        try:
+            for j in range(i + 1, len(factors)):
+                value = resultant(left.coefficients, factors[j].coefficients)
+                requirements.append(differs(f"resultant of factors {i + 1} and {j + 1}", value, known))
+            if left.multiplicity > 1:
+                simple = _is_semisimple(system, left)
+                if not simple:
+                    never = left.coefficients[0] * 0
+                    requirements.append(differs(f"multiplicity of factor {i + 1}", never, known))
+                how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
+                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
+        except TooLargeError as error:
+            requirements.append(unwritten(left.coefficients[0]))
+            remarks.append(f"Whether roots of factor {i + 1} coincide with others is left open: {error}.")
+    return requirements
+
+
+def _is_semisimple(system: LinearSystem, factor: Factor) -> bool:
+    in_lambda = tuple(c for v in factor.coefficients for c in (v, v * 0))[:-1]
+    c, k = add(system.D, system.G), add(system.K, system.N)
+    return is_semisimple(system.M, c, k, in_lambda, factor.multiplicity)
+
+
+def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
+    stiff, wanted, facts = found.stiffness.requirements, found.requirements, system.facts
+    unstable = _unstable(wanted, known)
+    if not is_zero(system.N) or found.dissipation is not None:
+        if found.variable == "lambda^2":
+            why = Reason(Because.IMAGINARY_SIMPLE), Reason(Because.HIGHER_ORDER)
+            return Case(wanted, (), concluded({Fact.BOUNDED}, *why)), *unstable
+        if found.dissipation is None:
+            odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
+            return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
+        if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
+            return Case(wanted, (), _all_left(found.turned)), *unstable
+    negative = against(stiff, known)
+    minimum = facts | {Fact.STIFFNESS_POSITIVE}
+    if found.dissipation is not None:
+        nonsingular = differs("det K", stiff[-1].polynomial, known)
+        complete = facts | {Fact.DAMPING_POSITIVE}
+        destroyed = complete | {Fact.STIFFNESS_NEGATIVE_SOMEWHERE, Fact.STIFFNESS_NONSINGULAR}
+        return (
+            Case(stiff, (), concluded(complete | minimum)),
+            Case((nonsingular,), negative, concluded(destroyed)),
+        )
+    if is_potential(system):
+        growing = concluded({Fact.ROOT_RIGHT}, Reason(Because.REAL_ROOT))
+        return Case(stiff, (), _conservative(minimum)), Case((), negative, growing)
+    odd_degree = concluded(facts | {Fact.STIFFNESS_ODD}, Reason(Because.ODD_DEGREE_REMAINS))
+    return (
+        Case(stiff, (), _conservative(minimum)),
+        Case(
+            wanted, (), concluded(facts - {Fact.STIFFNESS_POSITIVE} | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ONLY))
+        ),
+        Case((), negative[-1:], odd_degree),
+        *unstable,
+    )
+
+
+def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) -> tuple[tuple[Case, ...], Theory | None]:
+    """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
+    unstable = _unstable(found.requirements, known)
+    if not system.cyclic:
+        return unstable, None
+    if only_momenta(system):
+        by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+        return (Case(by_mass, (), coasting()),), None
+    if momenta_are_constant(system):
+        reduced = analyse(ignoring_cyclic(system), known)
+        return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
+    if found.zero_power == len(system.cyclic) and found.variable == "lambda":
+        return (Case(found.requirements, (), drifting(_all_left(False))), *unstable), None
+    return unstable, None
+
+
+def _all_left(turned: bool) -> Verdict:
+    return concluded({Fact.LEFT_BUT_TURNED if turned else Fact.ROOTS_LEFT})
+
+
+def _conservative(minimum: frozenset[Fact]) -> Verdict:
+    """K > 0, D = N = 0."""
+    if Fact.ENERGY_NEVER_GROWS in minimum:
+        return concluded(minimum)
+    return concluded(minimum | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
+
+
+def _first_certain(cases: Sequence[Case]) -> Verdict:
+    """The first case proved to hold while all before it are refuted."""
+    for case in cases:
+        if case.always:
+            return case.verdict
+        if not case.never:
+            possible = (r for other in cases if not other.never for r in (*other.all_of, *other.any_of))
+            return undecided(Because.CONDITIONS_UNWRITTEN) if any(r.unwritten for r in possible) else depends()
+    return undecided(Because.BORDER)
+
+
+def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:
+    """One case at most: some necessary inequality is reversed, so that there is a root with positive real part."""
+    reversed_ = against(requirements, known)
+    return (Case((), reversed_, concluded({Fact.ROOT_RIGHT})),) if reversed_ else ()
+
+
+def _without_known_factor(p: Coefficients, known: Signs) -> tuple[Coefficients, Polynomial]:
+    """p = removed * q, with ``removed`` > 0 proved; common factors of unknown sign stay in q."""
+    q, common = primitive(p)
+    unit, powers = irreducible_factors(common)
+    removed, kept = common * 0 + abs(unit), common * 0 + (1 if unit > 0 else -1)
+    for factor, multiplicity in powers:
+        power = factor**multiplicity
+        word = known.sign(power)
+        if word == "positive":
+            removed *= power
+        elif word == "negative":
+            removed *= -power
+            kept = -kept
+        else:
+            kept *= power
+    return tuple(c * kept for c in q), removed
+
+
+def _factors(p: Coefficients) -> tuple[Factor, ...]:
+    """Irreducible factors; what is free of lambda and not a number stays with a single simple factor."""
+    found = factor_in_lambda(p)[1]
+    if len(found) == 1 and found[0][1] == 1:
+        return (Factor(p, 1),)
+    return tuple(Factor(coefficients, multiplicity) for coefficients, multiplicity in found)

@@ -1,0 +1,134 @@
+"""The theorems of problem 6 as values: what each needs, and what it gives.
+
+For  M x'' + (D + G) x' + (K + N) x = 0,  the first approximation of a system whose energy is, near the motion,
+x'.M x'/2 + x.K x/2 + terms of higher order:
+
+* Lagrange-Dirichlet, Routh: K > 0, N = 0, and the energy **of the nonlinear system** does not grow (it is constant, or
+  dissipative forces take it away): stable.  D >= 0 is what the first approximation shows of that; it is asked for
+  besides, and does not replace it: a Rayleigh function without quadratic terms has D = 0, whatever its sign.
+* Kelvin-Chetaev: K > 0, D > 0, N = 0: asymptotically stable; D > 0, N = 0, det K != 0, K not > 0: unstable;
+  D = N = 0 and det K < 0: unstable, whatever G is.
+* Lyapunov's first method: all roots to the left, or one to the right.
+* Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.
+
+A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from mbsym.problems.stability.reasons import Because, Reason
+
+
+class Fact(Enum):
+    """What may be shown of a subsystem, and what is presumed of the nonlinear system it belongs to."""
+
+    MASS_POSITIVE = "M > 0"
+    STIFFNESS_POSITIVE = "K > 0"
+    STIFFNESS_NONSINGULAR = "det K != 0"
+    STIFFNESS_NEGATIVE_SOMEWHERE = "x.K x < 0 for some x"
+    STIFFNESS_ODD = "det K < 0"
+    UNDAMPED = "D = 0"
+    DAMPING_SEMIDEFINITE = "D >= 0"
+    DAMPING_POSITIVE = "D > 0"
+    NOT_GYROSCOPIC = "G = 0"
+    POTENTIAL = "N = 0"
+    #: Of the nonlinear system, near the motion, in all orders: not to be read off D.
+    ENERGY_NEVER_GROWS = "the energy of the nonlinear system does not grow"
+    ROOTS_LEFT = "Re lambda < 0 for every root"
+    ROOT_RIGHT = "Re lambda > 0 for some root"
+    #: The roots of the first approximation that are not to the left are those of steady spins about other directions.
+    LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
+    #: No root to the right, and those on the imaginary axis are semisimple and not zero.
+    BOUNDED = "the first approximation is stable"
+
+
+class Ground(Enum):
+    """What carries a statement about the whole system if it holds for each of its subsystems."""
+
+    DECAYS = auto()  # every root to the left, but for those that the flaws explain
+    ENERGY = auto()  # a strict minimum of an energy that does not grow
+    UNDAMPED = auto()  # bounded in first approximation, neither dissipation nor circulation
+    IDLE = auto()  # nothing moves but at constant momenta
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """``gives`` is the ground that it lays; None: instability.  ``because``: its reason, in short."""
+
+    name: str
+    needs: frozenset[Fact]
+    gives: Ground | None
+    because: Because
+
+
+def _theorem(name: str, gives: Ground | None, because: Because, *needs: Fact) -> Theorem:
+    return Theorem(name, frozenset(needs), gives, because)
+
+
+LAGRANGE = "Lagrange-Dirichlet"
+ROUTH = "Routh"
+KELVIN_CHETAEV = "Kelvin-Chetaev"
+LYAPUNOV = "Lyapunov's first method"
+MALKIN = "Lyapunov-Malkin"
+
+_PLAIN = (Fact.MASS_POSITIVE, Fact.POTENTIAL)
+_MINIMUM = (*_PLAIN, Fact.STIFFNESS_POSITIVE, Fact.ENERGY_NEVER_GROWS)
+
+#: Of several that apply and give the same, the first is named.
+THEOREMS = (
+    _theorem(
+        KELVIN_CHETAEV,
+        None,
+        Because.DESTROYED,
+        *_PLAIN,
+        Fact.DAMPING_POSITIVE,
+        Fact.STIFFNESS_NONSINGULAR,
+        Fact.STIFFNESS_NEGATIVE_SOMEWHERE,
+    ),
+    _theorem(KELVIN_CHETAEV, None, Because.ODD_DEGREE, *_PLAIN, Fact.UNDAMPED, Fact.STIFFNESS_ODD),
+    _theorem(LYAPUNOV, None, Because.RIGHT_ROOT, Fact.ROOT_RIGHT),
+    _theorem(KELVIN_CHETAEV, Ground.DECAYS, Because.COMPLETE, *_PLAIN, Fact.DAMPING_POSITIVE, Fact.STIFFNESS_POSITIVE),
+    _theorem(LYAPUNOV, Ground.DECAYS, Because.LEFT, Fact.ROOTS_LEFT),
+    _theorem(MALKIN, Ground.DECAYS, Because.TURNED_DECAYS, Fact.LEFT_BUT_TURNED),
+    _theorem(LAGRANGE, Ground.ENERGY, Because.MINIMUM, *_MINIMUM, Fact.UNDAMPED, Fact.NOT_GYROSCOPIC),
+    _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM, *_MINIMUM, Fact.UNDAMPED),
+    _theorem(
+        LAGRANGE,
+        Ground.ENERGY,
+        Because.MINIMUM_AND_DISSIPATION,
+        *_MINIMUM,
+        Fact.DAMPING_SEMIDEFINITE,
+        Fact.NOT_GYROSCOPIC,
+    ),
+    _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
+)
+
+_IMPLIED = {
+    Fact.UNDAMPED: {Fact.DAMPING_SEMIDEFINITE},
+    Fact.DAMPING_POSITIVE: {Fact.DAMPING_SEMIDEFINITE},
+    Fact.STIFFNESS_POSITIVE: {Fact.STIFFNESS_NONSINGULAR},
+    Fact.STIFFNESS_ODD: {Fact.STIFFNESS_NONSINGULAR, Fact.STIFFNESS_NEGATIVE_SOMEWHERE},
+}
+
+
+def implied(shown: Set[Fact]) -> frozenset[Fact]:
+    """The facts, and those that they imply."""
+    return frozenset(shown).union(*(_IMPLIED.get(fact, ()) for fact in shown))
+
+
+def applying(shown: Set[Fact]) -> dict[Ground | None, Theorem]:
+    """By what they give, the first theorem all of whose hypotheses are among the facts."""
+    every = implied(shown)
+    found: dict[Ground | None, Theorem] = {}
+    for theorem in THEOREMS:
+        if theorem.needs <= every:
+            found.setdefault(theorem.gives, theorem)
+    return found
+
+
+def reason_of(theorem: Theorem) -> Reason:
+    return Reason(theorem.because)

@@ -1,0 +1,274 @@
+"""Verdicts as values, and the law by which those of subsystems combine.
+
+Of each subsystem some **grounds** are known, each of which holds for the whole if it holds for all parts, and some
+**flaws**, each of which the whole has if one part has it:
+
+    grounds(whole) = intersection of grounds(part),    flaws(whole) = union of flaws(part)
+
+and the word is read off these two by one table, ``LAW``.  So combination is commutative, associative and idempotent,
+and never gives a stronger verdict than any part has.  Why each ground carries over:
+
+* DECAYS: the roots of the whole are those of its parts (Lyapunov's first method; with zero roots of cyclic coordinates
+  and those of turned spins, Lyapunov-Malkin).
+* ENERGY: K of the whole is positive definite if K of every part is, and there is one energy, that of the whole system.
+  So a damped part beside an undamped one is stable if both have K > 0 and **one energy** of both does not grow, which
+  is to be said (``one_energy``); if stability of the damped part rests on its roots alone, nothing covers both, and
+  the whole is critical.
+* UNDAMPED: a part that gyroscopic forces stabilise, beside others without dissipation.
+* IDLE: nothing but constant momenta, which every other statement survives (they are parameters).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+
+from mbsym.problems.stability import sentences
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import LAGRANGE, ROUTH, Fact, Ground, applying, implied, reason_of
+from mbsym.problems.stability.word import Word
+
+
+class Flaw(Enum):
+    """What keeps a verdict from being better."""
+
+    CYCLIC = auto()  # cyclic coordinates drift
+    TURNED = auto()  # a turned spin does not come back
+    OPEN = auto()  # no theorem applies
+    DEPENDS = auto()  # it depends on the parameters
+    UNSTABLE = auto()
+    SINGULAR = auto()  # the mass matrix is singular: nothing that is computed with it means anything
+
+
+_ANY = frozenset(Flaw)
+
+
+@dataclass(frozen=True)
+class Row:
+    """``word`` where ``ground`` is there, all flaws of ``wanted``, and no others than those ``allowed``."""
+
+    word: Word
+    ground: Ground | None = None
+    wanted: frozenset[Flaw] = frozenset()
+    allowed: frozenset[Flaw] = _ANY
+
+
+_DRIFT = frozenset({Flaw.CYCLIC})
+_SOUND = frozenset({Flaw.CYCLIC, Flaw.TURNED})
+
+#: The first row that fits gives the word.  Every combination of grounds and flaws fits one.
+LAW = (
+    Row(Word.UNDECIDED, wanted=frozenset({Flaw.SINGULAR})),
+    Row(Word.UNSTABLE, wanted=frozenset({Flaw.UNSTABLE})),
+    Row(Word.DEPENDS, wanted=frozenset({Flaw.DEPENDS})),
+    Row(Word.UNDECIDED, wanted=frozenset({Flaw.OPEN})),
+    Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
+    Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.GYROSCOPIC, Ground.UNDAMPED),
+    Row(Word.CRITICAL),
+)
+
+#: Grounds and flaws of a verdict of which nothing but its word is known.
+PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
+    Word.ASYMPTOTIC: ({Ground.DECAYS}, set()),
+    Word.ASYMPTOTIC_BUT_CYCLIC: ({Ground.DECAYS}, {Flaw.CYCLIC}),
+    Word.ASYMPTOTIC_BUT_TURNED: ({Ground.DECAYS}, {Flaw.TURNED}),
+    Word.STABLE: ({Ground.ENERGY, Ground.UNDAMPED}, set()),
+    Word.STABLE_BUT_CYCLIC: ({Ground.ENERGY, Ground.UNDAMPED}, {Flaw.CYCLIC}),
+    Word.GYROSCOPIC: ({Ground.UNDAMPED}, set()),
+    Word.CRITICAL: (set(), set()),
+    Word.UNDECIDED: (set(), {Flaw.OPEN}),
+    Word.DEPENDS: (set(), {Flaw.DEPENDS}),
+    Word.UNSTABLE: (set(), {Flaw.UNSTABLE}),
+}
+
+
+def row_of(grounds: Set[Ground], flaws: Set[Flaw]) -> Row:
+    """The row of the table."""
+    return next(
+        row for row in LAW if row.wanted <= flaws <= row.allowed and (row.ground is None or row.ground in grounds)
+    )
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A word, the names of the theorems it rests on (empty when none does), and why.
+
+    ``grounds`` with the names of the theorems that lay them, and ``flaws``, are what combination needs; where they are
+    not given they are those of the word.  Raises ValueError where they belong to another word.
+    """
+
+    word: Word
+    theorems: tuple[str, ...] = ()
+    reasons: tuple[Reason, ...] = ()
+    grounds: tuple[tuple[Ground, tuple[str, ...]], ...] | None = None
+    flaws: frozenset[Flaw] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "word", Word(self.word))
+        grounds, flaws = PLAIN[self.word]
+        if self.flaws is None:
+            object.__setattr__(self, "flaws", frozenset(flaws))
+        if self.grounds is None:
+            decisive = row_of(grounds, flaws).ground
+            given = {ground: self.theorems if ground is decisive else () for ground in grounds}
+        else:
+            given = dict(self.grounds)
+        object.__setattr__(self, "grounds", tuple((ground, given[ground]) for ground in Ground if ground in given))
+        if row_of({*given}, self.flawed).word != self.word:
+            raise ValueError(f"these are not the grounds of '{self.word}'")
+
+    @property
+    def laid(self) -> dict[Ground, tuple[str, ...]]:
+        return dict(self.grounds or ())
+
+    @property
+    def flawed(self) -> frozenset[Flaw]:
+        return self.flaws or frozenset()
+
+    @property
+    def theorem(self) -> str:
+        """The names of the theorems, or nothing."""
+        return ", ".join(self.theorems)
+
+    @property
+    def explanation(self) -> str:
+        """The reasons in sentences."""
+        return sentences.explanation(self.reasons)
+
+    def because(self, code: Because) -> bool:
+        return any(reason.code is code for reason in self.reasons)
+
+    @property
+    def coordinates_singular(self) -> bool:
+        """Whether nothing is claimed because the mass matrix is singular here."""
+        return Flaw.SINGULAR in self.flawed
+
+    def no_stronger_than(self, other: Verdict) -> bool:
+        """Whether everything that this says follows from the other: no further ground, every flaw."""
+        return {*self.laid} <= {*other.laid} and self.flawed >= other.flawed
+
+
+def undecided(code: Because, *data: object) -> Verdict:
+    """No theorem applies, and why."""
+    flaw = Flaw.SINGULAR if code in (Because.MASS_SINGULAR, Because.ORDER_LOWER) else Flaw.OPEN
+    return Verdict(Word.UNDECIDED, (), (Reason(code, data),), flaws=frozenset({flaw}))
+
+
+def depends() -> Verdict:
+    """Different for different parameters."""
+    return Verdict(Word.DEPENDS, (), (Reason(Because.SEE_CASES),))
+
+
+def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BORDER) -> Verdict:
+    """What the theorems whose hypotheses are all ``shown`` give, or what may be said without any.
+
+    ``reasons`` replace those of the theorem; where no theorem applies and the first approximation is not shown to be
+    stable, ``why_not`` is the reason.
+    """
+    found = applying(shown)
+    if None in found:
+        return Verdict(Word.UNSTABLE, (found[None].name,), reasons or (reason_of(found[None]),))
+    grounds: dict[Ground, tuple[str, ...]] = {
+        ground: (theorem.name,) for ground, theorem in found.items() if ground is not None
+    }
+    every = implied(shown)
+    if not grounds and Fact.BOUNDED not in every:
+        return undecided(why_not)
+    gyroscopic = Fact.STIFFNESS_POSITIVE not in every or Ground.ENERGY in grounds
+    if gyroscopic and every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.MASS_POSITIVE}:
+        grounds[Ground.UNDAMPED] = ()
+    flaws = {Flaw.TURNED} if Fact.LEFT_BUT_TURNED in every else set()
+    if flaws:  # the energy of a free spin has its minimum at given angular momentum only
+        grounds = {ground: names for ground, names in grounds.items() if ground is Ground.DECAYS}
+    row = row_of({*grounds}, flaws)
+    theorem = found.get(row.ground)
+    told = reasons or ((reason_of(theorem),) if theorem is not None else ())
+    names = () if row.ground is None else grounds[row.ground]
+    return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
+
+
+def drifting(verdict: Verdict) -> Verdict:
+    """The verdict on the other coordinates as one on the whole, whose cyclic coordinates drift."""
+    flaws = verdict.flawed | {Flaw.CYCLIC}
+    # A minimum of the effective potential at constant cyclic momenta is Routh's theorem.
+    grounds = {
+        ground: tuple(sorted({ROUTH if name == LAGRANGE else name for name in names}))
+        for ground, names in verdict.laid.items()
+    }
+    row = row_of({*grounds}, flaws)
+    names = verdict.theorems if row.ground is None else grounds[row.ground]
+    return Verdict(row.word, names, (*verdict.reasons, Reason(Because.DRIFT)), tuple(grounds.items()), flaws)
+
+
+def coasting() -> Verdict:
+    """All coordinates are cyclic and nothing acts on them: M q'' = 0."""
+    every = tuple((ground, ()) for ground in Ground)
+    return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(Because.COASTING),), every, frozenset({Flaw.CYCLIC}))
+
+
+def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
+    """The verdict for a system that splits into subsystems: no better than its worst part.  See the module's head.
+
+    ``one_energy``: they belong to one nonlinear system whose energy does not grow.  Raises ValueError where there is no
+    subsystem.
+    """
+    parts = tuple(verdicts) if one_energy else tuple(map(_without_energy, verdicts))
+    if not parts:
+        raise ValueError("no subsystem, no verdict")
+    if len(parts) == 1:
+        return parts[0]
+    kept = set.intersection(*({*part.laid} for part in parts))
+    grounds = {
+        ground: tuple(sorted({name for part in parts for name in part.laid[ground]}))
+        for ground in Ground
+        if ground in kept
+    }
+    flaws = frozenset[Flaw]().union(*(part.flawed for part in parts))
+    row = row_of(kept, flaws)
+    if row.ground is not None:
+        names = grounds[row.ground]
+    else:  # those of the parts that have the flaw which decides
+        names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
+        names = names if row.word == Word.UNSTABLE else ()
+    return Verdict(row.word, names, _reasons(parts, row), tuple(grounds.items()), flaws)
+
+
+def _without_energy(part: Verdict) -> Verdict:
+    """A part that decays, without what its energy would say beside parts that do not."""
+    decays = {Ground.DECAYS, Ground.ENERGY} <= {*part.laid} and Ground.IDLE not in part.laid
+    return replace(part, grounds=tuple(x for x in part.laid.items() if x[0] is not Ground.ENERGY)) if decays else part
+
+
+def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
+    """Those of the parts that decide; what is counted in one part is not counted in the whole."""
+    alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
+    idle = [part for part in parts if Ground.IDLE in part.laid]
+    moving = [part for part in parts if part not in idle]
+    found: set[Reason] = set()
+    if row.wanted - _SOUND or len(alike) == len(parts) or (alike and row.ground in (Ground.UNDAMPED, None)):
+        told = [part for part in alike if part in moving] or alike
+        found = {reason for part in told for reason in part.reasons}
+    elif row.ground is None:
+        found = {Reason(Because.UNLIKE_PARTS)}
+    elif row.ground is Ground.DECAYS and len({part.word for part in moving}) == 1:
+        found = {reason for part in moving for reason in part.reasons}
+    else:
+        if row.ground is Ground.ENERGY and not all(Ground.UNDAMPED in part.laid for part in parts):
+            found = {reason for part in alike for reason in part.reasons} - {Reason(Because.MINIMUM)}
+            found.add(Reason(Because.MINIMUM_AND_DISSIPATION))
+        if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
+            found.add(Reason(Because.PARTLY_CYCLIC))
+    if idle and moving and row.ground is Ground.DECAYS:
+        found.add(Reason(Because.CONSTANT_MOMENTA))
+    several = len(alike) > 1
+    return tuple(sorted({_uncounted(x) if several else x for x in found}, key=lambda reason: reason.rank))
+
+
+def _uncounted(reason: Reason) -> Reason:
+    return Reason(Because.RIGHT_ROOT) if reason.code is Because.RIGHT_ROOTS else reason
