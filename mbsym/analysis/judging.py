@@ -54,7 +54,8 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
     work, budget = ring.work, ring.work_budget
     ring.work, ring.work_budget = 0, min(budget // CLAIM_SHARE, max(allowance, 0))
     try:
-        result = claims.examine(source, claim)
+        with source.strictly():  # a claim is no better than the checks of what it is compared with
+            result = claims.examine(source, claim)
     except Failure as reason:
         result = claims.undecided(source.system, claim, str(reason))
     spent, ring.work, ring.work_budget = ring.work, work, budget

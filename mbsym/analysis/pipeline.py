@@ -7,11 +7,12 @@ that explains it, and how it follows from other results.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from types import ModuleType
 from typing import Any, TypeVar
 
+from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import approximation, judging, second_routes
@@ -21,6 +22,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.rest import given_values, missing_values
+from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
 from mbsym.problems import (
@@ -35,7 +37,7 @@ from mbsym.problems import (
     linearisation,
     stability,
 )
-from mbsym.problems.checks import Check
+from mbsym.problems.checks import Check, oracles
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
 from mbsym.problems.dissipation import Balance
@@ -51,11 +53,23 @@ from mbsym.problems.stability import Stability
 T = TypeVar("T")
 
 
+#: The checks with which verdicts fall: those of the motion, of the energy and of the first approximation.
+JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
+
+
 class Problem(Derived["Analysis", T]):
     """A numbered problem: an attribute of Analysis that holds its result; ``module`` explains it."""
 
-    def __init__(self, number: int, title: str, module: ModuleType, derive: Callable[[Analysis], T]) -> None:
-        super().__init__(derive)
+    def __init__(
+        self,
+        number: int,
+        title: str,
+        module: ModuleType,
+        derive: Callable[[Analysis], T],
+        stands_on: Sequence[str],
+        says: bool = False,
+    ) -> None:
+        super().__init__(derive, stands_on, says)
         self.number, self.title, self.module = number, title, module
 
     @property
@@ -80,10 +94,16 @@ class Analysis(Stages):
         self, system: System, problems: Iterable[int] | None = None, terms: int = TERM_BUDGET, suggests: bool = True
     ) -> None:
         super().__init__()
+        self._checks: dict[str, Check] = {}
         self.system = system
         self.problems = ALL_PROBLEMS if problems is None else tuple(sorted(set(problems)))
         self.terms = terms
         self.suggests = suggests
+
+    @property
+    def asked(self) -> tuple[Problem[Any], ...]:
+        """The problems that reports and self-checks are about."""
+        return tuple(PROBLEMS[number] for number in self.problems)
 
     def stage(self, number: int) -> Stage:
         """Stage of a numbered problem, derived now if it was not before."""
@@ -101,16 +121,27 @@ class Analysis(Stages):
     programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
     expanded = Derived["Analysis", Scene](approximation.expanded)
 
+    @cached_property
+    def oracles(self) -> Oracles:
+        """The states at which checks compare two routes, and d'Alembert's principle there."""
+        return oracles(self.system, self.ring)
+
     def over_ring(self, bodies: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered."""
         return Scene(self.system, self.ring, ring_environment(self.system, self.ring), self.ring, bodies=bodies)
 
     # --- the numbered problems ---
 
-    kinematics = Problem[Kinematics](1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene))
-    energy = Problem[Energy](2, "energy and force function", energy, lambda a: energy.energy(a.scene))
+    kinematics = Problem[Kinematics](
+        1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene), ("kinematics",)
+    )
+    energy = Problem[Energy](2, "energy and force function", energy, lambda a: energy.energy(a.scene), ("energy",))
     equations = Problem[Equations](
-        3, "nonlinear Lagrange equations", equations, lambda a: equations.equations(a.scene, a.energy)
+        3,
+        "nonlinear Lagrange equations",
+        equations,
+        lambda a: equations.equations(a.scene, a.energy),
+        ("equations of motion",),
     )
     residuals = Derived["Analysis", Column](
         lambda a: column(a.ring, [-x.value for x in residuals(a.expanded).values()])
@@ -120,27 +151,52 @@ class Analysis(Stages):
         "equilibrium conditions",
         equilibrium,
         lambda a: equilibrium.equilibrium(a.parameters_scene, [x.polynomial for x in a.residuals], a.signs),
+        ("equilibrium",),
+        says=True,
     )
     first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation)
-    linearisation = Problem[Linearisation](5, "linearisation", linearisation, approximation.autonomous)
+    linearisation = Problem[Linearisation](
+        5, "linearisation", linearisation, approximation.autonomous, ("linearisation", "perturbed motion")
+    )
     balance = Derived["Analysis", Balance](lambda a: a._balance())
-    stability = Problem[Stability](6, "stability", stability, lambda a: a._stability())
+    stability = Problem[Stability](6, "stability", stability, lambda a: a._stability(), JUDGED, says=True)
     integrals = Problem[tuple[Integral, ...]](
         7,
         "first integrals",
         integrals,
         lambda a: integrals.integrals(a.scene, a.energy, a.equations, a.programs),
+        ("equations of motion", "first integrals"),
+        says=True,
     )
 
     # --- at numbers ---
 
-    equilibria = Derived["Analysis", Equilibria](lambda a: a._equilibria())
+    equilibria = Derived["Analysis", Equilibria](lambda a: a._equilibria(), ("straight-line program",), says=True)
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
     claims = Derived["Analysis", tuple[ClaimResult, ...]](judging.judged_claims)
-    trials = Derived["Analysis", Trials](judging.trials)
+    trials = Derived["Analysis", Trials](judging.trials, JUDGED, says=True)
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
+
+    def broken(self, names: Sequence[str]) -> NoResult | None:
+        """Why what stands on these checks is withdrawn: the first of them that fails; None where none does."""
+        for name in names:
+            check = self.check(name)
+            if check is not None and check.failed:
+                reason = f"withdrawn, because the self-check '{name}' failed: {check.detail}"
+                return NoResult(reason, "", "withdrawn", "withdrawn", severity=Severity.DEFECT)
+        return None
+
+    def check(self, name: str) -> Check | None:
+        """The check of that name; None where the results do not allow one."""
+        if name not in self._checks:
+            stage = self.run(f"check: {name}", lambda: second_routes.check(self, name))
+            if stage.value is None:  # nothing to compare yet
+                self.forget(stage)
+                return None
+            self._checks[name] = stage.value
+        return self._checks[name]
 
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.linearisation

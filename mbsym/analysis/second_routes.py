@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure
@@ -19,47 +19,97 @@ if TYPE_CHECKING:
 
 
 def checks(analysis: Analysis) -> tuple[Check, ...]:
-    """Every check that the asked-for problems and their results allow."""
-    done = []
-    for name, check in _second_routes(analysis):
-        try:
-            done.append(check())
-        except Failure as reason:
-            done.append(Check(name, "", "", comparison.UNDECIDED, str(reason)))
-    return tuple(done)
+    """Every check on which the asked-for problems stand, as far as their results allow it, and those of the program."""
+    for number in analysis.problems:
+        analysis.stage(number)
+    names = {name for problem in analysis.asked for name in problem.stands_on}
+    if 3 in analysis.problems or "programs" in analysis.derived:
+        names |= {"straight-line program", "mass matrix"}
+    return tuple(found for name in SECOND_ROUTES if name in names and (found := analysis.check(name)) is not None)
 
 
-def _second_routes(analysis: Analysis) -> Iterator[tuple[str, Callable[[], Check]]]:
-    """Name and computation of every check."""
-    system, ring = analysis.system, analysis.ring
-    truth = comparison.oracles(system, ring)
-    asked = {stage.name: stage.value for stage in map(analysis.stage, analysis.problems)}
-    closed, linear = asked.get("equations"), asked.get("linearisation")
-    if asked.get("kinematics") is not None:
-        yield "kinematics", lambda: comparison.check_kinematics(truth, asked["kinematics"])
-    if asked.get("energy") is not None:
-        yield "energy", lambda: comparison.check_energy(truth, asked["energy"])
+def check(analysis: Analysis, name: str) -> Check | None:
+    """One check; None where there is nothing to compare, ``undecided`` where it cannot be carried out."""
+    try:
+        return SECOND_ROUTES[name](analysis)
+    except Failure as reason:
+        return Check(name, "", "", comparison.UNDECIDED, str(reason))
+
+
+# --- one by one: None where there is nothing to compare ---
+
+
+def _kinematics(analysis: Analysis) -> Check | None:
+    found = analysis.optional("kinematics")
+    return None if found is None else comparison.check_kinematics(analysis.oracles, found)
+
+
+def _energy(analysis: Analysis) -> Check | None:
+    found = analysis.optional("energy")
+    return None if found is None else comparison.check_energy(analysis.oracles, found)
+
+
+def _closed(analysis: Analysis) -> Equations | None:
+    """The closed equations, where something has asked for them."""
+    return analysis.optional("equations") if "equations" in analysis.derived else None
+
+
+def _equations(analysis: Analysis) -> Check | None:
+    closed = _closed(analysis)
+    return None if closed is None else comparison.check_equations(analysis.oracles, closed)
+
+
+def _program(analysis: Analysis) -> Check | None:
+    found = analysis.optional("programs")
+    return None if found is None else comparison.check_program(analysis.oracles, found)
+
+
+def _mass_matrix(analysis: Analysis) -> Check | None:
+    found = analysis.optional("programs")
+    return None if found is None else comparison.check_mass_matrix(analysis.oracles, found)
+
+
+def _equilibrium(analysis: Analysis) -> Check | None:
+    """Against the closed equations where these are derived, else against d'Alembert's principle."""
+    found, closed = analysis.optional("equilibrium"), _closed(analysis)
+    if found is None:
+        return None
     if closed is not None:
-        yield "equations of motion", lambda: comparison.check_equations(truth, closed)
-    if (3 in analysis.problems or "programs" in analysis.derived) and analysis.optional("programs") is not None:
-        yield "straight-line program", lambda: comparison.check_program(truth, analysis.programs)
-        yield "mass matrix", lambda: comparison.check_mass_matrix(truth, analysis.programs)
-    if closed is not None and asked.get("equilibrium") is not None:
-        found = analysis.equilibrium
-        yield (
-            "equilibrium",
-            lambda: comparison.check_residuals(ring, residuals_of(analysis, closed), found.residuals),
-        )
-    if closed is not None and linear is not None:
-        yield "linearisation", lambda: comparison.check_linearisation(ring, linear, linearised(analysis, closed))
-    if linear is not None:
-        known = dependent(analysis)
-        yield "perturbed motion", lambda: perturbation.check_perturbed_motion(system, ring, linear, known)
-    if asked.get("integrals"):
-        yield (
-            "first integrals",
-            lambda: perturbation.check_integrals(truth, analysis.programs, asked["integrals"]),
-        )
+        return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
+    return perturbation.check_motion(analysis.system, analysis.ring, found.residuals, dependent(analysis))
+
+
+def _linearisation(analysis: Analysis) -> Check | None:
+    linear, closed = analysis.optional("linearisation"), _closed(analysis)
+    if linear is None or closed is None:
+        return None
+    return comparison.check_linearisation(analysis.ring, linear, linearised(analysis, closed))
+
+
+def _perturbed(analysis: Analysis) -> Check | None:
+    linear = analysis.optional("linearisation")
+    if linear is None:
+        return None
+    return perturbation.check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis))
+
+
+def _integrals(analysis: Analysis) -> Check | None:
+    found = analysis.optional("integrals")
+    return perturbation.check_integrals(analysis.oracles, analysis.programs, found) if found else None
+
+
+#: Every check, by its name, in the order in which they are told.
+SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
+    "kinematics": _kinematics,
+    "energy": _energy,
+    "equations of motion": _equations,
+    "straight-line program": _program,
+    "mass matrix": _mass_matrix,
+    "equilibrium": _equilibrium,
+    "linearisation": _linearisation,
+    "perturbed motion": _perturbed,
+    "first integrals": _integrals,
+}
 
 
 def dependent(analysis: Analysis) -> perturbation.Dependent:

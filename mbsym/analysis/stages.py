@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from typing import Any, Generic, Self, TypeVar, overload
 
 from mbsym.algebra.failures import Failure, Limit, Severity, SingularPoint
@@ -63,11 +63,18 @@ class Stage:
 
 
 class Stages:
-    """Remembers every stage by its name."""
+    """Remembers every stage by its name, and which of them are withdrawn because a check they stand on has failed.
+
+    While a stage is being derived the others are taken as they are (a check compares what is derived, right or wrong);
+    who asks from outside gets only what has not been withdrawn.
+    """
 
     def __init__(self) -> None:
         self._stages: dict[str, Stage] = {}
         self._nested = 0.0
+        self._depth = 0
+        self._strict = False
+        self._withdrawn: dict[str, NoResult] = {}
 
     def run(self, name: str, compute: Callable[[], Any]) -> Stage:
         """The remembered stage, computed on first demand."""
@@ -75,14 +82,21 @@ class Stages:
             outer, self._nested = self._nested, 0.0
             started = time.perf_counter()
             value, failure = None, None
+            self._depth += 1
             try:
                 value = compute()
             except Failure as reason:
                 failure = NoResult.of(reason)
+            finally:
+                self._depth -= 1
             whole = time.perf_counter() - started
             self._stages[name] = Stage(name, value, failure, whole - self._nested)
             self._nested = outer + whole
         return self._stages[name]
+
+    def forget(self, stage: Stage) -> None:
+        """As if the stage had not been asked for."""
+        del self._stages[stage.name]
 
     def result(self, name: str, compute: Callable[[], Any]) -> Any:
         """The value of a stage.  Raises Unavailable where it has none."""
@@ -92,10 +106,46 @@ class Stages:
         return stage.value
 
     def stage_of(self, attribute: str) -> Stage:
-        """The stage behind an attribute, derived now if it was not before."""
+        """The stage behind an attribute, derived now if it was not before; withdrawn ones have the reason only."""
         with suppress(Unavailable):
             getattr(self, attribute)
-        return self._stages[attribute]
+        stage = self._stages[attribute]
+        withdrawn = self._withdrawn.get(attribute)
+        if withdrawn is None or self._depth > 0:
+            return stage
+        return replace(stage, value=None, failure=withdrawn)
+
+    # --- what stands on checks, and falls with them ---
+
+    def broken(self, names: Sequence[str]) -> NoResult | None:
+        """Why what stands on these checks is withdrawn, or None; a pipeline without checks withdraws nothing."""
+        return None
+
+    @contextmanager
+    def strictly(self) -> Iterator[None]:
+        """Whatever is asked for here is vouched for: nothing is taken whose check has failed, not even formulas."""
+        depth, strict, self._depth, self._strict = self._depth, self._strict, 0, True
+        try:
+            yield
+        finally:
+            self._depth, self._strict = depth, strict
+
+    def vouch(self, name: str, stands_on: Sequence[str]) -> None:
+        """Raises Unavailable if a check has failed on which the stage of that name stands."""
+        if name not in self._withdrawn:
+            self._depth += 1
+            try:
+                broken = self.broken(stands_on)
+            finally:
+                self._depth -= 1
+            if broken is None:  # another check may become possible later
+                return
+            self._withdrawn[name] = broken
+        raise Unavailable(name, self._withdrawn[name])
+
+    def asked_from_outside(self, says: bool) -> bool:
+        """Whether a stage has to be vouched for now: one that is said in sentences, or any where it is strict."""
+        return self._depth == 0 and (says or self._strict)
 
     def optional(self, attribute: str) -> Any:
         """A result, or None where there is none."""
@@ -111,10 +161,15 @@ class Stages:
 
 
 class Derived(Generic[Owner, T]):
-    """An attribute of a pipeline that is derived when it is first asked for; its name is that of its stage."""
+    """An attribute of a pipeline that is derived when it is first asked for; its name is that of its stage.
 
-    def __init__(self, derive: Callable[[Owner], T]) -> None:
+    ``stands_on`` names the checks with which it falls.  What ``says`` something (a verdict, that a motion is one, that
+    a quantity is conserved) is withdrawn then; formulas stay to be looked at, beside the failed check.
+    """
+
+    def __init__(self, derive: Callable[[Owner], T], stands_on: Sequence[str] = (), says: bool = False) -> None:
         self.derive = derive
+        self.stands_on, self.says = tuple(stands_on), says
         self.__doc__ = derive.__doc__
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -130,4 +185,6 @@ class Derived(Generic[Owner, T]):
         if pipeline is None:
             return self
         found: T = pipeline.result(self.name, lambda: self.derive(pipeline))
+        if self.stands_on and pipeline.asked_from_outside(self.says):
+            pipeline.vouch(self.name, self.stands_on)
         return found

@@ -24,6 +24,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import Oracle, Series, State, TaylorSeries
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED, Oracles
@@ -49,6 +50,26 @@ def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, de
     routes = ("matrices of the first approximation", f"{D_ALEMBERT}, disturbed")
     exact = all(value == ZERO for value, _ in _given_motion(system).values())
     return decide("perturbed motion", routes, exact, lambda balls: _pairs(system, ring, linear, dependent, balls))
+
+
+def check_motion(system: System, ring: Ring, residuals: Sequence[Formula], dependent: Dependent) -> Check:
+    """Problem 4 against the independent derivation on the motion, at random parameter values.
+
+    ``residuals`` are the forcing f_i there; d'Alembert's principle gives M q'' - f with q'' = 0.
+    """
+    routes = ("Newton-Euler recursion on the motion", D_ALEMBERT)
+    exact = all(value == ZERO for value, _ in _given_motion(system).values())
+
+    def pairs(balls: bool) -> list[Pair]:
+        state = _unperturbed_state(system, ring, dependent, balls)
+        carry = Carrier(ring, state.numbers, state.values)
+        needed = Oracle(system, state).residuals
+        names = system.coordinates
+        return [
+            (f"equation {name}", -carry(x.polynomial), needed[name]) for name, x in zip(names, residuals, strict=True)
+        ]
+
+    return decide("equilibrium", routes, exact, pairs)
 
 
 def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Dependent, balls: bool) -> list[Pair]:

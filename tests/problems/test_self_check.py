@@ -183,7 +183,28 @@ CARRIED = {
     ],
 }
 
+#: A pendulum whose pivot is accelerated in a prescribed way.
+LIFT = {
+    "mbsym": 1,
+    "name": "lift",
+    "parameters": PARAMETERS,
+    "prescribed": {"chi": "Omega"},
+    "bodies": [
+        {
+            "name": "rod",
+            "attached to": 0,
+            "rotation": {"axes": [3], "angles": ["q"]},
+            "connection point": ["chi", "k*chi**2/2", 0],
+            "mass centre": [0, "-l", 0],
+            "mass": "m1",
+        }
+    ],
+    "loads": [{"uniform gravity": {"vector": [0, "-g", 0]}}],
+    "motion": {"q": 0},
+}
+
 SYSTEMS = {
+    "lift": (LIFT, (1, 2, 3, 4, 5)),
     "machine": (MACHINE, (1, 2, 3)),
     "spinning": (SPINNING, (1, 2, 3, 4, 5)),
     "free orbit": (ORBITING, (1, 2, 3)),
@@ -671,6 +692,14 @@ CAUGHT = [
         "value if",
         "spinning",
         (LINEARISATION,),
+    ),
+    Mistake(
+        "the acceleration of a prescribed motion",
+        "problems.linearisation:by_quadratisation",
+        "position[i][j] + rate_on_motion(scene, mixed[i][j])",
+        "position[i][j]",
+        "lift",
+        (LINEARISATION, PERTURBED),
     ),
     Mistake(
         "velocities forgotten among the applied forces",
