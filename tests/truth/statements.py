@@ -1,0 +1,156 @@
+"""What outputs say, as data, and whether it is true of a system whose answer is known.
+
+``false_sentences`` is the only judge: it takes what was printed (verdicts, conserved quantities, equilibria, errors) and
+what is known by hand, and lists every sentence that is not true.  It knows nothing of how mbsym arrives at them.  The
+tests feed it the real outputs (nothing may be false) and planted lies (each must be found).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+State = np.ndarray
+
+#: What may truly be said of a motion of each nature.  The first word is the whole truth, the others say less.
+ASYMPTOTIC = "asymptotically stable"
+STABLE = "stable"
+CRITICAL = "stable in first approximation only, critical"
+GYROSCOPIC = "gyroscopically stabilised only"
+UNSTABLE = "unstable"
+DRIFTS = "stable with respect to the other variables; the cyclic coordinates drift"
+ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable with respect to the other variables; the cyclic coordinates drift"
+TURNED = "asymptotically stable up to a rotation of space"
+NOTHING = ("undecided", "depends on the parameters")
+
+TRUE_OF: Mapping[str, tuple[str, ...]] = {
+    # nature of the motion: what is true of it
+    "asymptotic": (ASYMPTOTIC, STABLE, CRITICAL),
+    "stable": (STABLE, CRITICAL),
+    "stable, gyroscopic": (STABLE, CRITICAL, GYROSCOPIC),  # K is not positive definite, and nothing dissipates
+    "open, gyroscopic": (GYROSCOPIC, CRITICAL),  # nobody knows; the first approximation is stable, K is not positive
+    "open, critical": (CRITICAL,),  # the first approximation is stable, no theorem is known
+    "unstable": (UNSTABLE,),
+    "unstable, critical": (UNSTABLE, CRITICAL),  # the first approximation is stable, the motion is not
+    "drifts": (DRIFTS, CRITICAL),
+    "drifts, gyroscopic": (DRIFTS, CRITICAL, GYROSCOPIC),
+    "asymptotic, drifts": (ASYMPTOTIC_BUT_DRIFTS, DRIFTS, CRITICAL),
+    "turned": (TURNED, CRITICAL),
+    "unknown": (),
+    "time-dependent": (),
+}
+WORDS = {ASYMPTOTIC, STABLE, CRITICAL, GYROSCOPIC, UNSTABLE, DRIFTS, ASYMPTOTIC_BUT_DRIFTS, TURNED, *NOTHING}
+
+
+@dataclass(frozen=True)
+class Known:
+    """A description, and what is true of it by hand.
+
+    ``nature`` is that of its unperturbed motion at its values (a key of TRUE_OF); with ``decided`` mbsym has to find
+    the whole truth, else it may say less.  ``motion`` (t, start) -> state solves the equations of motion in floats, the
+    state being (q, q'); it is how conserved quantities and errors are judged.  ``rests`` are all relative equilibria.
+    """
+
+    name: str
+    text: str
+    nature: str = "unknown"
+    decided: bool = True
+    motion: Callable[[float, State], State] | None = None
+    rests: Sequence[Sequence[float]] | None = None
+    conserves_energy: bool | None = None
+
+
+def false_verdict(known: Known, word: str) -> list[str]:
+    """The sentence "the motion is <word>", if it is false."""
+    assert word in WORDS, word
+    if word in NOTHING or word in TRUE_OF[known.nature]:
+        return []
+    return [f"{known.name}: '{word}' is said of a motion that is {known.nature}"]
+
+
+def undecided_verdict(known: Known, word: str) -> list[str]:
+    """What should have been decided, and was not: no falsehood, but no help either."""
+    if not known.decided or not TRUE_OF[known.nature] or word == TRUE_OF[known.nature][0]:
+        return []
+    return [f"{known.name}: '{word}' is all that is said of a motion that is {known.nature}"]
+
+
+def false_integrals(known: Known, names: Sequence[str], integrals: Sequence[Mapping[str, str]]) -> list[str]:
+    """Every quantity that is called a first integral and varies along a true motion."""
+    if known.motion is None:
+        return []
+    found = []
+    n = len(names)
+    source = np.random.default_rng(20260101)
+    for item in integrals:
+        start = source.uniform(-0.5, 0.5, 2 * n)
+        values = []
+        for time in (0.0, 0.3, 1.1, 2.7):
+            state = known.motion(time, start)
+            table = dict(zip(names, state[:n], strict=True)) | {"t": time}
+            table |= {f"{name}_dot": x for name, x in zip(names, state[n:], strict=True)}
+            values.append(float(evaluated(item["formula"], table)))
+        spread = max(values) - min(values)
+        if spread > 1e-7 * (1 + max(map(abs, values))):
+            found.append(f"{known.name}: '{item['name']}' is said to be conserved, but varies by {spread:.3g}")
+    return found
+
+
+def evaluated(formula: str, table: Mapping[str, float]) -> float:
+    """The value of a formula in Python syntax."""
+    functions = {name: getattr(np, name) for name in ("sin", "cos", "sqrt", "exp", "log", "tan")}
+    return eval(formula, {"__builtins__": {}}, {**functions, "pi": np.pi, **table})
+
+
+def false_equilibria(known: Known, found: Sequence[Sequence[float]], complete: bool) -> list[str]:
+    """States called equilibria that are none, one state called two, and a complete list that lacks one."""
+    assert known.rests is not None
+    wrong = []
+    for i, state in enumerate(found):
+        if not any(same_state(state, other) for other in known.rests):
+            wrong.append(f"{known.name}: {state} is listed as an equilibrium")
+        if any(same_state(state, other) for other in found[:i]):
+            wrong.append(f"{known.name}: {state} is listed twice")
+    if complete:
+        lost = [state for state in known.rests if not any(same_state(state, other) for other in found)]
+        wrong += [f"{known.name}: the list is called complete without {state}" for state in lost]
+    return wrong
+
+
+def same_state(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Equal, angles up to whole turns."""
+    turns = [(x - y) / (2 * np.pi) for x, y in zip(a, b, strict=True)]
+    return all(abs(turn - round(turn)) < 1e-6 for turn in turns)
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a simulation says: its estimate of the largest relative error, and whether the energy is conserved."""
+
+    error: float | None
+    conserved: bool | None
+    states: Sequence[tuple[float, State]]  # what it computed: (t, (q, q'))
+
+
+def false_run(known: Known, told: Told) -> list[str]:
+    """An error that is far larger than it is said to be, and a conserved energy that is not."""
+    assert known.motion is not None
+    wrong = []
+    start = told.states[0][1]
+    truth = [(known.motion(time, start), state) for time, state in told.states]
+    scale = np.max([np.abs(exact) for exact, _ in truth])
+    error = max(float(np.max(np.abs(exact - state))) for exact, state in truth) / scale
+    floor = 4e-16 * len(told.states)  # what rounding of the truth itself may cost
+    if told.error is not None and error > 10 * told.error + floor:
+        wrong.append(f"{known.name}: the error is said to be about {told.error:.2g}, and is {error:.2g}")
+    if told.error == 0:
+        wrong.append(f"{known.name}: no run has no error")
+    if told.conserved and known.conserves_energy is False:
+        wrong.append(f"{known.name}: its energy is said to be conserved")
+    return wrong
+
+
+Outcome = dict[str, Any]
