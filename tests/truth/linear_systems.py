@@ -25,7 +25,7 @@ NATURES = ("unstable", "stable", "asymptotic")
 
 @dataclass(frozen=True)
 class Block:
-    """``nature``, and matrices damping D, gyroscopic G, stiffness K, circulatory N of y'' + (D + G) y' + (K + N) y = 0."""
+    """``nature``, and damping D, gyroscopic G, stiffness K, circulatory N of y'' + (D + G) y' + (K + N) y = 0."""
 
     nature: str
     D: tuple[tuple[Fraction, ...], ...]
@@ -82,7 +82,7 @@ def whole(blocks: Sequence[Block]) -> str:
 
 
 def random_system(seed: int) -> Known:
-    """A description of some blocks in mixed coordinates."""
+    """A description of some blocks: side by side where the seed is odd, else in coordinates that mix them."""
     source = random.Random(seed)
     small = [Fraction(x) for x in (0, 0, 1, 1, 2, Fraction(1, 2), Fraction(3, 2), -1)]
     blocks: list[Block] = []
@@ -96,19 +96,21 @@ def random_system(seed: int) -> Known:
             blocks.append(gyroscopic(source.choice((Fraction(1), Fraction(2), Fraction(5, 2))), source.choice(small)))
         else:
             blocks.append(circulatory(source.choice((Fraction(1), Fraction(2), d)), k, n))
-    return described(f"random linear system {seed}", blocks, source)
+    return described(f"random linear system {seed}", blocks, source, mixed=seed % 2 == 0)
 
 
-def described(name: str, blocks: Sequence[Block], source: random.Random) -> Known:
+def described(name: str, blocks: Sequence[Block], source: random.Random, mixed: bool) -> Known:
     """The description in coordinates x with y = T x."""
     size = sum(block.size for block in blocks)
     matrices = {letter: _assembled([getattr(block, letter) for block in blocks], size) for letter in "DGKN"}
     T = _regular(source, size)
+    if not mixed:
+        T = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
     y = [" + ".join(f"({T[i][j]})*x{j}" for j in range(size)) for i in range(size)]
     rate = [" + ".join(f"({T[i][j]})*x{j}_dot" for j in range(size)) for i in range(size)]
     first = [next(i for i in range(size) if T[i][j]) for j in range(size)]  # the first point that x_j moves
     bodies = [
-        f"  - name: point {i}\n    attached to: 0\n    connection point: [\"{y[i]}\", 0, 0]\n    mass: 1\n"
+        f'  - name: point {i}\n    attached to: 0\n    connection point: ["{y[i]}", 0, 0]\n    mass: 1\n'
         + (f"    coordinates: [{', '.join(f'x{j}' for j in range(size) if first[j] == i)}]\n" if i in first else "")
         for i in range(size)
     ]
@@ -135,10 +137,13 @@ def described(name: str, blocks: Sequence[Block], source: random.Random) -> Know
 
 def _named(blocks: Sequence[Block]) -> str:
     """How the nature is written among the statements: a coordinate on which nothing acts at all may be cyclic."""
-    free = [b for b in blocks if b.size == 1 and b.K[0][0] == 0 and b.D[0][0] == 0]
-    others = [b for b in blocks if b not in free]
-    if free and (not others or whole(others) != "unstable"):
-        return "drifts" if not others or whole(others) == "stable" else "asymptotic, drifts"
+    idle = [b for b in blocks if b.size == 1 and b.K[0][0] == 0 and b.D[0][0] >= 0]
+    others = [b for b in blocks if b not in idle]
+    rest = whole(others) if others else "asymptotic" if any(b.D[0][0] for b in idle) else "stable"
+    if idle and rest != "unstable":
+        if any(b.D[0][0] == 0 for b in idle):
+            return "drifts" if rest == "stable" else "asymptotic, drifts"
+        return "stable, displaced" if rest == "stable" else "asymptotic, displaced"
     nature = whole(blocks)
     turning = any(b.G[0][-1] != 0 and b.K[0][0] <= 0 for b in blocks if b.size == 2)
     return "stable, gyroscopic" if nature == "stable" and turning else nature
@@ -173,9 +178,7 @@ def _solution(matrices: dict[str, list[list[Fraction]]], T: list[list[Fraction]]
     n = len(T)
     floats = {letter: np.array([[float(x) for x in row] for row in rows]) for letter, rows in matrices.items()}
     turn = np.array([[float(x) for x in row] for row in T])
-    field = np.block(
-        [[np.zeros((n, n)), np.eye(n)], [-(floats["K"] + floats["N"]), -(floats["D"] + floats["G"])]]
-    )
+    field = np.block([[np.zeros((n, n)), np.eye(n)], [-(floats["K"] + floats["N"]), -(floats["D"] + floats["G"])]])
     mixed = np.block([[turn, np.zeros((n, n))], [np.zeros((n, n)), turn]])
     unmixed = np.linalg.inv(mixed)
 

@@ -1,8 +1,8 @@
 """What outputs say, as data, and whether it is true of a system whose answer is known.
 
-``false_sentences`` is the only judge: it takes what was printed (verdicts, conserved quantities, equilibria, errors) and
-what is known by hand, and lists every sentence that is not true.  It knows nothing of how mbsym arrives at them.  The
-tests feed it the real outputs (nothing may be false) and planted lies (each must be found).
+The functions ``false_...`` are the judges: they take what was printed (verdicts, conserved quantities, equilibria,
+errors) and what is known by hand, and list every sentence that is not true.  They know nothing of how mbsym arrives at
+them.  The tests feed them the real outputs (nothing may be false) and planted lies (each must be found).
 """
 
 from __future__ import annotations
@@ -38,6 +38,8 @@ TRUE_OF: Mapping[str, tuple[str, ...]] = {
     "drifts": (DRIFTS, CRITICAL),
     "drifts, gyroscopic": (DRIFTS, CRITICAL, GYROSCOPIC),
     "asymptotic, drifts": (ASYMPTOTIC_BUT_DRIFTS, DRIFTS, CRITICAL),
+    "asymptotic, displaced": (ASYMPTOTIC_BUT_DRIFTS, DRIFTS, STABLE, CRITICAL),  # what is displaced stays there
+    "stable, displaced": (STABLE, DRIFTS, CRITICAL),
     "turned": (TURNED, CRITICAL),
     "unknown": (),
     "time-dependent": (),
