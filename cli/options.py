@@ -22,9 +22,6 @@ MAX_LENGTH = 2_000
 #: Descriptions end in one of these.
 SUFFIXES = (".yaml", ".yml", ".txt")
 
-#: Problems are numbered 1 to this.
-PROBLEMS = 7
-
 #: Words that resemble each other as much (1: equal) are taken for slips.
 _MISSPELT = 0.7
 
@@ -71,6 +68,8 @@ class Options:
 
     def problems(self, text: str) -> tuple[int, ...]:
         """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""
+        from mbsym.analysis import PROBLEMS
+
         found: set[int] = set()
         for part in (part.strip() for part in text.split(",")):
             first, dash, last = (piece.strip() for piece in part.partition("-"))
@@ -84,10 +83,10 @@ class Options:
                 hint = f"a range goes upwards: write {last}-{first}"
                 self.complain("--problems", "bad-range", f"the range {part} is empty", hint)
                 continue
-            wrong = [n for n in dict.fromkeys((low, high)) if not 1 <= n <= PROBLEMS]
+            wrong = [n for n in dict.fromkeys((low, high)) if n not in PROBLEMS]
             if wrong:
                 message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
-                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {PROBLEMS}")
+                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {max(PROBLEMS)}")
                 continue
             found.update(range(low, high + 1))
         return tuple(sorted(found))

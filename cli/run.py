@@ -79,8 +79,9 @@ def command(
 
     asked = Options()
     paths = asked.descriptions(files)
+    named = None if problems is None else asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
-    chosen = shown_by(kinds) if problems is None else asked.problems(problems)
+    chosen = shown_by(kinds) if named is None else named
     budget = asked.whole("--terms", terms, 1, 10**12)
     if asked.complaints or budget is None:
         for path in paths:
