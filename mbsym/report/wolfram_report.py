@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node
-from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, Listing, listing
@@ -61,18 +61,26 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         polynomial=polynomial,
         variable=free_name("\\[Lambda]", used),
         initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
+        numberless=[names[name] for name in _numberless(analysis.system)],
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         checks=analysis.checks,
     )
 
 
 def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Expression]]:
-    """What the description gives; nothing is made up for the rest."""
+    """The state at t = 0 as simulations take it: velocities that are left out are zero, positions are not made up."""
     for item in system.initial:
         if item.position is not None:
             yield f"{names[item.coordinate]}[0]", item.position
-        if item.velocity is not None:
-            yield f"{names[item.coordinate]}'[0]", item.velocity
+        yield f"{names[item.coordinate]}'[0]", ZERO if item.velocity is None else item.velocity
+
+
+def _numberless(system: System) -> Iterator[str]:
+    """Parameters and coordinates without a number, which NDSolve would need."""
+    related = {relation.name for relation in system.relations}
+    yield from (item.name for item in system.parameters if item.value is None and item.name not in related)
+    placed = {item.coordinate for item in system.initial if item.position is not None}
+    yield from (name for name in system.coordinates if name not in placed)
 
 
 def entries(items: Iterable[str], break_: str) -> str:

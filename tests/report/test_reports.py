@@ -575,6 +575,51 @@ def test_a_call_of_ndsolve_is_suggested_only_with_initial_conditions():
     assert "NDSolve" not in text
 
 
+def test_every_velocity_has_an_initial_value():
+    """A velocity that is left out is zero, as in simulations: in both reports."""
+    analysis = analysis_of("spatial-arm.yaml")
+    given = {item.coordinate for item in analysis.system.initial if item.velocity is None}
+    assert given  # the system tests something
+    text = TARGETS["wolfram"].render(analysis, (3,))
+    (line,) = re.findall(r"^initialConditions = \{(.*)\};$", text, re.MULTILINE)
+    left = [item.partition(" == ")[0] for item in line.split(", ")]
+    assert left == [f"{name}{dot}[0]" for name in analysis.system.coordinates for dot in ("", "'")]
+    latex = TARGETS["latex"].render(analysis, (2,))
+    assert r"$s(0) = 0.4$, $\dot{s}(0) = 0$, $q_{4}(0)" in latex
+    assert latex.count("(0) = ") == 2 * len(analysis.system.coordinates)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["spatial-arm.yaml", "satellite.yaml", "double-pendulum.yaml"])
+def test_the_suggested_ndsolve_has_numbers_for_everything(name, mathics):
+    """2 n numerical initial conditions; with them the equations hold accelerations alone, and so NDSolve can start."""
+    from mbsym.formulas.wolfram import wolfram_names
+
+    analysis = analysis_of(name)
+    text = TARGETS["wolfram"].render(analysis, (3,))
+    (rules,) = re.findall(r"NDSolve\[Join\[equations, initialConditions\] (.*), coordinates, \{t, 0, 10\}\]", text)
+    mathics.reset()
+    mathics.evaluate("t = 0")
+    mathics.evaluate(f"({uncommented(text)})")
+    n = len(analysis.system.coordinates)
+    assert str(mathics.evaluate(f"starts = initialConditions {rules}; Length[starts]")) == str(2 * n)
+    assert str(mathics.evaluate("Union[Map[NumericQ, Map[Last, starts]]]")) == "{System`True}"
+    assert str(mathics.evaluate("Length[Union[Map[First, starts]]]")) == str(2 * n)
+    names = wolfram_names(analysis.ring)
+    accelerations = [f"{names[name]}''[0] -> {k}/7" for k, name in enumerate(analysis.system.coordinates, 1)]
+    mathics.evaluate("at = Map[(First[#] -> Last[#])&, starts]")
+    mathics.evaluate(f"filled = ((equations {rules}) /. at) /. {{{', '.join(accelerations)}}}")
+    # Sides that hold nothing but numbers are compared: such an equation is True or False.
+    found = str(mathics.evaluate("Union[filled]"))
+    assert set(found.strip("{}").split(",")) <= {"System`True", "System`False"}, found
+
+
+def test_what_ndsolve_lacks_is_told():
+    text = TARGETS["wolfram"].render(mbsym.loads(HOOP + "initial: {theta: 0.5}\n"), (3,))
+    assert "NDSolve needs numbers for: " in text
+    assert "NDSolve[" not in text
+
+
 # --- not even a program ---
 
 STRANGE = """
