@@ -138,9 +138,12 @@ class LatexPrinter:
         return "".join(pieces)
 
     def product(self, product: Product, depth: int = 0) -> str:
-        """Without its sign: number and parameters as one fraction if there is a denominator, then the rest."""
+        """Without its sign: number and parameters as one fraction if there is a denominator, then the rest.
+
+        Sines and cosines stand last.
+        """
         top, bottom = abs(int(product.coefficient.p)), int(product.coefficient.q)
-        over = list(product.over)
+        over = self._readable(product.over)
         if product.under:
             inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]
             if len(over) == 1 and not inside and isinstance(over[0].base, int):
@@ -150,13 +153,20 @@ class LatexPrinter:
             below = [str(bottom)] if bottom != 1 else []
             numerator = _joined(number + [self.factor(f, depth) for f in inside])
             alone = len(product.under) == 1 and not below
-            denominator = _joined(below + [self._denominator(f, alone) for f in product.under])
+            denominator = _joined(below + [self._denominator(f, alone) for f in self._readable(product.under)])
             pieces = [f"\\frac{{{numerator}}}{{{denominator}}}"]
         elif bottom != 1:
             pieces = [f"\\frac{{{top}}}{{{bottom}}}"]
         else:
             pieces = [str(top)] if top != 1 or not over else []
         return _joined(pieces + [self.factor(f, depth) for f in over])
+
+    def _readable(self, factors: Iterable[Factor]) -> list[Factor]:
+        """Sines and cosines last: after ``\\cos x`` a factor s or (a + b) would read as a part of the argument."""
+        return sorted(factors, key=self._is_sine)
+
+    def _is_sine(self, factor: Factor) -> bool:
+        return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _COMMANDS
 
     def _is_parameter(self, index: int) -> bool:
         return self.ring.generators[index].kind == "parameter"

@@ -62,7 +62,8 @@ def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
         case Operation("/", left, right):
             return f"\\frac{{{expression(left, names)}}}{{{expression(right, names)}}}", 4
         case Operation("**", base, exponent):
-            return f"{_bracketed(base, 4, names)}^{{{expression(exponent, names)}}}", 3
+            # Of a fraction the exponent would seem to belong to the denominator.
+            return f"{_bracketed(base, 5 if _is_fraction(base) else 4, names)}^{{{expression(exponent, names)}}}", 3
         case Operation("*", Negative(left), right):
             return _expression(Negative(Operation("*", left, right)), names)
         case Operation("*", left, right):
@@ -75,6 +76,15 @@ def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
 def _bracketed(value: Expression, wanted: int, names: LatexNames) -> str:
     text, precedence = _expression(value, names)
     return text if precedence >= wanted else f"({text})"
+
+
+def _is_fraction(value: Expression) -> bool:
+    match value:
+        case Operation("/"):
+            return True
+        case Number(number):
+            return _number(number).startswith("\\frac")
+    return False
 
 
 def _number(value: Fraction) -> str:

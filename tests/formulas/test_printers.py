@@ -6,6 +6,7 @@ import keyword
 import random
 import re
 from fractions import Fraction
+from functools import partial
 
 import pytest
 from flint import arb, ctx, fmpq
@@ -186,6 +187,31 @@ def test_latex_and_wolfram_are_balanced(seed, terms, breaks):
         assert "**" not in wolfram
         for opening, closing in ("()", "[]"):
             assert wolfram.count(opening) == wolfram.count(closing)
+
+
+def test_nothing_follows_a_sine_that_could_be_its_argument():
+    """cos(q) s (a + b) exp(-b t): the other printers bracket arguments and keep their order."""
+    parameter = partial(RING.generator, "parameter")
+    cosine, sine = RING.generator("cosine", "psi"), RING.generator("sine", "theta")
+    theta, total = RING.generator("coordinate", "theta"), parameter("a") + parameter("b")
+    for polynomial, latex in (
+        (cosine * theta, r"\theta \cos \psi"),
+        (sine * theta**2 * total, r"(a + b) \theta^{2} \sin\frac{\theta}{2}"),
+        (cosine**2 * sine * theta, r"\theta \cos^{2} \psi \sin\frac{\theta}{2}"),
+        (cosine * RING.reciprocal(parameter("a")) * theta, r"\frac{1}{a} \theta \cos \psi"),
+    ):
+        assert latex_text(RING, polynomial) == latex
+    assert python_text(RING, cosine * theta) == "cos(psi)*theta"
+    assert wolfram_text(RING, cosine * theta) == r"Cos[\[Psi][t]]*\[Theta][t]"
+
+
+@settings(max_examples=80, deadline=None)
+@given(seed=st.integers(0, 10**9), terms=st.integers(1, 14))
+def test_sines_stand_last_in_every_product(seed, terms):
+    latex = latex_text(RING, random_polynomial(random.Random(seed), terms))
+    argument = r"(?: \\[a-z]+|\\frac\{[^}]*\}\{[^}]*\}|\([^()]*\))"
+    for rest in re.findall(r"\\(?:sin|cos)(?:\^\{\d+\})?" + argument + r"(.{0,6})", latex):
+        assert re.match(r"$| \\(?:sin|cos)| [+-] |[)}]|\\[bB]igr|\]", rest), latex
 
 
 def test_dots_and_primes():

@@ -24,12 +24,15 @@ import mbsym
 import mbsym_cli
 from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
+from mbsym.expressions.tree import Name, Number, Operation
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.sentences import SHORT, short
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import Reference, Shown, Statement, cases, statements
+from mbsym.report.latex_description import expression
 from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken, counted
 from mbsym.report.latex_report import label as latex_label
 from mbsym.report.summary import summary
@@ -573,6 +576,14 @@ def test_a_call_of_ndsolve_is_suggested_only_with_initial_conditions():
     text = TARGETS["wolfram"].render(mbsym.loads(HOOP), (3,))
     assert "initialConditions = {};" in text
     assert "NDSolve" not in text
+
+
+def test_the_power_of_a_fraction_is_not_that_of_its_denominator():
+    names = LatexNames(["a", "b"])
+    ratio = Operation("/", Name("a"), Name("b"))
+    assert expression(Operation("**", ratio, Number(Fraction(2))), names) == r"(\frac{a}{b})^{2}"
+    assert expression(Operation("**", Number(Fraction(1, 3)), Name("a")), names) == r"(\frac{1}{3})^{a}"
+    assert expression(Operation("**", Number(Fraction(1, 2)), Name("a")), names) == "0.5^{a}"
 
 
 def test_every_velocity_has_an_initial_value():
