@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure
 from mbsym.formulas.formula import Column
-from mbsym.mechanics.motion import relations
 from mbsym.problems import checks as comparison
 from mbsym.problems import equilibrium, knowledge, linearisation, perturbation
 from mbsym.problems.checks import Check
@@ -115,8 +114,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
 def dependent(analysis: Analysis) -> perturbation.Dependent:
     """What the matrices of problem 5 have already been freed of, and what their notation stands for."""
     scene, ring = analysis.parameters_scene, analysis.ring
-    values = {ring.generators[k].name: value for k, value in relations(scene).items()}
-    values |= {name: value.polynomial for name, value in analysis.equilibrium.solved}
+    values = {ring.generators[k].name: value for k, value in analysis.equilibrium.determined(scene).items()}
     names = [item.name for item in analysis.system.notation]
     return perturbation.Dependent(values, {name: knowledge.definition_in_parameters(scene, name) for name in names})
 

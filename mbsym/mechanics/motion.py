@@ -7,6 +7,8 @@ not steady).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, divide, number
 from mbsym.mechanics.kinematics import Scene
@@ -20,21 +22,25 @@ def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
 
 
 def turning(scene: Scene) -> tuple[str, ...]:
-    """The coordinates whose unperturbed rate is not zero."""
+    """The coordinates whose unperturbed rate is not zero, relations between parameters used."""
     rates = {name: scene.lower(rate) for name, (_, rate) in motion_values(scene.system).items()}
-    return tuple(name for name, rate in rates.items() if not rate.is_zero())
+    if all(rate.is_zero() for rate in rates.values()):
+        return ()
+    ring, images = scene.ring, relations(scene)
+    return tuple(name for name, rate in rates.items() if not ring.substitute(rate, images).is_zero())
 
 
 def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
     """Generator indices and their values on the unperturbed motion (scene over the ring)."""
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
+    spinning = turning(scene)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
         if velocities:
             images[ring.index("velocity", name)] = speed
             images[ring.index("acceleration", name)] = ring.zero
-        if not speed.is_zero():
+        if name in spinning:
             continue
         images[ring.index("coordinate", name)] = scene.lower(value)
         if name in ring.angles:
@@ -71,6 +77,17 @@ def relations(scene: Scene) -> dict[int, Polynomial]:
         images = {k: ring.substitute(image, {index: value}) for k, image in images.items()}
         images[index] = value
     return images
+
+
+def determined(scene: Scene, solved: Iterable[tuple[str, Polynomial]]) -> dict[int, Polynomial]:
+    """``relations`` on a motion that exists under conditions: what these were ``solved`` for is put into them, too.
+
+    With d = rho b0 and the condition rho = 0 it is d = 0.
+    """
+    ring: Ring = scene.ring
+    conditions = {ring.index("parameter", name): value for name, value in solved}
+    images = {k: ring.substitute(image, dict(conditions)) for k, image in relations(scene).items()}
+    return images | conditions
 
 
 def unsteady(scene: Scene, x: Polynomial) -> tuple[str, ...]:

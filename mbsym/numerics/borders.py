@@ -76,13 +76,14 @@ class Judged:
 class LinearModel:
     """The matrices M, D, G, K, N of one analysis as programs of the parameters, and exact verdicts.
 
-    Raises Unavailable where there is no first approximation.
+    Raises Unavailable where there is no first approximation, or one whose self-check fails.
     """
 
     def __init__(self, analysis: Analysis) -> None:
-        linear = analysis.linearisation
+        with analysis.strictly():  # matrices whose self-check fails are no ground for anything
+            linear, motion = analysis.linearisation, analysis.equilibrium
         scene = analysis.parameters_scene
-        self.verdict_of = ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+        self.verdict_of = ExactVerdicts(scene, analysis.balance, linear, motion, analysis.signs)
         self.ring, self.linear = scene.ring, linear
         self.size = len(linear.coordinates)
         self.names = (*analysis.system.parameter_names, "pi")

@@ -24,7 +24,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import motion_values, relations, unperturbed, unsteady
+from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed, unsteady
 from mbsym.model.system import System
 
 
@@ -43,6 +43,10 @@ class Equilibrium:
     solved: tuple[tuple[str, Formula], ...] = ()
     impossible: tuple[Formula, ...] = ()
     unsteady: tuple[str, ...] = ()
+
+    def determined(self, scene: Scene) -> dict[int, Polynomial]:
+        """Generator indices of all parameters that others determine where the motion exists, and their values."""
+        return determined(scene, ((name, value.polynomial) for name, value in self.solved))
 
 
 def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> Equilibrium:

@@ -183,9 +183,7 @@ def _assemble(
 ) -> Linearisation:
     """Relations and conditions of existence used, then the split into symmetric and skew parts."""
     ring = scene.ring
-    images = relations(scene)
-    if equilibrium is not None:
-        images |= {ring.index("parameter", name): value.polynomial for name, value in equilibrium.solved}
+    images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
     parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in (mass, velocity, position)]
     scale = None
     if scene.system.time_scale is not None:

@@ -28,6 +28,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import Oracle, Series, State, TaylorSeries
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED, Oracles
+from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
 from mbsym.problems.integrals import Integral
@@ -120,6 +121,15 @@ def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
     return motion | {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
 
 
+def _at_rest(
+    system: System, ring: Ring, motion: Mapping[str, tuple[Expression, Expression]], dependent: Dependent
+) -> list[str]:
+    """The coordinates whose rate is zero, however that is written (-0, w - w, a parameter that is related to 0)."""
+    lower = Lowering(ring, ring_environment(system, ring))
+    images = {ring.index("parameter", name): value for name, value in dependent.parameters.items()}
+    return [name for name, (_, rate) in motion.items() if ring.substitute(lower(rate), images).is_zero()]
+
+
 def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool) -> State:
     source = random.Random(SEED)
     kind: Any = arb if balls else fmpq
@@ -130,7 +140,7 @@ def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: 
     values["pi"] = arb.pi() if balls else fmpq(355, 113)
     motion = _given_motion(system)
     tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
-    at_rest = [name for name, (_, rate) in motion.items() if rate == ZERO]
+    at_rest = _at_rest(system, ring, motion, dependent)
     numbers: Algebra
     if balls:
         numbers = Balls(values)  # reads the values below as they are filled in

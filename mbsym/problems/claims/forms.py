@@ -29,9 +29,10 @@ def in_parameters(derived: Derived, x: Polynomial) -> Polynomial:
 def on_relations(derived: Derived, claim: Claim, x: Polynomial) -> Polynomial:
     """Relations between parameters used; for the linear problem also the conditions under which the motion exists."""
     ring = derived.ring
-    images = relations(derived.parameters_scene)
     if claim.kind.startswith(("linear", "subsystem", "characteristic", "condition")):
-        images |= {ring.index("parameter", name): value.polynomial for name, value in derived.equilibrium.solved}
+        images = derived.equilibrium.determined(derived.parameters_scene)
+    else:
+        images = relations(derived.parameters_scene)
     return ring.substitute(x, images) if images else x
 
 

@@ -315,7 +315,7 @@ def _turned(
     if spin is None or not {*spin.tilts} <= {*part.coordinates}:
         return ()
     ring = scene.ring
-    images = relations(scene) | {ring.index("parameter", name): x.polynomial for name, x in equilibrium.solved}
+    images = equilibrium.determined(scene)
     rate = ring.substitute(scene.lower(spin.rate), images)
     scale = scene.system.time_scale
     unit = ring.one if scale is None else ring.substitute(scene.lower(scale), images)
