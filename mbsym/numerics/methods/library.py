@@ -28,6 +28,9 @@ from mbsym.numerics.methods.kept import compiled_kernel
 #: SciPy warns below this relative tolerance and takes it instead.
 LEAST_TOLERANCE = 2.3e-14
 
+#: The first step of LSODA from a state of rest, as SciPy's other methods take it there.
+FIRST_STEP = 1e-6
+
 
 class LibraryRun:
     """Steps of an ``OdeSolver``; times between steps come from its dense output."""
@@ -46,6 +49,9 @@ class LibraryRun:
         if method.traits.implicit:
             self._jacobian_kernel = compiled_kernel(dynamics, "jacobian")
             self._options["jac"] = self._jacobian
+        if method.traits.name == "lsoda" and not np.any(self._rhs_kernel(np.concatenate(([0.0], self.state)))):
+            # Where everything rests at first, ODEPACK takes the whole time, here without end, for its first step.
+            self._options["first_step"] = FIRST_STEP
         self._make = method.solver
         self._solver: Any = None
         self._dense: Any = None
