@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number, text
-from mbsym.model.system import Tensor
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number, names, text
+from mbsym.model.system import Body, System, Tensor
 
 Numbers = tuple[Fraction, Fraction, Fraction]
 NumberTensor = tuple[Numbers, Numbers, Numbers]
@@ -20,41 +20,141 @@ NumberTensor = tuple[Numbers, Numbers, Numbers]
 #: A number longer than this is not worth a check.
 _MAX_BITS = 20_000
 
+#: Eigenvalues that are shown are rounded to so many bits, and approached in so many steps (double ones are slow).
+_EIGENVALUE_BITS, _NEWTON_STEPS = 192, 200
 
-def inertia_violation(tensor: NumberTensor) -> str | None:
-    """Why no body has this tensor of inertia, with the inequality in numbers, or None if some body has it."""
+
+#: Tensors of inertia are printed in decimals: what is wrong by less than this part of them is rounding.
+ROUNDING = Fraction(1, 10**6)
+
+#: An excess smaller than this part of a moment is told, because the moment's own digits do not show it.
+_HIDDEN = Fraction(1, 10**4)
+
+
+def inertia_violation(tensor: NumberTensor, slack: Fraction = Fraction(0)) -> str | None:
+    """Why no body has this tensor of inertia, with the inequality in numbers, or None if some body has it.
+
+    With ``slack`` only what is wrong by more than slack tr(J)/2 in an eigenvalue of tr(J)/2 1 - J counts.
+    """
+    allowed = slack * size_of(tensor)
     for index in range(3):
-        if tensor[index][index] < 0:
+        if tensor[index][index] < -allowed:
             return f"the moment of inertia about axis {index + 1} is negative: {decimal(tensor[index][index])} < 0"
     if _is_diagonal(tensor):
         for index in range(3):
             others = [tensor[other][other] for other in range(3) if other != index]
-            if tensor[index][index] > sum(others, Fraction(0)):
-                numbers = f"{decimal(tensor[index][index])} > {' + '.join(map(decimal, others))}"
+            if tensor[index][index] > sum(others, 2 * allowed):
+                numbers = _triangle(tensor[index][index], others[0], others[1])
                 return f"the moment of inertia about axis {index + 1} exceeds the sum of the other two: {numbers}"
         return None
-    if any(minor < 0 for minor in principal_minors(second_moments(tensor))):
-        return "its principal moments violate the triangle inequality (tr(J)/2 - J is not positive semidefinite)"
+    if not _is_semidefinite(second_moments(tensor), allowed):
+        return f"its principal moments violate the triangle inequality: {_triangle(*principal_values(tensor))}"
     return None
 
 
+def size_of(tensor: NumberTensor) -> Fraction:
+    """tr(J)/2 for the tensor of a body: the trace of its second moments."""
+    return sum((abs(tensor[index][index]) for index in range(3)), Fraction(0)) / 2
+
+
+def _triangle(largest: Fraction, second: Fraction, third: Fraction) -> str:
+    """The broken inequality A > B + C, with its excess where the digits do not show it."""
+    excess = largest - second - third
+    hidden = f" (by {decimal(excess)})" if abs(excess) < _HIDDEN * abs(largest) else ""
+    return f"{decimal(largest)} > {decimal(second)} + {decimal(third)}{hidden}"
+
+
+def principal_values(tensor: NumberTensor) -> Numbers:
+    """The eigenvalues of a symmetric matrix, the largest first, to some 40 digits.
+
+    All roots of x^3 - (sum of minors of order 1) x^2 + (those of order 2) x - determinant are real, so that Newton's
+    method runs monotonically to the outermost ones from outside.
+    """
+    minors = list(principal_minors(tensor))
+    trace, second, determinant = sum(minors[:3], Fraction(0)), sum(minors[3:6], Fraction(0)), minors[6]
+    bound = sum((abs(entry) for row in tensor for entry in row), Fraction(0))
+
+    def outermost(x: Fraction) -> Fraction:
+        for _ in range(_NEWTON_STEPS):
+            value = ((x - trace) * x + second) * x - determinant
+            slope = (3 * x - 2 * trace) * x + second
+            if not value or not slope:
+                break
+            x = Fraction(round((x - value / slope) / bound * 2**_EIGENVALUE_BITS), 2**_EIGENVALUE_BITS) * bound
+        return x
+
+    if not bound:
+        return Fraction(0), Fraction(0), Fraction(0)
+    largest, least = outermost(2 * bound), outermost(-2 * bound)
+    return largest, trace - largest - least, least
+
+
 def offset_violation(
-    tensor: NumberTensor, mass: Fraction, centre: Numbers, axes: Sequence[int] = (0, 1, 2)
+    tensor: NumberTensor,
+    mass: Fraction,
+    centre: Numbers,
+    axes: Sequence[int] = (0, 1, 2),
+    slack: Fraction = Fraction(0),
 ) -> str | None:
     """Why no body with the inertia ``tensor`` about O has its mass centre at ``centre`` from O, or None if some has.
 
     About the axis i through O the mass alone, were it all at its centre, has m (c.c - c_i^2); no body has less.  What
     is left about the mass centre must be the inertia of a body.  Where only some moments were meant, ``axes`` are
-    theirs.
+    theirs.  ``slack`` is a part of the tensor about O, in which rounding was done.
     """
     square = sum((component * component for component in centre), Fraction(0))
     for index in axes:
         least = mass * (square - centre[index] * centre[index])
-        if tensor[index][index] < least:
+        if tensor[index][index] < least - slack * size_of(tensor):
             numbers = f"{decimal(tensor[index][index])} < {_offset_words(index)} = {decimal(least)}"
             return f"moved to the mass centre, the moment of inertia about axis {index + 1} is negative: {numbers}"
-    violation = inertia_violation(about_mass_centre(tensor, mass, centre)) if len(axes) == 3 else None
+    moved = about_mass_centre(tensor, mass, centre)
+    share = slack * size_of(tensor) / size_of(moved) if size_of(moved) else slack
+    violation = inertia_violation(moved, share) if len(axes) == 3 else None
     return None if violation is None else f"moved to the mass centre, {violation}"
+
+
+def body_violation(body: Body, values: Mapping[str, Fraction], slack: Fraction = Fraction(0)) -> str | None:
+    """Why the numbers of a body exclude its inertia, beyond the slack; None where they do not, or are not all known."""
+    tensor = None if body.inertia is None else numeric_tensor(body.inertia.tensor, values)
+    if body.inertia is None or tensor is None:
+        return None
+    violation = inertia_violation(tensor, slack)
+    if violation is None and body.inertia.about == "joint":
+        mass, centre = number_of(body.mass, values), numeric_vector(body.mass_centre, values)
+        if mass is not None and centre is not None:
+            violation = offset_violation(tensor, mass, centre, slack=slack)
+    return violation
+
+
+def has_negative_energy(body: Body, values: Mapping[str, Fraction]) -> bool:
+    """Whether the numbers say for sure that the body's kinetic energy is negative for some motion, beyond rounding.
+
+    It is m V_C.V_C/2 + w.J_C w/2, with the tensor J_C about the mass centre.
+    """
+    tensor = None if body.inertia is None else numeric_tensor(body.inertia.tensor, values)
+    if body.inertia is None or tensor is None:
+        return False
+    allowed = ROUNDING * size_of(tensor)
+    if body.inertia.about == "joint":
+        mass, centre = number_of(body.mass, values), numeric_vector(body.mass_centre, values)
+        if mass is not None and centre is not None:
+            tensor = about_mass_centre(tensor, mass, centre)
+    return not _is_semidefinite(tensor, allowed)
+
+
+def numeric_tensor(tensor: Tensor, values: Mapping[str, Fraction]) -> NumberTensor | None:
+    """The tensor in numbers, or None where a name has no value."""
+    rows = [numeric_vector(row, values) for row in tensor]
+    if rows[0] is None or rows[1] is None or rows[2] is None:
+        return None
+    return rows[0], rows[1], rows[2]
+
+
+def numeric_vector(vector: Sequence[Expression], values: Mapping[str, Fraction]) -> Numbers | None:
+    """The vector in numbers, or None where a name has no value."""
+    first, second, third = (number_of(component, values) for component in vector)
+    return None if first is None or second is None or third is None else (first, second, third)
 
 
 def _offset_words(index: int) -> str:
@@ -186,6 +286,12 @@ def _tensor(entry: Callable[[int, int], Fraction]) -> NumberTensor:
     return rows[0], rows[1], rows[2]
 
 
+def _is_semidefinite(matrix: NumberTensor, allowed: Fraction) -> bool:
+    """Whether no eigenvalue is less than ``-allowed``."""
+    raised = _tensor(lambda row, column: matrix[row][column] + (allowed if row == column else 0))
+    return all(minor >= 0 for minor in principal_minors(raised))
+
+
 def principal_minors(matrix: NumberTensor) -> Iterator[Fraction]:
     """All principal minors: a symmetric matrix is positive semidefinite exactly if none is negative."""
     for size in (1, 2, 3):
@@ -290,3 +396,20 @@ def _sign(expression: Expression, signs: Mapping[str, str]) -> str | None:
 
 def _common(first: str | None, second: str | None) -> str | None:
     return first if first == second else None
+
+
+def known_values(system: System) -> dict[str, Fraction]:
+    """The exact values of the parameters that have any, relations included."""
+    values: dict[str, Fraction] = {}
+    for parameter in system.parameters:
+        value = None if parameter.value is None else number_of(parameter.value, {})
+        if value is not None:
+            values[parameter.name] = value
+    waiting = {one.name: one.value for one in system.relations if one.name not in values}
+    needs = {name: names(value) for name, value in waiting.items()}
+    while ready := [name for name in waiting if needs[name] <= values.keys()]:
+        for name in ready:
+            value = number_of(waiting.pop(name), values)
+            if value is not None:
+                values[name] = value
+    return values

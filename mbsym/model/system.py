@@ -91,10 +91,15 @@ class Rotation:
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """A tensor about the connection point (``about = "joint"``) or about the ``"mass centre"``."""
+    """A tensor about the connection point (``about = "joint"``) or about the ``"mass centre"``.
+
+    ``accepted``: taken as given although its principal moments may break the triangle inequality, as those of
+    identified models do.
+    """
 
     about: str
     tensor: Tensor
+    accepted: bool = False
     span: Span | None = _span()
 
 

@@ -22,6 +22,7 @@ from mbsym.report.claims import claim_line, counterexample, repair, titles, toge
 from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
+from mbsym.report.inertias import accepted_inertias
 from mbsym.report.latex_description import call, expression, load_in_words
 from mbsym.report.programs import programs_of
 
@@ -84,6 +85,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "zero": lambda values: all(x.is_zero for x in values),
         },
         system=system,
+        accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         moving=moving,
         found=found,

@@ -21,6 +21,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import numbers
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
+from mbsym.report.inertias import accepted_inertias
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -50,6 +51,9 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
             found[key] = _SECTIONS[number](stage.value, system)
         else:
             unavailable[key] = stage.failure.reason
+    accepted = accepted_inertias(system)
+    if accepted:
+        found["accepted_inertias"] = [{"body": name, "violation": reason} for name, reason in accepted.items()]
     if system.claims:
         found["claims"] = [_claim(result, system) for result in analysis.claims]
     return found | {"unavailable": unavailable}

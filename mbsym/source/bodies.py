@@ -10,7 +10,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, Negative, is_number, subtract, walk
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
 from mbsym.source.identity import vanishes
-from mbsym.source.keys import BODY, ROTATION
+from mbsym.source.keys import BODY, INERTIA, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
@@ -287,13 +287,25 @@ def _inertia(fields: Fields, reading: Reading) -> Inertia | None:
         if about is not None:
             fields.require("inertia")
         return None
+    node, accepted = _accepted(node, fields, reading)
     tensor = _tensor(node, reading)
     if all(is_number(entry, 0) for row in tensor for entry in row):
         return None
     if about_node is None:
         hint = "'inertia about: joint' (the connection point) or 'inertia about: mass centre'"
         reading.error("inertia-point", "it is not said about which point", fields.key_span("inertia"), hint)
-    return Inertia("joint" if about == "joint" else "mass centre", tensor, fields.key_span("inertia"))
+    about = "joint" if about == "joint" else "mass centre"
+    return Inertia(about, tensor, accepted, fields.key_span("inertia"))
+
+
+def _accepted(node: Node, fields: Fields, reading: Reading) -> tuple[Node, bool]:
+    """The tensor alone, and whether ``{tensor: ..., accept: true}`` says to take it as given."""
+    if not isinstance(node, Mapping):
+        return node, False
+    given = reading.fields(node, f"the inertia of {fields.what}", INERTIA)
+    tensor, accept = given.require("tensor"), given.get("accept")
+    word = None if accept is None else reading.word(accept, "'accept'", ("true", "false"))
+    return tensor or Sequence(tuple(Scalar("0", node.span, literal=False) for _ in range(3)), node.span), word == "true"
 
 
 def _tensor(node: Node, reading: Reading) -> Tensor:

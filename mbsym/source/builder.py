@@ -10,9 +10,10 @@ from dataclasses import replace
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
+from mbsym.model.admissibility import known_values
 from mbsym.model.system import System
 from mbsym.source.bodies import draft_bodies, read_body
-from mbsym.source.checks import check_body, check_system, known_values
+from mbsym.source.checks import check_body, check_system
 from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, read_parameters, read_prescribed, read_values
 from mbsym.source.keys import SYSTEM, VERSION

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
@@ -27,11 +28,15 @@ from mbsym.expressions.tree import (
     text,
 )
 from mbsym.model.admissibility import (
-    NumberTensor,
+    ROUNDING,
+    body_violation,
     decimal,
+    has_negative_energy,
     impossible_alone,
-    inertia_violation,
+    known_values,
     number_of,
+    numeric_tensor,
+    numeric_vector,
     offset_violation,
     surely_negative,
     symbolic_violation,
@@ -41,9 +46,13 @@ from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
+from mbsym.source.shape import inertia_shape
 
 #: Relative error of a number that is computed in floats because it has no exact value.
 _FLOATS = Fraction(1, 10**12)
+
+#: Directions are the same to so much; angles such as 1.5708 are decimals.
+_PARALLEL = 1e-9
 
 #: Values that differ by less than one part in so many are taken for rounded ones.
 _ROUNDED = 1_000
@@ -56,23 +65,6 @@ def check_body(system: System, draft: Draft, values: Mapping[str, Fraction], rea
     _check_relative_velocity(system, body, draft, reading)
     _check_mass(system, body, draft, values, reading)
     _check_inertia(system, body, draft, values, reading)
-
-
-def known_values(system: System) -> dict[str, Fraction]:
-    """The exact values of the parameters that have any, relations included."""
-    values: dict[str, Fraction] = {}
-    for parameter in system.parameters:
-        value = None if parameter.value is None else number_of(parameter.value, {})
-        if value is not None:
-            values[parameter.name] = value
-    waiting = {one.name: one.value for one in system.relations if one.name not in values}
-    needs = {name: names(value) for name, value in waiting.items()}
-    while ready := [name for name in waiting if needs[name] <= values.keys()]:
-        for name in ready:
-            value = number_of(waiting.pop(name), values)
-            if value is not None:
-                values[name] = value
-    return values
 
 
 # --- coordinates -----------------------------------------------------------------------------------------------------
@@ -179,48 +171,103 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
             message = f"the moment of inertia about axis {index + 1} is negative"
             reading.error("bad-inertia", f"no body has this inertia: {message}", span, _values_hint(*entries))
             return
-    tensor = _numeric_tensor(body, values)
     alone = impossible_alone(body.inertia.tensor, signs, values)
-    if alone is not None and not _is_enough(system, body, alone):
+    if alone is not None:
+        _check_single_moment(system, body, alone, values, span, reading)
+        return
+    if _check_numbers(body, values, span, reading) or body.inertia.accepted:
+        return
+    about_joint = body.inertia.about == "joint"
+    doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
+    if doubt is not None:
+        own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
+        advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+        reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, advice)
+
+
+def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading) -> bool:
+    """Whether something was said of the numbers: rounding is a warning, more is an error unless it is accepted."""
+    violation = body_violation(body, values)
+    if body.inertia is None or violation is None:
+        return False
+    entries = [entry for row in body.inertia.tensor for entry in row]
+    message = f"no body has this inertia: {violation}"
+    if body_violation(body, values, ROUNDING) is None:
+        told = f"no body has exactly this inertia: {violation}"
+        hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
+        reading.complaints.warning("rounded-inertia", told, span, hint)
+    elif has_negative_energy(body, values):
+        message += "; its kinetic energy would be negative" if body.inertia.accepted else ""
+        reading.error("bad-inertia", message, span, _values_hint(*entries))
+    elif not body.inertia.accepted:
+        tensor = _written(inertia_shape(body.inertia))
+        given = "with the given values; " if any(names(entry) for entry in entries) else ""
+        hint = f"{given}if they were identified, write {{tensor: {tensor}, accept: true}}"
+        reading.error(
+            "bad-inertia", message, span, _short(hint, "write {tensor: ..., accept: true} if it was identified")
+        )
+    return True
+
+
+def _written(shape: object) -> str:
+    """A tensor as it stands in YAML."""
+    return f"[{', '.join(map(_written, shape))}]" if isinstance(shape, list) else str(shape)
+
+
+def _check_single_moment(
+    system: System, body: Body, alone: int, values: Mapping[str, Fraction], span: Span, reading: Reading
+) -> None:
+    """Of the only moment that was given no more is asked than its own sign, about the mass centre, too."""
+    assert body.inertia is not None
+    if not _is_enough(system, body, alone) and not body.inertia.accepted:
         message = f"no body has this inertia: 0 + 0 is less than the moment of inertia about axis {alone + 1}"
         hint = _rod_hint(text(body.inertia.tensor[alone][alone]), alone)
         reading.complaints.warning("single-moment", message, span, hint)
-    violation = None if tensor is None or alone is not None else inertia_violation(tensor)
-    if violation is None and tensor is not None and body.inertia.about == "joint":
-        violation = _violation_about_mass_centre(tensor, body, values, alone)
+    tensor = numeric_tensor(body.inertia.tensor, values)
+    mass, centre = number_of(body.mass, values), numeric_vector(body.mass_centre, values)
+    if tensor is None or mass is None or centre is None or body.inertia.about != "joint":
+        return
+    violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
-        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, _values_hint(*entries))
-    elif alone is None:
-        about_joint = body.inertia.about == "joint"
-        doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
-        if doubt is not None:
-            own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
-            advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
-            reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, advice)
+        hint = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
+        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, hint)
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
     """Whether the moment about one axis is all that matters: the body never turns about any other direction.
 
-    From the body up to the inertial frame, turns about this axis keep its direction; a fixed turn about another one
-    loses it, and beyond that nothing may turn.  A Newtonian field acts on the other moments, too.
+    The axis is followed from the body up to the inertial frame: what turns there must turn about it.  Fixed turns
+    bring it into other axes, q about axis 3 and then pi/2 about axis 1 turns the body about its axis 2.  A Newtonian
+    field acts on the other moments, too.
     """
     if any(isinstance(load, NewtonianGravity) for load in system.loads):
         return False
     moving = {*system.coordinates, *(one.name for one in system.prescribed)}
     bodies = {one.name: one for one in system.bodies}
-    kept, part, passed = True, body, 0
+    direction: list[float] | None = [float(k == index) for k in range(3)]  # in the axes after the turn; None: unknown
+    part, passed = body, 0
     while passed <= len(bodies):
         for axis, angle in reversed(list(part.rotation.turns())):
-            if axis == index + 1 and kept:
+            along = direction is not None and abs(abs(direction[axis - 1]) - 1) < _PARALLEL
+            if along:
                 continue
             if names(angle) & moving:
                 return False
-            kept = False
+            fixed = in_floats(angle, {})
+            direction = None if direction is None or fixed is None else _turned_back(direction, axis, fixed)
         if part.attached_to not in bodies:
             return True
         part, passed = bodies[part.attached_to], passed + 1
     return False
+
+
+def _turned_back(v: list[float], axis: int, angle: float) -> list[float]:
+    """C_a(x)^T v: components before a turn about an axis from those after it."""
+    first, second = axis % 3, (axis + 1) % 3
+    found = list(v)
+    found[first] = math.cos(angle) * v[first] - math.sin(angle) * v[second]
+    found[second] = math.sin(angle) * v[first] + math.cos(angle) * v[second]
+    return found
 
 
 def _rod_hint(moment: str, axis: int) -> str:
@@ -229,28 +276,6 @@ def _rod_hint(moment: str, axis: int) -> str:
     rod = ", ".join("0" if index == along else moment for index in range(3))
     matter = f"in planar motion, turning about axis {axis + 1} only, the other moments do not matter"
     return _short(f"[{rod}] is a thin rod along axis {along + 1}; {matter}", matter)
-
-
-def _numeric_tensor(body: Body, values: Mapping[str, Fraction]) -> NumberTensor | None:
-    assert body.inertia is not None
-    rows = []
-    for row in body.inertia.tensor:
-        first, second, third = (number_of(entry, values) for entry in row)
-        if first is None or second is None or third is None:
-            return None
-        rows.append((first, second, third))
-    return rows[0], rows[1], rows[2]
-
-
-def _violation_about_mass_centre(
-    tensor: NumberTensor, body: Body, values: Mapping[str, Fraction], alone: int | None
-) -> str | None:
-    """What the parallel-axis theorem shows; of the only moment that was given, no more than its own sign."""
-    mass = number_of(body.mass, values)
-    first, second, third = (number_of(component, values) for component in body.mass_centre)
-    if mass is None or first is None or second is None or third is None:
-        return None
-    return offset_violation(tensor, mass, (first, second, third), (0, 1, 2) if alone is None else (alone,))
 
 
 # --- the whole -------------------------------------------------------------------------------------------------------

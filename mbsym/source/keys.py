@@ -46,9 +46,15 @@ BODY = {
     "mass centre": "radius vector of the mass centre from O_k in the axes of this body; [0, 0, 0] when left out",
     "mass": "required; 0 for a massless frame",
     "inertia about": "joint (the connection point O_k) or mass centre; required with an inertia",
-    "inertia": "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm)",
+    "inertia": "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm); or "
+    "{tensor, accept: true} for identified values that no body has",
     "gyrostatic moment": "constant angular momentum of rotors inside the body, in its axes: adds h.omega to T",
     "coordinates": "the coordinates that this joint introduces; when left out, the undeclared names used as angles",
+}
+
+INERTIA = {
+    "tensor": "three principal moments, or three rows",
+    "accept": "true: taken as given although the triangle inequality of its principal moments does not hold",
 }
 
 ROTATION = {

@@ -20,6 +20,7 @@ BODY = {
     "rotation angles": "angles",
     "inertia about": "inertia about",
     "tensor of inertia": "inertia",
+    "accept tensor of inertia": "accept",
     "gyrostatic moment": "gyrostatic moment",
     "generalized coordinates": "coordinates",
 }

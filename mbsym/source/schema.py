@@ -13,6 +13,7 @@ from mbsym.source.keys import (
     ALIASES,
     BODY,
     CLAIM,
+    INERTIA,
     INITIAL,
     LOAD_MEANINGS,
     LOADS,
@@ -120,7 +121,17 @@ def _body_values() -> dict[str, Schema]:
         "relative velocity": vector,
         "mass centre": vector,
         "inertia about": {"enum": ["joint", "mass centre", "mass center"]},
-        "inertia": {"anyOf": [vector, matrix]},
+        "inertia": {
+            "anyOf": [
+                vector,
+                matrix,
+                _record(
+                    INERTIA,
+                    {"tensor": {"anyOf": [vector, matrix]}, "accept": {"enum": [True, False, "true", "false"]}},
+                    required=("tensor",),
+                ),
+            ]
+        },
         "gyrostatic moment": vector,
         "coordinates": {"type": "array", "items": {"type": "string", "pattern": _NAME}},
     }

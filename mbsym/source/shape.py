@@ -78,12 +78,18 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     shape["mass"] = text(body.mass)
     if body.inertia is not None:
         shape["inertia about"] = body.inertia.about
-        shape["inertia"] = inertia_shape(body.inertia)
+        shape["inertia"] = body_inertia_shape(body.inertia)
     if body.gyrostatic_moment is not None:
         shape["gyrostatic moment"] = vector_shape(body.gyrostatic_moment)
     if body.coordinates != inferred:
         shape["coordinates"] = list(body.coordinates)
     return shape
+
+
+def body_inertia_shape(inertia: Inertia) -> Shape:
+    """The tensor, or ``{tensor: ..., accept: true}``."""
+    shape = inertia_shape(inertia)
+    return {"tensor": shape, "accept": "true"} if inertia.accepted else shape
 
 
 def inertia_shape(inertia: Inertia) -> list[Shape]:

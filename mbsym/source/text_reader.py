@@ -237,9 +237,13 @@ class _TextReader:
     # --- bodies ------------------------------------------------------------------------------------------------------
 
     def body(self, block: _Block) -> Mapping:
-        """The entries of a body; axes and angles together are its rotation, rows follow their label."""
+        """The entries of a body; axes and angles together are its rotation, rows follow their label.
+
+        The tensor of inertia and that it is accepted are one entry, too.
+        """
         entries: list[Entry] = []
         rotation: list[Entry] = []
+        accept: list[Entry] = []
         lines = block.lines
         position = 0
         while position < len(lines):
@@ -255,8 +259,12 @@ class _TextReader:
                 entries.append(Entry(key, Sequence(tuple(self.row(row) for row in rows), label.span)))
             elif key.text in ("axes", "angles"):
                 rotation.append(Entry(key, self.items(value)))
+            elif key.text == "accept":
+                accept.append(Entry(key, value))
             else:
                 entries.append(Entry(key, self.body_value(key.text, value)))
+        if accept:
+            entries = _with_accepted(entries, accept)
         if rotation:
             entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
         return Mapping(tuple(entries), block.heading.span)
@@ -387,6 +395,15 @@ def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping
     return [
         Entry(_key(first, key), Sequence(tuple(item for item in map(read, blocks) if item is not None), first.span))
     ]
+
+
+def _with_accepted(entries: list[Entry], accept: list[Entry]) -> list[Entry]:
+    """The entries with ``{tensor: ..., accept: true}`` in place of the tensor of inertia."""
+    tensors = [entry for entry in entries if entry.key.text == "inertia"]
+    first = tensors[0].key if tensors else accept[0].key
+    parts = [Entry(_key(entry.key, "tensor"), entry.value) for entry in tensors]
+    whole = Entry(_key(first, "inertia"), Mapping((*parts, *accept), first.span))
+    return [*(entry for entry in entries if entry.key.text != "inertia"), whole]
 
 
 def _rows(lines: list[Scalar], position: int) -> list[Scalar]:

@@ -96,6 +96,8 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
     rows = body.inertia.tensor if body.inertia is not None else ((ZERO,) * 3,) * 3
     lines.append("  Tensor of inertia:")
     lines += [f"    {text(rows[row][0])}, {text(rows[row][1])}, {text(rows[row][2])}" for row in _ROWS]
+    if body.inertia is not None and body.inertia.accepted:
+        lines.append("  Accept tensor of inertia: true")
     if body.gyrostatic_moment is not None:
         lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
     lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")

@@ -33,7 +33,7 @@ from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED
-from mbsym.model.admissibility import NumberTensor, inertia_violation, number_of, offset_violation
+from mbsym.model.admissibility import ROUNDING, body_violation
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
@@ -130,16 +130,7 @@ def _is_body(body: Body, values: Mapping[str, Fraction]) -> bool:
     """False where the numbers exclude it; tensors of which some moments were left out as 0 are not looked at."""
     if body.inertia is None or any(is_number(body.inertia.tensor[k][k], 0) for k in range(3)):
         return True
-    rows = [[number_of(entry, values) for entry in row] for row in body.inertia.tensor]
-    mass, *centre = (number_of(entry, values) for entry in (body.mass, *body.mass_centre))
-    if any(entry is None for row in rows for entry in row):
-        return True
-    tensor: NumberTensor = tuple(tuple(row) for row in rows)  # type: ignore[assignment]
-    if inertia_violation(tensor) is not None:
-        return False
-    if body.inertia.about != "joint" or mass is None or any(entry is None for entry in centre):
-        return True
-    return offset_violation(tensor, mass, (centre[0], centre[1], centre[2])) is None  # type: ignore[arg-type]
+    return body.inertia.accepted or body_violation(body, values, ROUNDING) is None
 
 
 # --- conditions ---
