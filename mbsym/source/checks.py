@@ -200,9 +200,9 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
         message += "; its kinetic energy would be negative" if body.inertia.accepted else ""
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif not body.inertia.accepted:
-        tensor = _written(inertia_shape(body.inertia))
+        written = _written(inertia_shape(body.inertia))
         given = "with the given values; " if any(names(entry) for entry in entries) else ""
-        hint = f"{given}if they were identified, write {{tensor: {tensor}, accept: true}}"
+        hint = f"{given}if they were identified, write {{tensor: {written}, accept: true}}"
         reading.error(
             "bad-inertia", message, span, _short(hint, "write {tensor: ..., accept: true} if it was identified")
         )
@@ -229,8 +229,8 @@ def _check_single_moment(
         return
     violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
-        hint = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
-        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, hint)
+        given = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
+        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, given)
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
