@@ -44,7 +44,7 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     characteristic = tuple(a.charpoly().coeffs())
     roots = count_roots(characteristic)
     if not system.cyclic or roots.right:
-        verdict = _judge(m, d, g, k, n, system.conservative)
+        verdict = _judge(system, (m, d, g, k, n))
         if system.turned and not roots.right and not (_no(d) and _no(n)):
             verdict = _judge_turned(a, [_number(x, point) for x in system.turned], verdict)
         return PointVerdict(verdict, characteristic, roots)
@@ -66,7 +66,9 @@ def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSys
     return replace(system, M=m, D=d, G=g, K=k, N=n)
 
 
-def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> Verdict:
+def _judge(system: LinearSystem, matrices: Sequence[Numbers]) -> Verdict:
+    m, d, g, k, n = matrices
+    conservative = system.conservative
     a = _first_order(m, d + g, k + n)
     roots = count_roots(a.charpoly().coeffs())
     facts = _facts(m, d, g, k, n, conservative)
@@ -80,7 +82,11 @@ def _judge(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
     if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
         if not conservative:
             return concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
-        return concluded(facts)
+        found = concluded(facts)
+        if Fact.UNDAMPED in facts:
+            return found
+        names = ", ".join(system.name(i) for i in _undamped(a, d))
+        return replace(found, reasons=(*found.reasons, Reason(Because.UNDAMPED_MOTION, (names,))))
     blocks = count_roots(a.minpoly().coeffs())
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
@@ -111,6 +117,25 @@ def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
         Fact.ENERGY_NEVER_GROWS: conservative,
     }
     return frozenset(fact for fact, holds in shown.items() if holds)
+
+
+def _undamped(a: Numbers, d: Numbers) -> list[int]:
+    """The coordinates that take part in motions (x, x')' = A (x, x') on which D x' = 0 at all times.
+
+    They are the ones not observed by D x': the unit row e_i depends on the rows of (0 D), (0 D) A, (0 D) A^2, ...
+    """
+    n = d.nrows()
+    row = fmpq_mat(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
+    observed: list[Any] = []
+    for _ in range(2 * n):
+        observed += row.tolist()
+        row = row * a
+    rank = _rank(observed)
+    return [i for i in range(n) if _rank([*observed, [fmpq(int(j == i)) for j in range(2 * n)]]) > rank]
+
+
+def _rank(rows: Sequence[Sequence[Any]]) -> int:
+    return int(fmpq_mat(len(rows), len(rows[0]), [x for row in rows for x in row]).rref()[1])
 
 
 def _judge_turned(a: Numbers, turned: Sequence[Any], whole: Verdict) -> Verdict:

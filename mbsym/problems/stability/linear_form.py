@@ -18,7 +18,8 @@ class LinearSystem:
     rows and columns in K and N must vanish.  ``driven``: those of them whose momenta are not constant although D and N
     have no entries, because forces of higher order act on them.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p
     the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
-    shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.
+    shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.  ``names`` of the coordinates
+    are for sentences.
     """
 
     M: Matrix
@@ -30,6 +31,7 @@ class LinearSystem:
     cyclic: tuple[int, ...] = ()
     turned: tuple[Polynomial, ...] = ()
     driven: tuple[int, ...] = ()
+    names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -59,6 +61,9 @@ class LinearSystem:
         ]
         known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
         return frozenset({Fact.MASS_POSITIVE, *zero, *known})
+
+    def name(self, i: int) -> str:
+        return self.names[i] if self.names else f"coordinate {i + 1}"
 
     @property
     def size(self) -> int:

@@ -260,7 +260,9 @@ def _prepared(
     mass, damping, gyroscopic, stiffness, circulatory = rows
     driven = tuple(i for i in idle if part.coordinates[i] in balance.driven)
     bounded = balance.law.bounded
-    system = LinearSystem(mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven)
+    system = LinearSystem(
+        mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven, part.coordinates
+    )
     return _Prepared(part.coordinates, matrices, factor, ring, known, system)
 
 

@@ -56,6 +56,7 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         schur(system.N),
         system.conservative,
         turned=system.turned,
+        names=tuple(system.name(i) for i in rest),
     )
 
 

@@ -23,7 +23,7 @@ def _counted(number: object) -> str:
 
 
 def _undamped(coordinates: object) -> str:
-    return f"A motion of {coordinates} stays undamped."
+    return f"Motions of {coordinates} stay undamped."
 
 
 #: A sentence, or what makes one of the data.

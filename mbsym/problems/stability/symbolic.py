@@ -26,11 +26,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import combinations
 
 from mbsym.algebra.characteristic import (
     Coefficients,
     Polynomial,
     characteristic_polynomial,
+    determinant,
     factor_in_lambda,
     is_semisimple,
     lienard_chipart,
@@ -57,8 +59,11 @@ from mbsym.problems.stability.requirements import (
     unwritten,
 )
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
-from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.theorems import Fact, Ground, applying
 from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depends, drifting, undecided
+
+#: More damped coordinates have too many principal minors.
+MOST_DAMPED = 4
 
 
 @dataclass(frozen=True)
@@ -325,7 +330,10 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
             odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
             return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
         if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
-            return Case(wanted, (), _all_left(found.turned)), *unstable
+            held = _semidefinite(system, known) if is_zero(system.N) and not found.turned else facts
+            minimum = held | {Fact.STIFFNESS_POSITIVE}
+            lasting = [Case(stiff, (), concluded(minimum))] if Ground.ENERGY in applying(minimum) else []
+            return Case(wanted, (), _all_left(found.turned)), *lasting, *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
     if found.dissipation is not None:
@@ -348,6 +356,19 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         Case((), negative[-1:], odd_degree),
         *unstable,
     )
+
+
+def _semidefinite(system: LinearSystem, known: Signs) -> frozenset[Fact]:
+    """The facts, with D >= 0 if all its principal minors are known not to be negative."""
+    damped = [i for i in range(system.size) if any(x != 0 for x in system.D[i])]
+    if len(damped) > MOST_DAMPED:
+        return system.facts
+    for size in range(1, len(damped) + 1):
+        for at in combinations(damped, size):
+            minor = determinant([[system.D[i][j] for j in at] for i in at])
+            if known.sign(minor) not in ("positive", "nonnegative", "zero"):
+                return system.facts
+    return system.facts | {Fact.DAMPING_SEMIDEFINITE}
 
 
 def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) -> tuple[tuple[Case, ...], Theory | None]:

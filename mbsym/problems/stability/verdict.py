@@ -196,14 +196,15 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
 def drifting(verdict: Verdict) -> Verdict:
     """The verdict on the other coordinates as one on the whole, whose cyclic coordinates drift."""
     flaws = verdict.flawed | {Flaw.CYCLIC}
-    # A minimum of the effective potential at constant cyclic momenta is Routh's theorem.
-    grounds = {
-        ground: tuple(sorted({ROUTH if name == LAGRANGE else name for name in names}))
-        for ground, names in verdict.laid.items()
-    }
+    grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     return Verdict(row.word, names, (*verdict.reasons, Reason(Because.DRIFT)), tuple(grounds.items()), flaws)
+
+
+def _at_constant_momenta(theorems: Iterable[str]) -> tuple[str, ...]:
+    """A minimum of the effective potential at constant cyclic momenta is Routh's theorem."""
+    return tuple(sorted({ROUTH if name == LAGRANGE else name for name in theorems}))
 
 
 def coasting() -> Verdict:
@@ -232,6 +233,8 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
     flaws = frozenset[Flaw]().union(*(part.flawed for part in parts))
     row = row_of(kept, flaws)
     if row.ground is not None:
+        if row.ground is Ground.ENERGY and Flaw.CYCLIC in flaws:
+            grounds[Ground.ENERGY] = _at_constant_momenta(grounds[Ground.ENERGY])
         names = grounds[row.ground]
     else:  # those of the parts that have the flaw which decides
         names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
