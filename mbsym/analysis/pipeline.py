@@ -26,6 +26,7 @@ from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
 from mbsym.problems import (
+    conserved,
     dissipation,
     energy,
     equations,
@@ -200,7 +201,8 @@ class Analysis(Stages):
 
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.linearisation
-        return stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
+        found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
+        return conserved.decided(found, scene, self.balance, self.equilibrium, lambda: self.optional("integrals") or ())
 
     def _balance(self) -> Balance:
         energies = self.optional("energy")

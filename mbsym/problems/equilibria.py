@@ -424,7 +424,7 @@ class _ChartSearch:
             exact |= {ring.index("coordinate", name): fmpq_poly([0])}
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-        return Place(self.found, balls, exact | self._exact_rates(), point.modulus)
+        return Place(self.found, balls, exact | self._exact_rates(), point.modulus, point.enclosure)
 
     def _exact_rates(self) -> dict[int, Any]:
         rates = {k: rate for k, rate in self.found.rates.items() if rate.is_constant()}

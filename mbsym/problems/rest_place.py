@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra.failures import NotRational
 from mbsym.algebra.polynomial_systems import inverse_modulo
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
@@ -16,12 +17,23 @@ PRECISION = 200
 
 
 class Place:
-    """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic."""
+    """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic.
 
-    def __init__(self, found: Rest, balls: Mapping[str, Any], exact: Mapping[int, Any], modulus: Any) -> None:
+    ``enclosure``: a ball around an element of the number field QQ[t]/modulus; not needed where that is QQ.
+    """
+
+    def __init__(
+        self,
+        found: Rest,
+        balls: Mapping[str, Any],
+        exact: Mapping[int, Any],
+        modulus: Any,
+        enclosure: Callable[[Any, int], Any] | None = None,
+    ) -> None:
         self.found = found
         self.ring = found.ring
         self.modulus = modulus
+        self._enclosure = enclosure
         self._exact = dict(exact)
         self.balls = dict.fromkeys(found.ring.names(), arb(0)) | dict(balls)
 
@@ -39,7 +51,7 @@ class Place:
             exact.pop(ring.index("coordinate", name), None)
             exact[ring.index("sine", name)] = fmpq_poly([2 * t / (1 + t * t)])
             exact[ring.index("cosine", name)] = fmpq_poly([(1 - t * t) / (1 + t * t)])
-        return Place(self.found, balls, exact, self.modulus)
+        return Place(self.found, balls, exact, self.modulus, self._enclosure)
 
     def reflected(self, length: str, angle: str) -> Place:
         """The same place of all bodies at -r, theta + pi (``mechanics.reflections``)."""
@@ -53,7 +65,15 @@ class Place:
         with ctx.workprec(PRECISION):
             turn = arb.pi() if balls[angle] <= 0 else -arb.pi()
             balls[length], balls[angle] = -balls[length], balls[angle] + turn
-        return Place(self.found, balls, exact, self.modulus)
+        return Place(self.found, balls, exact, self.modulus, self._enclosure)
+
+    def enclose(self, element: Any) -> Any:
+        """A ball around an element of the number field.  Raises NotRational where it is not known which root is meant."""
+        if element.degree() <= 0:
+            return arb(element[0])
+        if self._enclosure is None:
+            raise NotRational("an element of a number field without its root")
+        return self._enclosure(element, PRECISION)
 
     def ball(self, x: Polynomial) -> Any:
         """An enclosure; exactly 0 where the value is proved to vanish."""

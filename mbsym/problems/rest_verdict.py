@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
-from flint import fmpq, fmpq_mpoly_ctx
+from flint import ctx, fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, NotRational
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
+from mbsym.problems.conserved import OPEN, Conserved, by_integrals, conserved
+from mbsym.problems.energy import Energy
 from mbsym.problems.rest_place import PRECISION, Place
+from mbsym.problems.stability.bundle import NumberField
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
@@ -35,8 +39,32 @@ class LinearAtRest:
     varying: tuple[str, ...]
     tilts: tuple[int, ...]
     spin: Polynomial | None
+    found: Rest
+    energy: Energy | None
+    ignorable: tuple[str, ...]
 
     def verdict(self, place: Place) -> Verdict:
+        """By the first approximation, and where that leaves it open by the integrals of the motion."""
+        verdict = self._by_first_approximation(place)
+        if verdict.word not in OPEN or verdict.explanation == MASS_SINGULAR:
+            return verdict
+        if self.varying or self._conserved is None or place.modulus is None:
+            return verdict
+        try:
+            with ctx.workprec(PRECISION):
+                names = self._conserved.combination(place.residue, NumberField(place.modulus, place.enclose))
+        except NotRational:
+            return verdict
+        return verdict if names is None else by_integrals(names, bool(self.ignorable))
+
+    @cached_property
+    def _conserved(self) -> Conserved | None:
+        """The integrals, where the energy is conserved and some momentum is."""
+        if self.energy is None or not self.conservative:
+            return None
+        return conserved(self.found.scene, self.energy, self.ignorable, self.found.turning)
+
+    def _by_first_approximation(self, place: Place) -> Verdict:
         if self.varying:
             return undecided(Because.VARIES, ", ".join(self.varying))
         values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
@@ -95,7 +123,9 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    return LinearAtRest(parts, balance.law.bounded, cyclic, varying, tilts, rate)
+    return LinearAtRest(
+        parts, balance.law.bounded, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic)
+    )
 
 
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])

@@ -1,0 +1,176 @@
+"""First integrals as functions of what is constant on a steady motion, with their first and second derivatives.
+
+Coordinates that neither L nor any force contains are left out (they turn, or may have any value): the others and all
+velocities are the variables z of a reduced system, on which every integral that does not contain the coordinates left
+out is a function.  Components of a conserved momentum that turn with them come as the sum of their squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations
+
+from flint import arb, ctx, fmpq_poly
+
+from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import turning, unperturbed
+from mbsym.mechanics.programs import programs
+from mbsym.problems import equations as lagrange
+from mbsym.problems import integrals as first_integrals
+from mbsym.problems.dissipation import Balance
+from mbsym.problems.energy import Energy
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import PROVED, Integral
+from mbsym.problems.stability import Stability, parameter_values
+from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
+from mbsym.problems.stability.theory import CRITICAL, GYROSCOPIC, STABLE, STABLE_BUT_CYCLIC, UNDECIDED, Verdict
+
+#: The theorem.
+CHETAEV = "Chetaev's combination of integrals"
+#: Verdicts that the first approximation leaves open.
+OPEN = (GYROSCOPIC, CRITICAL, UNDECIDED)
+#: Working precision of enclosures, in bits.
+PRECISION = 200
+#: Momenta of more terms than this are not squared.
+MOST_TERMS = 80
+#: Coordinates of systems whose integrals are looked for.
+MOST_COORDINATES = 8
+
+
+@dataclass(frozen=True)
+class Conserved:
+    """``names`` and ``polynomials`` of proved integrals, functions of ``coordinates`` and of all ``velocities``."""
+
+    ring: Ring
+    names: tuple[str, ...]
+    polynomials: tuple[Polynomial, ...]
+    coordinates: tuple[str, ...]
+    velocities: tuple[str, ...]
+
+    def derivatives(self, x: Polynomial) -> list[Polynomial]:
+        """dx/dz, coordinates first."""
+        ring = self.ring
+        of_places = [ring.derivative(x, name) for name in self.coordinates]
+        return of_places + [ring.velocity_derivative(x, name) for name in self.velocities]
+
+    @cached_property
+    def gradients(self) -> list[list[Polynomial]]:
+        """m x N."""
+        return [self.derivatives(x) for x in self.polynomials]
+
+    @cached_property
+    def hessians(self) -> list[list[list[Polynomial]]]:
+        """m times N x N."""
+        return [[self.derivatives(x) for x in row] for row in self.gradients]
+
+    def combination(self, value: Callable[[Polynomial], Element | None], field: NumberField) -> tuple[str, ...] | None:
+        """The names of integrals of which a combination is definite at a state; None where none was found.
+
+        ``value``: a polynomial at the state, as an element of the field, or None where it has no such value.
+        """
+        gradients = [[value(x) for x in row] for row in self.gradients]
+        if any(x is None for row in gradients for x in row):
+            return None
+        hessians = [[[value(x) for x in row] for row in rows] for rows in self.hessians]
+        if any(x is None for rows in hessians for row in rows for x in row):
+            return None
+        multipliers = definite_combination(gradients, hessians, field)
+        if multipliers is None:
+            return None
+        kept = [name for name, mu in zip(self.names, multipliers, strict=True) if not mu.contains(0)]
+        return tuple(kept) or self.names
+
+
+def by_integrals(names: Sequence[str], drifting: bool) -> Verdict:
+    """Stability by the integrals called ``names``; ``drifting``: with respect to what is not cyclic."""
+    of = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+    why = (
+        f"A combination of integrals ({of}) is stationary, and its second variation is definite where they keep their "
+        "values: it makes a Lyapunov function of the nonlinear system."
+    )
+    if not drifting:
+        return Verdict(STABLE, CHETAEV, why)
+    why += " This is about the other coordinates and all velocities; the cyclic coordinates may drift away."
+    return Verdict(STABLE_BUT_CYCLIC, CHETAEV, why)
+
+
+def conserved(scene: Scene, energy: Energy, left_out: Sequence[str], steady: Sequence[str]) -> Conserved | None:
+    """The integrals of a system, ``left_out`` the coordinates that neither L nor any force contains.
+
+    ``steady``: those that turn at a constant rate.
+
+    None where the energy is not conserved or no momentum is, and where the motion is steady in no such reduced system.
+    """
+    system = scene.system
+    if not {*steady} <= {*left_out} or len(system.coordinates) > MOST_COORDINATES:
+        return None
+    try:
+        known = first_integrals.integrals(
+            scene, energy, lagrange.equations(scene, energy), programs(system, scene.ring)
+        )
+    except NOT_THERE:
+        return None
+    return of_integrals(scene, known, left_out)
+
+
+def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str]) -> Conserved | None:
+    """The same from the integrals of problem 7."""
+    ring, system = scene.ring, scene.system
+    hidden = [*left_out, *(item.name for item in system.prescribed), "t"]
+    proved = [item for item in known if item.status == PROVED]
+    found = [(item.name, item.formula.polynomial) for item in proved]
+    for kind in ("linear momentum", "angular momentum"):
+        parts = [item for item in proved if item.kind == kind and ring.dependencies(item.formula.polynomial, hidden)]
+        for count in (2, 3):
+            for chosen in combinations(parts, count):
+                if any(len(item.formula.polynomial) > MOST_TERMS for item in chosen):
+                    continue
+                axes = " and ".join(item.of for item in chosen)
+                try:
+                    square = sum((ring.times(x, x) for item in chosen if (x := item.formula.polynomial)), ring.zero)
+                    found.append((f"square of the {kind} across ({axes})", ring.reduce(square)))
+                except Failure:
+                    continue
+    seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]
+    if len(seen) < 2 or not any(item.kind == "energy" for item in proved):
+        return None
+    kept = tuple(name for name in system.coordinates if name not in left_out)
+    return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), kept, system.coordinates)
+
+
+def decided(
+    found: Stability, scene: Scene, balance: Balance, equilibrium: Equilibrium, known: Callable[[], Sequence[Integral]]
+) -> Stability:
+    """Problem 6 with the verdict at the description's values decided by integrals, where it is open and they do.
+
+    ``known`` gives the integrals of problem 7; it is asked only where they may help.
+    """
+    if found.numerical is None or found.numerical.word not in OPEN or len(scene.system.coordinates) > MOST_COORDINATES:
+        return found
+    left_out = tuple(name for name in balance.ignorable if name not in balance.driven)
+    values = parameter_values(scene, equilibrium)
+    if values is None or not {*turning(scene)} <= {*left_out}:
+        return found
+    state = of_integrals(scene, known(), left_out)
+    if state is None:
+        return found
+    ring, here = scene.ring, unperturbed(scene)
+    numbers = {
+        ring.index("parameter", name): ring.number(x) for name, x in values.items() if isinstance(x, Fraction)
+    }
+
+    def value(x: Polynomial) -> Element | None:
+        try:
+            number = ring.substitute(ring.substitute(x, dict(here)), dict(numbers))
+        except NOT_THERE:
+            return None
+        return fmpq_poly([number.leading_coefficient() if number else 0]) if number.is_constant() else None
+
+    with ctx.workprec(PRECISION):
+        names = state.combination(value, NumberField(fmpq_poly([0, 1]), lambda element: arb(element[0])))
+    return found if names is None else replace(found, numerical=by_integrals(names, bool(left_out)))

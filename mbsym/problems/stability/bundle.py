@@ -1,0 +1,197 @@
+"""Chetaev's method: a combination of first integrals with a definite second variation.
+
+Let I_1, ..., I_m be integrals of the motions near a steady one, as functions of the variables z that are constant on it
+(angles that turn, and others that the equations do not know, are left out).  If multipliers exist with
+
+    sum mu_k dI_k = 0    and    v . (sum mu_k d^2 I_k) v > 0    for all v != 0 with dI_1 . v = ... = dI_m . v = 0
+
+then V = sum mu_k (I_k - c_k) + N sum (I_k - c_k)^2, with a large enough N, is an integral with a strict minimum
+(Finsler's lemma): the motion is stable with respect to z, in the nonlinear system.  With the energy alone this is
+Lagrange's theorem, with cyclic momenta Routh's; with the angular momentum of a free body (a Casimir function of the
+reduced system) it decides the spins about its largest and smallest axis, with the momentum about a top's own axis the
+sleeping top.  Where z is only a part of the variables it is stability with respect to that part (Rumyantsev).
+
+Nothing follows where no combination is definite.
+
+The multipliers that annul the first variation are found exactly, in the number field of the motion; which of them make
+the second one definite is looked for in floating point and then proved with enclosures.
+
+Sources: N. G. Chetaev, The stability of motion (1946); V. V. Rumyantsev, On the stability of steady motions (1957).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_mat, fmpq, fmpq_poly
+
+from mbsym.algebra.polynomial_systems import inverse_modulo
+
+Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
+Rows = Sequence[Sequence[Element]]
+
+#: Directions that are tried where more than two multipliers are free.
+ATTEMPTS = 60
+
+
+@dataclass(frozen=True)
+class NumberField:
+    """QQ[t]/modulus with one real root of the modulus; ``enclose`` gives a ball around an element there."""
+
+    modulus: Any
+    enclose: Callable[[Element], Any]
+
+    def times(self, a: Element, b: Element) -> Element:
+        return a * b % self.modulus
+
+    def null_space(self, rows: Rows, size: int) -> list[list[Element]]:
+        """A basis of the vectors of ``size`` components that every row annuls; exact."""
+        zero, one = fmpq_poly([0]), fmpq_poly([1])
+        work = [[x % self.modulus for x in row] for row in rows]
+        pivots: list[int] = []
+        for column in range(size):
+            at = len(pivots)
+            pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
+            if pivot is None:
+                continue
+            work[at], work[pivot] = work[pivot], work[at]
+            inverse = inverse_modulo(work[at][column], self.modulus)
+            work[at] = [self.times(x, inverse) for x in work[at]]
+            for r, row in enumerate(work):
+                if r != at and row[column] != 0:
+                    factor = row[column]
+                    work[r] = [a - self.times(factor, b) for a, b in zip(row, work[at], strict=True)]
+            pivots.append(column)
+        basis = []
+        for free in (k for k in range(size) if k not in pivots):
+            vector = [zero] * size
+            vector[free] = one
+            for r, column in enumerate(pivots):
+                vector[column] = -work[r][free]
+            basis.append(vector)
+        return basis
+
+
+def definite_combination(gradients: Rows, hessians: Sequence[Rows], field: NumberField) -> tuple[Any, ...] | None:
+    """Multipliers mu (balls) of a combination as above, or None where none was found and proved.
+
+    ``gradients`` m x N, ``hessians`` m times N x N.  Zeros where the integrals alone determine all of z.
+    """
+    count, size = len(gradients), len(gradients[0])
+    tangent = field.null_space(gradients, size)
+    if not tangent:
+        return (arb(0),) * count
+    annulling = field.null_space([[gradients[k][i] for k in range(count)] for i in range(size)], count)
+    if not annulling:
+        return None
+    restricted = [_restricted(hessian, tangent, field) for hessian in hessians]
+    forms = []
+    for multipliers in annulling:
+        total = [[fmpq_poly([0])] * len(tangent) for _ in tangent]
+        for factor, rows in zip(multipliers, restricted, strict=True):
+            total = [
+                [a + field.times(factor, b) for a, b in zip(*pair, strict=True)]
+                for pair in zip(total, rows, strict=True)
+            ]
+        forms.append([[field.enclose(x % field.modulus) for x in row] for row in total])
+    weights = _definite(forms)
+    if weights is None:
+        return None
+    return tuple(
+        sum((field.enclose(vector[k]) * w for vector, w in zip(annulling, weights, strict=True)), arb(0))
+        for k in range(count)
+    )
+
+
+def _restricted(hessian: Rows, tangent: Rows, field: NumberField) -> list[list[Element]]:
+    """The values v_i . H v_j for the vectors of ``tangent``."""
+    zero = fmpq_poly([0])
+    images = [[sum((field.times(a, x) for a, x in zip(row, v, strict=True)), zero) for row in hessian] for v in tangent]
+    return [
+        [sum((field.times(a, x) for a, x in zip(v, image, strict=True)), zero) % field.modulus for image in images]
+        for v in tangent
+    ]
+
+
+def _definite(forms: Sequence[Sequence[Sequence[Any]]]) -> list[fmpq] | None:
+    """Rational weights w such that sum w_j forms_j is proved to be positive definite."""
+    import numpy as np
+
+    tables = [np.array([[float(x.mid()) for x in row] for row in form]) for form in forms]
+    if not all(np.isfinite(table).all() for table in tables):
+        return None
+    sizes = [float(np.abs(table).max()) or 1.0 for table in tables]
+    for direction in _directions([table / size for table, size in zip(tables, sizes, strict=True)]):
+        for digits in (3, 8, 14):
+            weights = [_rounded(x / size, digits) for x, size in zip(direction, sizes, strict=True)]
+            if _is_positive(forms, weights):
+                return weights
+    return None
+
+
+def _directions(tables: Sequence[Any]) -> list[list[float]]:
+    """Directions w in which sum w_j tables_j seems to be positive definite; for at most two tables all there are."""
+    import numpy as np
+
+    if len(tables) == 1:
+        return [[1.0], [-1.0]]
+    if len(tables) == 2:
+        return [list(w) for w in _in_plane(tables[0], tables[1])]
+    source = np.random.default_rng(1)
+    best = source.standard_normal(len(tables))
+    for _ in range(ATTEMPTS):
+        other = source.standard_normal(len(tables))
+        pencil = [sum(x * t for x, t in zip(w, tables, strict=True)) for w in (best, other)]
+        found = _in_plane(pencil[0], pencil[1], best_only=True)
+        best = found[0][0] * best + found[0][1] * other
+        best = best / np.linalg.norm(best)
+        if np.linalg.eigvalsh(sum(x * t for x, t in zip(best, tables, strict=True)))[0] > 1e-9:
+            return [[float(x) for x in best]]
+    return []
+
+
+def _in_plane(a: Any, b: Any, best_only: bool = False) -> list[tuple[float, float]]:
+    """(cos x, sin x) in the middle of every interval in which a cos x + b sin x is positive definite.
+
+    The intervals end where its determinant vanishes.  ``best_only``: wherever its least eigenvalue is greatest.
+    """
+    import numpy as np
+    from scipy.linalg import eigvals
+
+    above, below = eigvals(a, -b, homogeneous_eigvals=True)
+    borders = {0.0, math.pi / 2}
+    for x, y in zip(above, below, strict=True):
+        if abs(y) + abs(x) > 0 and abs((x * np.conj(y)).imag) <= 1e-7 * (abs(x) + abs(y)) ** 2:
+            # a y + b x is singular, up to a common factor
+            phase = np.conj(y if abs(y) > abs(x) else x)
+            borders.add(math.atan2((x * phase).real, (y * phase).real) % math.pi)
+    ordered = sorted(borders)
+    ends = [*ordered, *(x + math.pi for x in ordered), ordered[0] + 2 * math.pi]
+    middles = [(p + q) / 2 for p, q in zip(ends, ends[1:], strict=False)]
+    seen = [
+        (float(np.linalg.eigvalsh(a * math.cos(x) + b * math.sin(x))[0]), (math.cos(x), math.sin(x))) for x in middles
+    ]
+    seen.sort(reverse=True)
+    return [pair for value, pair in seen[:1] if best_only or value > 0] or ([seen[0][1]] if best_only else [])
+
+
+def _rounded(x: float, digits: int) -> fmpq:
+    """x to some significant digits."""
+    if x == 0:
+        return fmpq(0)
+    scale = Fraction(10) ** (digits - 1 - math.floor(math.log10(abs(x))))
+    value = Fraction(round(Fraction(x) * scale)) / scale
+    return fmpq(value.numerator, value.denominator)
+
+
+def _is_positive(forms: Sequence[Sequence[Sequence[Any]]], weights: Sequence[fmpq]) -> bool:
+    size = len(forms[0])
+    total = [
+        [sum((form[i][j] * w for form, w in zip(forms, weights, strict=True)), arb(0)) for j in range(size)]
+        for i in range(size)
+    ]
+    return all(arb_mat(s, s, [x for row in total[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
