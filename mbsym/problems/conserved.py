@@ -28,12 +28,13 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import PROVED, Integral
 from mbsym.problems.stability import Stability, parameter_values
 from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
-from mbsym.problems.stability.theory import CRITICAL, GYROSCOPIC, STABLE, STABLE_BUT_CYCLIC, UNDECIDED, Verdict
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded, drifting
+from mbsym.problems.stability.word import Word
 
-#: The theorem.
-CHETAEV = "Chetaev's combination of integrals"
 #: Verdicts that the first approximation leaves open.
-OPEN = (GYROSCOPIC, CRITICAL, UNDECIDED)
+OPEN = (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
 #: Working precision of enclosures, in bits.
 PRECISION = 200
 #: Momenta of more terms than this are not squared.
@@ -86,17 +87,10 @@ class Conserved:
         return tuple(kept) or self.names
 
 
-def by_integrals(names: Sequence[str], drifting: bool) -> Verdict:
-    """Stability by the integrals called ``names``; ``drifting``: with respect to what is not cyclic."""
-    of = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
-    why = (
-        f"A combination of integrals ({of}) is stationary, and its second variation is definite where they keep their "
-        "values: it makes a Lyapunov function of the nonlinear system."
-    )
-    if not drifting:
-        return Verdict(STABLE, CHETAEV, why)
-    why += " This is about the other coordinates and all velocities; the cyclic coordinates may drift away."
-    return Verdict(STABLE_BUT_CYCLIC, CHETAEV, why)
+def by_integrals(names: Sequence[str], drift: bool) -> Verdict:
+    """Stability by the integrals called ``names``; ``drift``: with respect to what is not cyclic."""
+    found = concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRALS, tuple(names)))
+    return drifting(found) if drift else found
 
 
 def conserved(scene: Scene, energy: Energy, left_out: Sequence[str], steady: Sequence[str]) -> Conserved | None:
@@ -160,9 +154,7 @@ def decided(
     if state is None:
         return found
     ring, here = scene.ring, unperturbed(scene)
-    numbers = {
-        ring.index("parameter", name): ring.number(x) for name, x in values.items() if isinstance(x, Fraction)
-    }
+    numbers = {ring.index("parameter", name): ring.number(x) for name, x in values.items() if isinstance(x, Fraction)}
 
     def value(x: Polynomial) -> Element | None:
         try:

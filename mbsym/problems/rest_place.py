@@ -68,7 +68,7 @@ class Place:
         return Place(self.found, balls, exact, self.modulus, self._enclosure)
 
     def enclose(self, element: Any) -> Any:
-        """A ball around an element of the number field.  Raises NotRational where it is not known which root is meant."""
+        """A ball around an element of the number field.  Raises NotRational where its root is not known."""
         if element.degree() <= 0:
             return arb(element[0])
         if self._enclosure is None:

@@ -46,7 +46,7 @@ class LinearAtRest:
     def verdict(self, place: Place) -> Verdict:
         """By the first approximation, and where that leaves it open by the integrals of the motion."""
         verdict = self._by_first_approximation(place)
-        if verdict.word not in OPEN or verdict.explanation == MASS_SINGULAR:
+        if verdict.word not in OPEN or verdict.coordinates_singular:
             return verdict
         if self.varying or self._conserved is None or place.modulus is None:
             return verdict

@@ -332,11 +332,16 @@ def test_regular_precession_of_a_top() -> None:
 
 
 def test_sleeping_and_hanging_top() -> None:
-    """Maievskii: C^2 Omega^2 > 4 A m g l at Omega = 30 (9 > 5.886), not at 20 (4 < 5.886)."""
-    for rate, upright in ((30, "gyroscopically stabilised only"), (20, "unstable")):
+    """Maievskii: C^2 Omega^2 > 4 A m g l at Omega = 30 (9 > 5.886), not at 20 (4 < 5.886).
+
+    Where it holds the top sleeps in the nonlinear system, too (Lagrange's top: energy and both momenta).
+    """
+    drifts = "stable with respect to the other variables; the cyclic coordinates drift"
+    for rate, upright in ((30, drifts), (20, "unstable")):
         _, found = at("heavy-top", Omega=rate)
         assert len(found.equilibria) == 2
         assert words(found)["0", "0"] == upright
+        assert words(found)["pi", "0"] == drifts
 
 
 # --- what is not polynomial ------------------------------------------------------------------------------------------

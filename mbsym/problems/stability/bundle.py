@@ -25,6 +25,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, arb_mat, fmpq, fmpq_poly
@@ -171,7 +172,7 @@ def _in_plane(a: Any, b: Any, best_only: bool = False) -> list[tuple[float, floa
             borders.add(math.atan2((x * phase).real, (y * phase).real) % math.pi)
     ordered = sorted(borders)
     ends = [*ordered, *(x + math.pi for x in ordered), ordered[0] + 2 * math.pi]
-    middles = [(p + q) / 2 for p, q in zip(ends, ends[1:], strict=False)]
+    middles = [(p + q) / 2 for p, q in pairwise(ends)]
     seen = [
         (float(np.linalg.eigvalsh(a * math.cos(x) + b * math.sin(x))[0]), (math.cos(x), math.sin(x))) for x in middles
     ]

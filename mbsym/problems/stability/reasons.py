@@ -23,6 +23,7 @@ class Because(Enum):
     MINIMUM = auto()
     MINIMUM_AND_DISSIPATION = auto()
     UNDAMPED_MOTION = auto()  # (coordinates)
+    INTEGRALS = auto()  # (which)
     # of what no theorem carries
     GYROSCOPIC_ONLY = auto()
     GYROSCOPIC_ENCLOSED = auto()

@@ -26,6 +26,15 @@ def _undamped(coordinates: object) -> str:
     return f"Motions of {coordinates} stay undamped."
 
 
+def _integrals(*names: object) -> str:
+    *first, last = map(str, names or ("first integrals",))
+    of = f"{', '.join(first)} and {last}" if first else last
+    return (
+        f"A combination of integrals ({of}) is stationary, and its second variation is definite where they keep their "
+        "values: it makes a Lyapunov function of the nonlinear system."
+    )
+
+
 #: A sentence, or what makes one of the data.
 _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.RIGHT_ROOTS: _counted,
@@ -49,6 +58,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "K > 0 and D >= 0: the energy does not grow, and the (changed) potential energy has a strict minimum."
     ),
     Because.UNDAMPED_MOTION: _undamped,
+    Because.INTEGRALS: _integrals,
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
         "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and the nonlinear "

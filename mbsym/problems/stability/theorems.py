@@ -10,6 +10,7 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
   D = N = 0 and det K < 0: unstable, whatever G is.
 * Lyapunov's first method: all roots to the left, or one to the right.
 * Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.
+* Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
 
 A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
 """
@@ -44,6 +45,9 @@ class Fact(Enum):
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
     #: No root to the right, and those on the imaginary axis are semisimple and not zero.
     BOUNDED = "the first approximation is stable"
+    #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
+    #: their values (``bundle``): shown of the whole system, never of a subsystem.
+    INTEGRALS_DEFINITE = "a combination of integrals of the nonlinear system has a strict minimum"
 
 
 class Ground(Enum):
@@ -74,6 +78,7 @@ ROUTH = "Routh"
 KELVIN_CHETAEV = "Kelvin-Chetaev"
 LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
+CHETAEV = "Chetaev's combination of integrals"
 
 _PLAIN = (Fact.MASS_POSITIVE, Fact.POTENTIAL)
 _MINIMUM = (*_PLAIN, Fact.STIFFNESS_POSITIVE, Fact.ENERGY_NEVER_GROWS)
@@ -105,6 +110,7 @@ THEOREMS = (
         Fact.NOT_GYROSCOPIC,
     ),
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
+    _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
 )
 
 _IMPLIED = {

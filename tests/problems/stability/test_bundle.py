@@ -1,0 +1,197 @@
+"""Combinations of first integrals: sleeping tops, free bodies, rotors, as in the literature; and where they say no."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import permutations
+
+import pytest
+from conftest import SHIPPED, at_values
+from flint import arb, fmpq, fmpq_poly
+
+import mbsym
+from mbsym.mechanics.rest import given_values
+from mbsym.problems.equilibria import equilibria
+from mbsym.problems.stability.bundle import NumberField, definite_combination
+from mbsym.problems.stability.word import Word
+
+RATIONALS = NumberField(fmpq_poly([0, 1]), lambda element: arb(element[0]))
+INTEGRALS = "Chetaev's combination of integrals"
+
+
+def constants(*rows: list[Fraction | int]) -> list[list[fmpq_poly]]:
+    return [[fmpq_poly([fmpq(Fraction(x).numerator, Fraction(x).denominator)]) for x in row] for row in rows]
+
+
+def diagonal(*numbers: Fraction | int) -> list[list[fmpq_poly]]:
+    n = len(numbers)
+    return constants(*([numbers[i] if i == j else 0 for j in range(n)] for i in range(n)))
+
+
+# --- the kernel ------------------------------------------------------------------------------------------------------
+
+
+def spin_is_decided(moments: tuple[int, int, int]) -> bool:
+    """A free body's spin about its third axis, by T and the square of the angular momentum as functions of omega."""
+    gradients = constants([0, 0, moments[2]], [0, 0, 2 * moments[2] ** 2])
+    hessians = [diagonal(*moments), diagonal(*(2 * x * x for x in moments))]
+    return definite_combination(gradients, hessians, RATIONALS) is not None
+
+
+def test_a_free_body_spins_stably_about_its_largest_and_smallest_axis_only() -> None:
+    for moments in permutations((2, 3, 4)):
+        assert spin_is_decided(moments) == (moments[2] != 3)
+    assert not spin_is_decided((3, 4, 3)), "about an axis across the axis of symmetry it creeps away"
+    assert spin_is_decided((3, 3, 4))
+    assert spin_is_decided((4, 4, 3))
+
+
+def test_a_lone_integral_has_to_be_stationary_and_definite() -> None:
+    assert definite_combination(constants([0, 0]), [diagonal(2, 5)], RATIONALS) is not None
+    assert definite_combination(constants([0, 0]), [diagonal(-2, -5)], RATIONALS) is not None, "a maximum is as good"
+    assert definite_combination(constants([0, 0]), [diagonal(2, -5)], RATIONALS) is None
+    assert definite_combination(constants([0, 0]), [diagonal(2, 0)], RATIONALS) is None, "a border"
+    assert definite_combination(constants([1, 0]), [diagonal(2, 5)], RATIONALS) is None, "no equilibrium"
+
+
+def test_indefinite_forms_with_a_narrow_cone_of_definite_combinations() -> None:
+    """diag(1, -1) + x diag(-1, 1 + e) is positive definite for 1/(1 + e) < x < 1 only."""
+    first, zero = diagonal(1, -1), constants([0, 0], [0, 0])
+    for e in (Fraction(1, 10), Fraction(1, 10**6)):
+        assert definite_combination(zero, [first, diagonal(-1, 1 + e)], RATIONALS) is not None
+    assert definite_combination(zero, [first, diagonal(-1, 1)], RATIONALS) is None
+    assert definite_combination(zero, [first, diagonal(-1, Fraction(9, 10))], RATIONALS) is not None, "the other sign"
+    three = constants([0, 0, 0], [0, 0, 0], [0, 0, 0])
+    forms = [diagonal(1, -1, 0), diagonal(0, 1, -1), diagonal(-1, 0, Fraction(11, 10))]
+    assert definite_combination(three, forms, RATIONALS) is not None
+    assert definite_combination(three, [*forms[:2], diagonal(-1, 0, 1)], RATIONALS) is None
+
+
+def test_in_a_number_field_the_first_variation_vanishes_exactly() -> None:
+    """dI_1 = (1, 0), dI_2 = (sqrt 2, 0): I_1 sqrt 2 - I_2 is stationary, which no enclosure could show."""
+    field = NumberField(fmpq_poly([-2, 0, 1]), lambda x: arb(2).sqrt() * x[1] + x[0])
+    one, zero, root = fmpq_poly([1]), fmpq_poly([0]), fmpq_poly([0, 1])
+    forms = [[[zero, zero], [zero, one]], [[zero, zero], [zero, zero]]]
+    assert definite_combination([[one, zero], [root, zero]], forms, field) is not None
+    assert definite_combination([[one, one], [root, zero]], forms, field) is not None, "both variables are fixed"
+    assert definite_combination([[one, zero]], forms[:1], field) is None
+
+
+# --- sleeping tops ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "Omega", "sleeps"),
+    [("1", "1", "5", True), ("1", "1", "2001/1000", True), ("1", "1", "1999/1000", False), ("4", "1", "3", False)],
+)
+def test_a_top_sleeps_above_the_border(A: str, C: str, Omega: str, sleeps: bool) -> None:
+    """Maievskii: C^2 Omega^2 > 4 A m g l, with m = g = l = 1."""
+    a = at_values(SHIPPED / "heavy-top.yaml", A=A, C=C, Omega=Omega, m=1, g=1, l=1)
+    verdict = a.stability.numerical
+    assert verdict is not None
+    assert verdict.word is (Word.STABLE_BUT_CYCLIC if sleeps else Word.UNSTABLE)
+    assert (verdict.theorem == INTEGRALS) is sleeps
+    found = equilibria(a.system, given_values(a.system, {}))
+    assert verdict in {one.verdict for one in found.equilibria}
+
+
+def test_on_the_border_of_sleep_nothing_is_claimed() -> None:
+    verdict = at_values(SHIPPED / "heavy-top.yaml", A=1, C=1, Omega=2, m=1, g=1, l=1).stability.numerical
+    assert verdict is not None
+    assert verdict.word is Word.UNDECIDED
+
+
+def test_a_top_without_its_symmetry_is_left_open() -> None:
+    """With a weak spring across, the momentum about the vertical is no integral: gyroscopic stabilisation, no more."""
+    text = (SHIPPED / "heavy-top.yaml").read_text(encoding="utf-8")
+    pulled = text.replace("loads:\n", "loads:\n  - potential: sin(beta)**2/100\n")
+    verdict = mbsym.loads(pulled).stability.numerical
+    assert verdict is not None
+    assert verdict.word is Word.GYROSCOPIC
+    slim = mbsym.loads(text.replace("inertia: [A, A, C]", "inertia: [A, A*11/10, C]"))  # the spin is no cyclic angle
+    with pytest.raises(Exception, match="vary with"):
+        _ = slim.stability
+
+
+# --- free bodies, rotors ---------------------------------------------------------------------------------------------
+
+GYROSTAT = """
+mbsym: 1
+name: Spinning free gyrostat
+parameters: {{A: {A}, B: {B}, C: {C}, W: {W}, h: {h}}}
+bodies:
+  - name: body
+    rotation: {{axes: [3, 1, 2], angles: [c, a, b]}}
+    mass: 1
+    inertia about: mass centre
+    inertia: [A, B, C]
+    gyrostatic moment: [0, 0, h]
+motion: {{c: {{value: 0, rate: W}}, a: 0, b: 0}}
+"""
+
+
+@pytest.mark.parametrize("moments", list(permutations((2, 3, 4))), ids=str)
+@pytest.mark.parametrize(("rate", "rotor"), [("1", "0"), ("1", "3/2"), ("1", "-3/2"), ("-2", "3"), ("1/2", "-3")])
+def test_spins_of_a_free_body_with_a_rotor(moments: tuple[int, int, int], rate: str, rotor: str) -> None:
+    """A w1' = -((C - B) W + h) w2, B w2' = ((C - A) W + h) w1: stable iff the product is positive, then by integrals.
+
+    h = 0 is Euler's top; a despun platform is stable where the rotor is fast enough, about whichever axis.
+    """
+    A, B, C = moments
+    W, h = Fraction(rate), Fraction(rotor)
+    product = ((C - B) * W + h) * ((C - A) * W + h)
+    verdict = mbsym.loads(GYROSTAT.format(A=A, B=B, C=C, W=W, h=h)).stability.numerical
+    assert verdict is not None
+    if product > 0:
+        assert verdict.word is Word.STABLE_BUT_CYCLIC
+    elif product < 0:
+        assert verdict.word is Word.UNSTABLE
+    else:
+        assert verdict.word is Word.UNDECIDED
+
+
+def test_a_rotor_with_friction_is_no_conservative_system() -> None:
+    """Energy decreases and the spin about the smallest axis is lost: no combination of integrals may say otherwise."""
+    text = GYROSTAT.format(A=4, B=3, C=2, W=1, h=0) + (
+        "\nloads:\n  - generalized force: {a: -a_dot/100, b: -b_dot/100}\n"
+    )
+    verdict = mbsym.loads(text).stability.numerical
+    assert verdict is not None
+    assert verdict.word not in (Word.STABLE, Word.STABLE_BUT_CYCLIC)
+
+
+def test_no_integral_but_the_energy_decides_the_debra_delp_region() -> None:
+    """A satellite there is gyroscopically stabilised; that it is stable is not known."""
+    moments = {"A": Fraction(1), "B": Fraction("0.99"), "C": Fraction("0.96")}
+    system = mbsym.load(SHIPPED / "gravity-gradient.yaml").system
+    found = equilibria(system, given_values(system, moments))
+    assert sum(one.verdict.word is Word.GYROSCOPIC for one in found.equilibria) == 4
+
+
+HANGING = """
+mbsym: 1
+name: Spherical pendulum in a rotating frame
+parameters: {{g: 10, W: {W}}}
+prescribed: {{chi: {{rate: W}}}}
+bodies:
+  - {{name: frame, attached to: 0, rotation: {{axes: [3], angles: [chi]}}, mass: 0}}
+  - name: rod
+    attached to: frame
+    rotation: {{axes: [1, 2], angles: [x, y]}}
+    mass: 1
+    mass centre: [0, 0, -1]
+loads:
+  - uniform gravity: {{vector: [0, 0, -g]}}
+{spring}motion: {{x: 0, y: 0}}
+"""
+
+
+@pytest.mark.parametrize("rate", ["1", "4", "20"])
+def test_hanging_is_stable_in_whatever_frame(rate: str) -> None:
+    """Seen from inertial space nothing turns; with a spring that turns with the frame only the energy there is left."""
+    still = mbsym.loads(HANGING.format(W=rate, spring="")).stability.numerical
+    assert still is not None
+    assert still.word is Word.STABLE
+    turning = mbsym.loads(HANGING.format(W=rate, spring="  - potential: sin(x)**2/20\n")).stability.numerical
+    assert turning is not None
+    assert turning.word is (Word.STABLE if Fraction(rate) ** 2 < 10 else Word.GYROSCOPIC)
