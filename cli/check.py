@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, OK, counted, read_description
+from mbsym_cli.console import BAD_INPUT, OK, counted, printable, read_description
 from mbsym_cli.options import Options
 
 
@@ -34,5 +34,5 @@ def command(files: tuple[Path, ...]) -> None:
             continue
         bodies = counted(len(system.bodies), "body", "bodies")
         freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
-        click.echo(f"{path}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
+        print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
     sys.exit(worst)

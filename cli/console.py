@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -10,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.source import load, render
+from mbsym.source.render import escaped
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,6 +24,12 @@ OK, FAILED, BAD_INPUT = 0, 1, 2
 
 #: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
 BROKEN_DOWN, INTERRUPTED = 3, 130
+
+
+class Debugging:
+    """Whether ``--debug`` was given: tracebacks are shown."""
+
+    wanted = False
 
 
 @cache
@@ -38,8 +47,10 @@ def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
     if quiet or not sys.stderr.isatty():
         yield lambda text: None
         return
-    with console(stderr=True).status(text) as spinner:
-        yield lambda text: spinner.update(text)
+    from rich.text import Text
+
+    with console(stderr=True).status(Text(escaped(text))) as spinner:
+        yield lambda text: spinner.update(Text(escaped(text)))
 
 
 def read_description(path: Path) -> System | None:
@@ -49,8 +60,42 @@ def read_description(path: Path) -> System | None:
         print(render(complaint, text, str(path)), file=sys.stderr)
     errors = len(complaints.errors)
     if errors:
-        print(f"{path}: {counted(errors, 'error', 'errors')}; nothing was written.", file=sys.stderr)
+        complain(path, f"{counted(errors, 'error', 'errors')}; nothing was written.")
     return system
+
+
+def printable(path: Path | str) -> str:
+    """A name of a file for people: what could move a cursor or a title is written as an escape."""
+    return escaped(os.fsencode(path).decode("utf-8", "backslashreplace"))
+
+
+def complain(path: Path | str, text: str) -> None:
+    """A line about a file on standard error."""
+    print(f"{printable(path)}: {text}", file=sys.stderr)
+
+
+def defect(error: BaseException, where: Path | str | None = None) -> None:
+    """Tells of an exception that nobody foresaw; with ``--debug``, where it came from."""
+    before = "" if where is None else f"{printable(where)}: "
+    print(f"{before}internal error, please report it: {escaped(_described(error))}", file=sys.stderr)
+    trace(error)
+
+
+def trace(error: BaseException) -> None:
+    """The traceback of an exception, if it is wanted."""
+    if Debugging.wanted:
+        print("".join(traceback.format_exception(error)), end="", file=sys.stderr)
+
+
+def _described(error: BaseException) -> str:
+    text = str(error)
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def reason_of(error: OSError) -> str:
+    """What the system says of a file, with its name."""
+    said = error.strerror or str(error)
+    return said if error.filename is None else f"{printable(str(error.filename))}: {said}"
 
 
 def counted(n: int, one: str, many: str) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import click
 
 from mbsym.source import to_text, to_yaml
-from mbsym_cli.console import BAD_INPUT, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable, read_description
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -27,8 +28,10 @@ def command(file: Path, spelling: str | None, out: Path | None) -> None:
       mbsym convert systems/satellite.yaml --out satellite.txt
     """
     asked = Options()
-    if out is not None and out.exists() and file.exists() and out.samefile(file):
-        asked.complain("--out", "same-file", f"{out} would replace what it is made of", "comments would be lost")
+    if out is not None and _same(out, file):
+        asked.complain(
+            "--out", "same-file", f"{printable(out)} would replace what it is made of", "comments would be lost"
+        )
     if asked.refused(file):
         sys.exit(BAD_INPUT)
     system = read_description(file)
@@ -39,10 +42,16 @@ def command(file: Path, spelling: str | None, out: Path | None) -> None:
         spelling = "text" if wanted == ".txt" else "yaml"
     text = to_text(system) if spelling == "text" else to_yaml(system)
     if out is None:
-        click.echo(text, nl=False)
+        click.echo(text.encode(), nl=False)  # a description is UTF-8, whatever the terminal is
         return
     try:
         write_whole(out, text)
     except OSError as error:
-        click.echo(f"{out}: cannot be written: {error.strerror}", err=True)
-        sys.exit(BAD_INPUT)
+        complain(out, f"cannot be written: {error.strerror}")
+        sys.exit(FAILED)
+
+
+def _same(one: Path, other: Path) -> bool:
+    with suppress(OSError, ValueError):
+        return one.samefile(other)
+    return False

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.assignments import assignments, contradictions
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, console, counted, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, console, counted, printable, read_description, status
 from mbsym_cli.lacking import missing
 from mbsym_cli.options import Options
 
@@ -68,10 +68,10 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
 
     started = time.perf_counter()
     try:
-        with console(stderr=True).status(f"{file.name}: relative equilibria"):
+        with status(False, f"{file.name}: relative equilibria"):
             found = equilibria(system, values, reach)
     except Failure as reason:
-        print(f"{file}: no equilibria listed: {reason}", file=sys.stderr)
+        complain(file, f"no equilibria listed: {reason}")
         sys.exit(FAILED)
     if as_json:
         from mbsym.report.equilibria_json import equilibria_json
@@ -122,7 +122,7 @@ def _show(system: System, found: Equilibria, file: Path, seconds: float) -> None
     from rich.text import Text
 
     out = console()
-    out.print(Text.assemble((system.name, "bold"), (f"  {file}, {seconds:.2f} s", "dim")))
+    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
     for name, rate in found.turning:
         out.print(Text(f"  {name} turns at the rate {rate:.10g}"))
     if found.equilibria:

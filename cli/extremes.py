@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, console, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, console, printable, read_description, status
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
 
@@ -55,7 +55,7 @@ def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str,
     try:
         sys.exit(_command(file, folder, settings, sequences, budget, quiet))
     except KeyboardInterrupt:
-        print(f"{file}: interrupted", file=sys.stderr)
+        complain(file, "interrupted")
         sys.exit(INTERRUPTED)
 
 
@@ -71,16 +71,16 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
         return BAD_INPUT
     reason = "" if sequences else obstacle(folder)
     if reason:
-        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {reason}")
         return FAILED
     try:
         if sequences:
             return _rank(file, given, quiet)
         return _measure(file, folder, given, dict(overrides), seconds, quiet)
     except Failure as error:
-        print(f"{file}: the equations have no program: {error}", file=sys.stderr)
+        complain(file, f"the equations have no program: {error}")
     except OSError as error:
-        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {error}")
     return FAILED
 
 
@@ -112,7 +112,7 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
 
     out = console()
     if not quiet:
-        out.print(Text.assemble((found.system.name, "bold"), (f"  {file}, {found.seconds:.1f} s", "dim")))
+        out.print(Text.assemble((found.system.name, "bold"), (f"  {printable(file)}, {found.seconds:.1f} s", "dim")))
         out.print(
             "  fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question"
         )
@@ -124,7 +124,7 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
     for reason in found.left_out:
         out.print(Text(f"- left out: {reason}", style="yellow"))
     if not quiet:
-        out.print(Text.assemble("  files in ", (str(folder), "bold"), ": ", ", ".join(names)))
+        out.print(Text.assemble("  files in ", (printable(folder), "bold"), ": ", ", ".join(names)))
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
@@ -154,7 +154,7 @@ def _rank(file: Path, given: Scenario, quiet: bool) -> int:
     with status(quiet) as say:
         found = list(rankings(given, states, lambda text: say(f"{file.name}: {text}")))
     if not found:
-        print(f"{file}: no body is oriented by three turns.")
+        print(f"{printable(file)}: no body is oriented by three turns.")
     for ranking in found:
         _print_ranking(ranking, quiet)
     return OK

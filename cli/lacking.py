@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from mbsym.source.render import escaped
+
 
 def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:
     """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
@@ -18,6 +20,6 @@ def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:
     if positions:
         places.append(f"initial: {{{positions[0]}: 1, ...}}")
     return (
-        f"{file}: error[missing-value]: no {what} for {', '.join(shown)}\n"
+        f"{escaped(str(file))}: error[missing-value]: no {what} for {', '.join(shown)}\n"
         f"  hint: {example}, or in the file  {'  and  '.join(places)}"
     )

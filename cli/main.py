@@ -41,6 +41,8 @@ class LazyGroup(click.Group):
         # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
         gc.set_threshold(200_000, 20, 20)
         command: click.Command = importlib.import_module(COMMANDS[name]).command
+        if not any(option.name == "debug" for option in command.params):
+            command.params.append(_debug())
         return command
 
     def resolve_command(
@@ -54,30 +56,74 @@ class LazyGroup(click.Group):
             context.fail(f"there is no command '{name}'; {known}")
         return super().resolve_command(context, args)
 
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """In a process of its own the command is also safe from what its streams do."""
+        from mbsym_cli.console import FAILED, INTERRUPTED, OK
+        from mbsym_cli.streams import Streams, own_process, stoppable
+
+        if not own_process():
+            return super().main(*args, **extra)
+        streams = Streams()
+        with stoppable() as signals:
+            try:
+                super().main(*args, **extra)
+                code: Any = OK
+            except SystemExit as ended:
+                code = ended.code
+        refused = streams.refused()
+        if refused:
+            print(f"standard output cannot be written: {refused}", file=sys.stderr)
+            code = code or FAILED
+        if signals and code == INTERRUPTED:
+            code = 128 + signals[0]
+        sys.exit(code)
+
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
+        from mbsym_cli.console import FAILED, INTERRUPTED, Debugging, defect, reason_of, trace
+
+        Debugging.wanted = False
         try:
             return super().invoke(context)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
+        except OSError as error:
+            print(reason_of(error), file=sys.stderr)
+            trace(error)
+        except MemoryError as error:
+            print("out of memory", file=sys.stderr)
+            trace(error)
         except Exception as error:
-            from mbsym_cli.console import FAILED
-
-            print(f"internal error, please report it: {type(error).__name__}: {error}", file=sys.stderr)
-            sys.exit(FAILED)
+            defect(error)
         except KeyboardInterrupt:
-            from mbsym_cli.console import INTERRUPTED
-
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(INTERRUPTED)
+        sys.exit(FAILED)
+
+
+def _debug() -> click.Option:
+    """``--debug``, before the command or after it."""
+
+    def want(context: click.Context, _: click.Parameter, value: bool) -> None:
+        from mbsym_cli.console import Debugging
+
+        Debugging.wanted = Debugging.wanted or value
+
+    return click.Option(
+        ["--debug"], is_flag=True, expose_value=False, callback=want, help="Show tracebacks of internal errors."
+    )
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(mbsym.__version__, prog_name="mbsym")
-def main() -> None:
+@click.option("--debug", is_flag=True, help="Show tracebacks of internal errors.")
+def main(debug: bool) -> None:
     """Exact symbolic mechanics of multibody systems from a text description.
 
     \b
     Example:
       mbsym run systems/satellite.yaml
     """
+    from mbsym_cli.console import Debugging
+
+    Debugging.wanted = Debugging.wanted or debug

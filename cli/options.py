@@ -5,6 +5,7 @@ Every complaint has one look, ``--option: error[code]: what is wrong``, the guil
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Collection, Iterable
 from pathlib import Path
@@ -12,9 +13,9 @@ from pathlib import Path
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, Name, walk
-from mbsym.source import render_option
+from mbsym.source import is_description, render_option
 from mbsym.source.scope import closest
-from mbsym_cli.console import counted
+from mbsym_cli.console import counted, printable
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
@@ -39,25 +40,36 @@ class Options:
         """Whether there is anything to complain about; then it is printed (of no ``file``: of the options alone)."""
         if not self.complaints:
             return False
-        whose = "options" if file is None else file
+        whose = "options" if file is None else printable(file)
         print("\n".join(self.complaints), file=sys.stderr)
         print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return True
 
     def descriptions(self, files: Iterable[Path]) -> list[Path]:
-        """The files, each once; a folder stands for the descriptions in it, by name and YAML before plain text."""
-        found: dict[Path, Path] = {}
+        """The files, each once; a folder stands for the descriptions in it, by name and YAML before plain text.
+
+        What lies in a folder and does not say that it is a description is passed over.
+        """
+        found: dict[str, Path] = {}
+        others = 0
         for path in files:
             inside = [path]
-            if path.is_dir():
-                inside = [child for child in path.iterdir() if child.suffix in SUFFIXES]
+            if os.path.isdir(path):
+                try:
+                    named = [child for child in path.iterdir() if child.suffix in SUFFIXES]
+                except OSError as error:
+                    self.complain(str(path), "unreadable", f"the folder cannot be read: {error.strerror}")
+                    continue
+                inside = [child for child in named if is_description(child)]
                 inside.sort(key=lambda child: (child.stem, SUFFIXES.index(child.suffix)))
+                others += len(named) - len(inside)
             for one in inside:
-                found.setdefault(one.resolve(), one)
-        if not found:
-            hint = f"a description is a file that ends in {', '.join(SUFFIXES)}"
-            named = ", ".join(map(str, files))
-            self.complain(named, "no-descriptions", "there are no descriptions here", hint)
+                found.setdefault(_identity(one), one)
+        if not found and not self.complaints:
+            hint = f"a description has the key 'mbsym', and its name ends in {', '.join(SUFFIXES)}"
+            passed = f" ({counted(others, 'other file was', 'other files were')} passed over)" if others else ""
+            named_here = ", ".join(map(str, files))
+            self.complain(named_here, "no-descriptions", f"there are no descriptions here{passed}", hint)
         return list(found.values())
 
     def time(self, text: str | None) -> float | None:
@@ -168,6 +180,14 @@ class Options:
 
 def _listed(choices: Iterable[str], every: str = "") -> str:
     return f"choose from {', '.join(choices)}" + (f" or {every}" if every else "")
+
+
+def _identity(path: Path) -> str:
+    """The same for two names of one file; the name itself where links lead nowhere."""
+    try:
+        return os.path.realpath(path)
+    except (OSError, ValueError):  # the current folder is gone; a name with a NUL
+        return str(path)
 
 
 def _place(start: int, end: int) -> Span:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich.padding import Padding
 from rich.text import Text
 
-from mbsym_cli.console import console
+from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
@@ -23,21 +23,21 @@ _CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
 def show(found: Summary, path: Path, seconds: float) -> None:
     """Problems with what they gave and the seconds they took, the self-check, and where the files are."""
     out = console()
-    out.print(Text.assemble((found.system, "bold"), (f"  {path}, {seconds:.2f} s", "dim")))
+    out.print(Text.assemble((found.system, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim")))
     for line in found.problems:
         _problem(line)
     _claims(found.claims)
     _checks(found.checks)
     if found.files:
         names = ", ".join(path.name for path in found.files)
-        out.print(Text.assemble("  files in ", (str(found.files[0].parent), "bold"), f": {names}"))
+        out.print(Text.assemble("  files in ", (printable(found.files[0].parent), "bold"), f": {names}"))
 
 
 def show_brief(found: Brief, name: str, width: int) -> None:
     """A run in one line; columns are as wide as they mostly are."""
     colour = next((colour for word, colour in reversed(_COLOURS.items()) if word in found.self_check), "")
     text = Text.assemble(
-        (f"{name:<{width}}", "bold"),
+        (f"{printable(name):<{width}}", "bold"),
         f"  {found.problems:<8}",
         (f"  {found.self_check:<32}", colour),
         f"  {found.claims:<30}",

@@ -17,7 +17,9 @@ from mbsym_cli.console import (
     FAILED,
     INTERRUPTED,
     OK,
+    complain,
     console,
+    printable,
     read_description,
     status,
 )
@@ -100,7 +102,7 @@ def command(
     try:
         sys.exit(_command(file, folder, settings, texts, Request(0, 0, 0, fidelity, all_rows, quiet)))
     except KeyboardInterrupt:
-        print(f"{file}: interrupted", file=sys.stderr)
+        complain(file, "interrupted")
         sys.exit(INTERRUPTED)
 
 
@@ -122,12 +124,12 @@ def _command(
     request = replace(request, end=end or 0.0, target=target or 0.0, budget=budget or 0.0)
     reason = obstacle(folder)
     if reason:
-        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {reason}")
         return FAILED
     try:
         return _measure(file, folder, given, [METHODS[name] for name in names], request)
     except OSError as error:
-        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {error}")
     return FAILED
 
 
@@ -158,18 +160,18 @@ def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], r
             if request.fidelity and not trade.interrupted:
                 models = fidelity.measured(found, METHODS["dop853"], times, lambda label: say(f"{file.name}: {label}"))
         except Breakdown as error:
-            print(f"{file}: there is no reference solution up to t = {request.end:g}: {error}", file=sys.stderr)
+            complain(file, f"there is no reference solution up to t = {request.end:g}: {error}")
             return BROKEN_DOWN
         except Failure as error:
-            print(f"{file}: the equations have no program: {error}", file=sys.stderr)
+            complain(file, f"the equations have no program: {error}")
             return BROKEN_DOWN
         say(f"{file.name}: drawing")
         paths = [] if not trade.rows else _write(folder, found.system, trade, models, request)
     if trade.rows:
         _print(file, found.system, trade, models, request, paths)
     if trade.interrupted:
-        kept = f"; what was measured is kept in {paths[0].parent}" if trade.rows else ""
-        print(f"{file}: interrupted{kept}", file=sys.stderr)
+        kept = f"; what was measured is kept in {printable(paths[0].parent)}" if trade.rows else ""
+        complain(file, f"interrupted{kept}")
         return INTERRUPTED
     return OK
 
@@ -203,7 +205,7 @@ def _print(
     if request.quiet:
         print(advice(trade, request.target))
         return
-    out.print(Text.assemble((system.name, "bold"), (f"  {file}, t = 0 to {request.end:g}", "dim")))
+    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, t = 0 to {request.end:g}", "dim")))
     truth = trade.reference
     out.print(
         f"  reference: {truth.method}, estimated error {truth.error:.1e}, {truth.seconds:.1f} s; "
@@ -231,7 +233,9 @@ def _print(
     if models:
         _print_models(models_shown(models))
     out.print(Text(advice(trade, request.target), style="bold"))
-    out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), ": ", ", ".join(p.name for p in paths)))
+    out.print(
+        Text.assemble("  files in ", (printable(paths[0].parent), "bold"), ": ", ", ".join(p.name for p in paths))
+    )
 
 
 def _near(row: Measured, target: float) -> bool:

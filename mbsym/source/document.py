@@ -10,7 +10,7 @@ from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
 from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
-from mbsym.source.yaml_reader import has_yaml_marks, read_yaml
+from mbsym.source.yaml_reader import has_key, has_yaml_marks, read_yaml
 
 MAX_COMPLAINTS = 200
 
@@ -42,6 +42,24 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     if len(found.items) >= MAX_COMPLAINTS:
         found.error("too-many", f"only the first {MAX_COMPLAINTS} complaints are shown")
     return system, found
+
+
+def is_description(path: Path) -> bool:
+    """Whether a file says of itself that it is a description: by the key ``mbsym``, or the labels of the editor.
+
+    What is no plain file, as a pipe or a link to nothing, is none; what may not be read could be one.
+    """
+    try:
+        if not path.is_file():
+            return False
+        with path.open("rb") as file:
+            data = file.read(4 * MAX_TEXT)
+    except PermissionError:
+        return True
+    except (OSError, ValueError):
+        return False
+    text = normalised(data.decode("utf-8", "replace"))
+    return b"\0" not in data and (has_key(text) or has_text_marks(text))
 
 
 def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:

@@ -23,6 +23,8 @@ _MAX_BRACKETS = 100
 
 #: Lines that can only be YAML (or JSON): keys that are no labels of the editor.
 _MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|loads)["']?[ \t]*:""", re.MULTILINE)
+_FIRST = re.compile(r"""(?:[ \t]*(?:\#.*|---.*|%.*)?\n)*([ \t]*)(.?)""")
+_KEY = r"""["']?mbsym["']?[ \t]*:"""
 
 
 class _Refused(Exception):
@@ -32,6 +34,14 @@ class _Refused(Exception):
 def has_yaml_marks(text: str) -> bool:
     """Whether some line can only be YAML."""
     return bool(_MARKS.search(text))
+
+
+def has_key(text: str) -> bool:
+    """Whether ``mbsym`` is a key of the outermost mapping, as far as a look at the lines can tell."""
+    first = _FIRST.match(text)
+    assert first is not None  # it matches nothing, too
+    before = r"[{,\s]" if first[2] == "{" else f"^{first[1]}"
+    return bool(re.search(before + _KEY, text, re.MULTILINE))
 
 
 def read_yaml(text: str, complaints: Complaints) -> Node | None:
