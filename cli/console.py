@@ -75,9 +75,12 @@ def complain(path: Path | str, text: str) -> None:
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
-    """Tells of an exception that nobody foresaw; with ``--debug``, where it came from."""
+    """Tells of an exception that nobody foresaw, or of too little memory; with ``--debug``, where it came from."""
     before = "" if where is None else f"{printable(where)}: "
-    print(f"{before}internal error, please report it: {escaped(_described(error))}", file=sys.stderr)
+    if isinstance(error, MemoryError):
+        print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
+    else:
+        print(f"{before}internal error, please report it: {escaped(_described(error))}", file=sys.stderr)
     trace(error)
 
 

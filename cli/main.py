@@ -90,9 +90,6 @@ class LazyGroup(click.Group):
         except OSError as error:
             print(reason_of(error), file=sys.stderr)
             trace(error)
-        except MemoryError as error:
-            print("out of memory", file=sys.stderr)
-            trace(error)
         except Exception as error:
             defect(error)
         except KeyboardInterrupt:

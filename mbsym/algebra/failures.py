@@ -10,6 +10,7 @@ from a defect of ours.  Nobody has to read the sentence to know what happened.
 ``NotRational``    a value at a rational state is irrational: compare with enclosures instead
 ``SingularPoint``  a division by zero at the point where a formula is asked for
 ``NoValue``        a name has no number there
+``Defect``         an exception that nobody foresaw, contained
 =================  ==========================================================================
 """
 
@@ -83,6 +84,27 @@ class SingularPoint(Failure, ZeroDivisionError):
     """
 
     code = "singular"
+
+
+class Defect(Failure):
+    """An exception that nobody foresaw: the program is at fault, and only what it was about is lost.
+
+    The exception itself is the ``__cause__``.
+    """
+
+    code = "internal-error"
+    severity = Severity.DEFECT
+
+    @classmethod
+    def of(cls, error: Exception) -> Defect:
+        """What to say of it; running out of memory is nobody's mistake."""
+        if isinstance(error, MemoryError):
+            found = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
+        else:
+            said = str(error).strip()
+            found = cls(f"internal error: {type(error).__name__}" + (f": {said}" if said else ""))
+        found.__cause__ = error
+        return found
 
 
 class NoValue(Failure, KeyError):

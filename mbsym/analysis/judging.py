@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.mechanics.variables import angle_denominators, ring_of
 from mbsym.model.claims import Claim
 from mbsym.problems import claims, stability
@@ -38,6 +38,7 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     source = analysis
     if further:
         source = type(analysis)(system, analysis.problems, analysis.terms)
+        source.defects = analysis.defects
         source.ring = ring_of(system, analysis.terms, [one for some in further.values() for one in some])
     allowance = analysis.ring.work_budget // CLAIMS_SHARE
     found = []
@@ -58,6 +59,9 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
             result = claims.examine(source, claim)
     except Failure as reason:
         result = claims.undecided(source.system, claim, str(reason))
+    except Exception as error:
+        source.defects.append(error)
+        result = claims.undecided(source.system, claim, Defect.of(error).reason)
     spent, ring.work, ring.work_budget = ring.work, work, budget
     return result, spent
 

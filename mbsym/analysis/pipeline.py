@@ -8,6 +8,7 @@ that explains it, and how it follows from other results.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
 from typing import Any, TypeVar
@@ -100,6 +101,8 @@ class Analysis(Stages):
         self.problems = ALL_PROBLEMS if problems is None else tuple(sorted(set(problems)))
         self.terms = terms
         self.suggests = suggests
+        #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
+        self.withheld: dict[int, NoResult] = {}
 
     @property
     def asked(self) -> tuple[Problem[Any], ...]:
@@ -107,8 +110,9 @@ class Analysis(Stages):
         return tuple(PROBLEMS[number] for number in self.problems)
 
     def stage(self, number: int) -> Stage:
-        """Stage of a numbered problem, derived now if it was not before."""
-        return self.stage_of(PROBLEMS[number].attribute)
+        """Stage of a numbered problem, derived now if it was not before; what is ``withheld`` counts as missing."""
+        stage = self.stage_of(PROBLEMS[number].attribute)
+        return replace(stage, value=None, failure=self.withheld[number]) if number in self.withheld else stage
 
     # --- what everything stands on: the system over the ring, over its parameters alone, over jets, as a program ---
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.formulas.formula import Column
 from mbsym.problems import checks as comparison
 from mbsym.problems import equilibrium, knowledge, linearisation, perturbation
@@ -33,6 +33,9 @@ def check(analysis: Analysis, name: str) -> Check | None:
         return SECOND_ROUTES[name](analysis)
     except Failure as reason:
         return Check(name, "", "", comparison.UNDECIDED, str(reason))
+    except Exception as error:
+        analysis.defects.append(error)
+        return Check(name, "", "", comparison.UNDECIDED, Defect.of(error).reason)
 
 
 # --- one by one: None where there is nothing to compare ---

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Self, TypeVar, overload
 
-from mbsym.algebra.failures import Failure, Limit, Severity, SingularPoint
+from mbsym.algebra.failures import Defect, Failure, Limit, Severity, SingularPoint
 
 T = TypeVar("T")
 Owner = TypeVar("Owner", bound="Stages")
@@ -18,7 +18,8 @@ Owner = TypeVar("Owner", bound="Stages")
 class NoResult:
     """Why a stage has no result: ``reason`` in a sentence, ``short`` in a word or two, ``hint`` what to try next.
 
-    ``code`` names the kind of failure, ``limit`` the bound that was met, if any.
+    ``code`` names the kind of failure, ``limit`` the bound that was met, if any; ``error`` is the exception behind a
+    defect.
     """
 
     reason: str
@@ -27,6 +28,7 @@ class NoResult:
     code: str = "no-closed-form"
     limit: Limit | None = None
     severity: Severity = Severity.ANSWER
+    error: Exception | None = field(default=None, compare=False, repr=False)
 
     @staticmethod
     def of(failure: Failure) -> NoResult:
@@ -36,6 +38,11 @@ class NoResult:
         if isinstance(failure, SingularPoint):
             hint = "choose another motion or other coordinates"
             return NoResult(f"singular: {failure}", hint, "singular", failure.code)
+        if isinstance(failure, Defect):
+            cause = failure.__cause__
+            short = "out of memory" if failure.limit is Limit.MEMORY else "internal error"
+            error = cause if isinstance(cause, Exception) else failure
+            return NoResult(failure.reason, failure.remedy, short, failure.code, failure.limit, failure.severity, error)
         return NoResult(
             failure.reason, failure.remedy, code=failure.code, limit=failure.limit, severity=failure.severity
         )
@@ -75,6 +82,8 @@ class Stages:
         self._depth = 0
         self._strict = False
         self._withdrawn: dict[str, NoResult] = {}
+        #: Exceptions that nobody foresaw, each contained where it happened.
+        self.defects: list[Exception] = []
 
     def run(self, name: str, compute: Callable[[], Any]) -> Stage:
         """The remembered stage, computed on first demand."""
@@ -87,6 +96,9 @@ class Stages:
                 value = compute()
             except Failure as reason:
                 failure = NoResult.of(reason)
+            except Exception as error:  # it costs this stage and what needs it, and is told
+                self.defects.append(error)
+                failure = NoResult.of(Defect.of(error))
             finally:
                 self._depth -= 1
             whole = time.perf_counter() - started
@@ -102,7 +114,7 @@ class Stages:
         """The value of a stage.  Raises Unavailable where it has none."""
         stage = self.run(name, compute)
         if stage.failure is not None:
-            raise Unavailable(name, stage.failure)
+            raise Unavailable(name, stage.failure) from stage.failure.error
         return stage.value
 
     def stage_of(self, attribute: str) -> Stage:

@@ -142,7 +142,7 @@ class LatexPrinter:
 
         Sines and cosines stand last.
         """
-        top, bottom = abs(int(product.coefficient.p)), int(product.coefficient.q)
+        top, bottom = product.magnitude
         over = self._readable(product.over)
         if product.under:
             inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]

@@ -50,7 +50,7 @@ class InfixPrinter:
 
     def product(self, product: Product) -> str:
         """Without its sign."""
-        top, bottom = abs(int(product.coefficient.p)), int(product.coefficient.q)
+        top, bottom = product.magnitude
         over = [self.factor(f) for f in product.over]
         under = [self.factor(f) for f in product.under]
         if top != 1 or not over:

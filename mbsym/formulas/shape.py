@@ -23,6 +23,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.numerals import writable
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
 FACTOR_WHOLE = 60
@@ -55,6 +56,13 @@ class Product(NamedTuple):
     coefficient: Rational
     over: tuple[Factor, ...] = ()
     under: tuple[Factor, ...] = ()
+
+    @property
+    def magnitude(self) -> tuple[int, int]:
+        """|coefficient| as numerator and denominator.  Raises NoClosedForm where one of them is too long to write."""
+        top, bottom = abs(int(self.coefficient.p)), int(self.coefficient.q)
+        writable(top, bottom)
+        return top, bottom
 
 
 @dataclass(frozen=True, eq=False)

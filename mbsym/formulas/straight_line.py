@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.program import Instruction, Node, Program
+from mbsym.formulas.numerals import writable
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60
@@ -99,6 +100,7 @@ class _Writer:
             case "input", str(name), _:
                 return self.names[name], _ATOM
             case "constant", Fraction() as value, _:
+                writable(value.numerator, value.denominator)
                 whole = value.denominator == 1 and value >= 0
                 return self.dialect.number(value), _ATOM if whole else _SUM if value < 0 else _PRODUCT
             case "add", _, (a, b):

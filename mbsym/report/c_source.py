@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.derivative import jacobian
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, Limit, NoClosedForm
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -56,7 +56,10 @@ LARGEST_JACOBIAN = 100_000
 
 def number(value: Fraction) -> str:
     """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short."""
-    shown = repr(float(value))
+    try:
+        shown = repr(float(value))
+    except OverflowError:
+        raise NoClosedForm("a number in it is beyond 1.8e308, where double ends", limit=Limit.DIGITS) from None
     if Fraction(shown) == value or max(abs(value.numerator), value.denominator) > 10**6:
         return shown
     return f"{value.numerator}.0/{value.denominator}.0"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import keyword
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 from textwrap import fill
@@ -11,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.program import Program
-from mbsym.expressions.tree import Expression, text
+from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System, rational
@@ -32,6 +34,7 @@ RESERVED = {
 }  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
+_WORD = re.compile("[a-z]+")
 DIALECT = Dialect(
     call=lambda function, argument: f"np.{_NUMPY.get(function, function)}({argument})",
     local=lambda count: f"s{count}",
@@ -81,14 +84,25 @@ def _default(value: Expression | None) -> str:
         return "None"
     number = rational(value)
     if number is None:
+        if names(value) - {"pi"}:
+            return "None"
         program = Program()
         node = Lowering(program, {"pi": program.input("pi")})(value)
-        return listing(program, [node], {"pi": "np.pi"}, DIALECT).results[0]
+        listed = listing(program, [node], {"pi": "np.pi"}, DIALECT)
+        # A part that occurs twice would want a line of its own, which a table has not.
+        return _WORD.sub(_in_numpy, text(value)) if listed.assignments else listed.results[0]
     return str(number.numerator) if number.denominator == 1 else _decimal(number)
 
 
+def _in_numpy(word: re.Match[str]) -> str:
+    return f"np.{_NUMPY.get(word[0], word[0])}"
+
+
 def _decimal(number: Fraction) -> str:
-    shown = repr(float(number))
+    try:
+        shown = repr(float(number))
+    except OverflowError:
+        raise NoClosedForm("a number in it is beyond 1.8e308, where floats end", limit=Limit.DIGITS) from None
     return shown if Fraction(shown) == number else f"{number.numerator} / {number.denominator}"
 
 

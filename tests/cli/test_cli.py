@@ -35,7 +35,7 @@ def test_run_writes_all_reports(tmp_path: Path) -> None:
     done = mbsym("run", PENDULUM, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json"}
+    assert names == {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json", files.MANIFEST}
     assert "self-check" in done.stdout
     assert "exact" in done.stdout
 
@@ -43,7 +43,7 @@ def test_run_writes_all_reports(tmp_path: Path) -> None:
 def test_format_and_problems_choose(tmp_path: Path) -> None:
     done = mbsym("run", PENDULUM, "--out", tmp_path, "--format", "json", "--problems", "1-2,4")
     assert done.exit_code == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["results.json"]
+    assert {path.name for path in tmp_path.iterdir()} == {"results.json", files.MANIFEST}
     results = json.loads((tmp_path / "results.json").read_text())
     assert {"kinematics", "energy", "equilibrium", "checks"} <= set(results)
     assert not {"equations", "linearisation", "stability", "integrals"} & set(results)

@@ -428,7 +428,7 @@ def test_without_the_flag_there_is_no_ledger(tmp_path: Path, monkeypatch: pytest
     found = run("run", SHIPPED / "double-pendulum.yaml", "--format", "json", "--out", tmp_path)
     assert found.exit_code == 0, found.output
     assert "ledger" not in found.output
-    assert [path.name for path in tmp_path.iterdir()] == ["results.json"]
+    assert {path.name for path in tmp_path.iterdir()} == {"results.json", ".mbsym.json"}
     assert "ledger" not in json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
 
 

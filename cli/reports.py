@@ -1,0 +1,161 @@
+"""What ``mbsym run`` does with one description: derives, renders, delivers, tells.
+
+Whatever fails stays where it happened: a formula in its problem, a problem in its file, a file in the batch.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, defect, read_description, reason_of, status, trace
+from mbsym_cli.files import deliver, obstacle
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.model.system import System
+    from mbsym.numerics.ledger.entry import Ledger
+    from mbsym.report.rendering import Rendered
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to derive, and what to write."""
+
+    problems: tuple[int, ...]
+    formats: tuple[str, ...]
+    terms: int
+    quiet: bool
+    strict_claims: bool = False
+    ledger: bool = False
+    brief: bool = False
+    width: int = 0
+
+
+def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
+    """Reads, derives, writes and reports on one file; the exit code it deserves.
+
+    ``base`` is the folder that the reports must not leave.
+    """
+    system = read_description(path)
+    if system is None:
+        return BAD_INPUT
+    reason = obstacle(folder, base)
+    if reason:
+        complain(path, f"the reports cannot be written: {reason}")
+        return FAILED
+    try:
+        return _derive(path, system, folder, request)
+    except OSError as error:
+        complain(path, f"the reports cannot be written: {reason_of(error)}")
+        trace(error)
+    except Exception as error:  # a defect of ours must not cost the rest of the batch
+        defect(error, path)
+    return FAILED
+
+
+def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
+    from mbsym.analysis import Analysis
+
+    started = time.perf_counter()
+    analysis = Analysis(system, request.problems, request.terms)
+    found = None
+    with status(request.quiet) as say:
+        _derive_all(analysis, request, lambda text: say(f"{path.name}: {text}"))
+        files = list(_rendered(analysis, request, lambda text: say(f"{path.name}: {text}")))
+        texts = {file.filename: file.text for file in files if file.text is not None}
+        if request.ledger:
+            say(f"{path.name}: ledger")
+            found = _ledger(analysis, texts)
+    missing = [file.filename for file in files if file.text is None]
+    written = deliver(folder, texts, "run", gone=missing)
+    _show(analysis, path, written, request, time.perf_counter() - started, found)
+    return FAILED if _complaints(analysis, path, files, request) else OK
+
+
+def _derive_all(analysis: Analysis, request: Request, say: Callable[[str], None]) -> None:
+    """Everything that the files and the terminal will show, in order."""
+    from mbsym.analysis import PROBLEMS
+    from mbsym.report.targets import TARGETS
+
+    for number in analysis.problems:
+        say(f"problem {number}, {PROBLEMS[number].title}")
+        analysis.stage(number)
+    if any(TARGETS[name].program for name in request.formats):
+        analysis.optional("programs")
+    if analysis.system.claims:
+        say("claims")
+        _ = analysis.claims
+    say("self-check")
+    _ = analysis.checks
+
+
+def _rendered(analysis: Analysis, request: Request, say: Callable[[str], None]) -> Iterator[Rendered]:
+    from mbsym.report.rendering import rendered
+    from mbsym.report.targets import TARGETS
+
+    for name in request.formats:
+        say(f"writing {TARGETS[name].filename}")
+        yield from rendered(TARGETS[name], analysis, analysis.problems)
+
+
+def _ledger(analysis: Analysis, texts: dict[str, str]) -> Ledger:
+    """The ledger of a finished run, put into its files."""
+    from mbsym.numerics.ledger.table import ledger
+    from mbsym.report.ledger import ledger_csv, with_ledger
+    from mbsym.report.targets import TARGETS
+
+    found = ledger(analysis)
+    results = TARGETS["json"].filename
+    if results in texts:
+        texts[results] = with_ledger(texts[results], found)
+    texts["ledger.csv"] = ledger_csv(found)
+    return found
+
+
+def _show(
+    analysis: Analysis, path: Path, written: list[Path], request: Request, seconds: float, found: Ledger | None
+) -> None:
+    """The run on the terminal."""
+    from mbsym_cli.show import show, show_brief
+
+    if request.quiet:
+        return
+    if request.brief:
+        from mbsym.report.brief import brief
+
+        show_brief(brief(analysis, seconds), path.name, request.width)
+        return
+    from mbsym.report.summary import summary
+
+    show(summary(analysis, analysis.problems, written), path, seconds)
+    if found is not None:
+        from mbsym.report.ledger import ledger_lines
+        from mbsym_cli.ledger import show_ledger
+
+        show_ledger(ledger_lines(found), found.unmeasured)
+
+
+def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: Request) -> bool:
+    """What went wrong, on standard error; whether anything did."""
+    failures = [(f"problem {number}", analysis.stage(number).failure) for number in analysis.problems]
+    lost = [(where, failure) for where, failure in failures if failure is not None and failure.error is not None]
+    for file in files:
+        if file.failure is not None:
+            lost.append((f"{file.filename} cannot be written", file.failure))
+        lost += [(f"{file.filename}: problem {number} cannot be written", failure) for number, failure in file.withheld]
+    for where, failure in lost:
+        complain(path, f"{where}: {failure.reason}" + (f"; {failure.hint}" if failure.hint else ""))
+    open_claims = [result for result in analysis.claims if not result.holds] if request.strict_claims else []
+    for result in open_claims:
+        place = f"{result.claim.place}: " if result.claim.place else ""
+        complain(path, f"CLAIM DOES NOT HOLD: {place}{result.title}: {result.outcome}")
+    failed = [check for check in analysis.checks if check.failed]
+    for check in failed:
+        complain(path, f"SELF-CHECK FAILED: {check.name}: {check.detail}")
+    for error in {f"{type(error).__name__}: {error}": error for error in analysis.defects}.values():
+        defect(error, path)
+    return bool(lost or open_claims or failed or analysis.defects)

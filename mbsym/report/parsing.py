@@ -1,0 +1,250 @@
+"""Reading what was written: whether a generated file would be taken by who reads it.
+
+Nothing of it is executed.  Python is compiled, its names are looked up and the constants of the module are computed;
+JSON is read; the other languages are read as far as brackets, strings, comments and environments go.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import json
+import math
+import re
+from collections.abc import Callable, Iterator
+
+#: Larger powers are not computed.
+_MOST_EXPONENT = 10_000
+
+
+def unreadable(filename: str, text: str) -> str:
+    """Why the file would not be taken, or ""."""
+    reader = _READERS.get(filename.rpartition(".")[2])
+    if reader is None:
+        return ""
+    try:
+        reader(text)
+    except (SyntaxError, ValueError, ArithmeticError, RecursionError) as error:
+        line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
+        return f"{line}{getattr(error, 'msg', None) or error}"
+    return ""
+
+
+# --- Python -----------------------------------------------------------------------------------------------------------
+
+
+def _python(text: str) -> None:
+    """Compiles; every name is known where it is used; tables of the module have numbers as values."""
+    tree = ast.parse(text)
+    compile(tree, "<module>", "exec", dont_inherit=True)
+    known = set(dir(builtins)) | {"__name__"}
+    for statement in tree.body:
+        match statement:
+            case ast.Import(names=names) | ast.ImportFrom(names=names):
+                known |= {(item.asname or item.name).split(".")[0] for item in names}
+            case ast.FunctionDef(name=name):
+                known.add(name)
+            case ast.Assign(targets=targets, value=value):
+                _known(value, known)
+                _constant(value)
+                known |= {target.id for target in targets if isinstance(target, ast.Name)}
+    for statement in tree.body:
+        if isinstance(statement, ast.FunctionDef):
+            _known(statement, known | _bound(statement))
+
+
+def _bound(function: ast.FunctionDef) -> set[str]:
+    arguments = {argument.arg for argument in ast.walk(function) if isinstance(argument, ast.arg)}
+    return arguments | {
+        node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
+    }
+
+
+def _known(tree: ast.AST, names: set[str]) -> None:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in names:
+            raise SyntaxError(f"name '{node.id}' is not defined", ("", node.lineno, node.col_offset, None))
+
+
+def _constant(node: ast.expr) -> object:
+    """The value of a display of constants: numbers are computed, nothing else is."""
+    match node:
+        case ast.Constant(value=value):
+            return value
+        case ast.Tuple(elts=items) | ast.List(elts=items):
+            return [_constant(item) for item in items]
+        case ast.Dict(values=values):
+            return [_constant(item) for item in values]
+        case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
+            return math.pi
+    return _number(node)
+
+
+def _number(node: ast.expr) -> float:
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return float(value)
+        case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
+            return math.pi
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -_number(operand)
+        case ast.BinOp(op=ast.Pow(), left=left, right=right):
+            base, exponent = _number(left), _number(right)
+            if abs(exponent) > _MOST_EXPONENT:
+                raise ValueError("a power too large to be computed")
+            value = base**exponent
+            if isinstance(value, complex):
+                raise ValueError("a value that is not real")
+            return float(value)
+        case ast.BinOp(op=operator, left=left, right=right) if type(operator) in _OPERATIONS:
+            return _OPERATIONS[type(operator)](_number(left), _number(right))
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="np"), attr=name), args=[argument]) if name in _FUNCTIONS:
+            return _FUNCTIONS[name](_number(argument))
+    raise SyntaxError(f"no constant: {ast.unparse(node)[:60]}", ("", node.lineno, node.col_offset, None))
+
+
+_OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+}
+_FUNCTIONS: dict[str, Callable[[float], float]] = {
+    **{name: getattr(math, name) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "sinh", "cosh", "tanh")},
+    "arctan": math.atan,
+}
+
+
+# --- languages of brackets --------------------------------------------------------------------------------------------
+
+_PAIRS = {")": "(", "]": "[", "}": "{"}
+
+
+def _balanced(tokens: Iterator[tuple[int, str]]) -> None:
+    """Brackets, given with their lines, close in the order in which they opened."""
+    opened: list[tuple[int, str]] = []
+    for line, token in tokens:
+        if token in _PAIRS:
+            if not opened or opened[-1][1] != _PAIRS[token]:
+                raise SyntaxError(f"'{token}' closes nothing", ("", line, 0, None))
+            opened.pop()
+        else:
+            opened.append((line, token))
+    if opened:
+        raise SyntaxError(f"'{opened[-1][1]}' is never closed", ("", opened[-1][0], 0, None))
+
+
+def _brackets(text: str, skipped: re.Pattern[str], which: str) -> Iterator[tuple[int, str]]:
+    """Brackets outside what is skipped (strings, comments); what is opened and never closed there is an error."""
+    line, place = 1, 0
+    for match in skipped.finditer(text):
+        line += text.count("\n", place, match.start())
+        place = match.start()
+        if match.lastgroup == "open":
+            raise SyntaxError(f"{match[0][:2]!r} is never closed", ("", line, 0, None))
+        if match[0] in which:
+            yield line, match[0]
+
+
+_C = re.compile(
+    r"""/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|(?P<open>/\*|"|')|[()\[\]{}]""", re.DOTALL
+)
+
+
+def _c(text: str) -> None:
+    _printable(text)
+    _balanced(_brackets(text, _C, "()[]{}"))
+
+
+_WOLFRAM = re.compile(r'\\\[[A-Za-z]+\]|\\.|"|\(\*|\*\)|[()\[\]{}]|\n', re.DOTALL)
+
+
+def _wolfram(text: str) -> None:
+    """Comments nest and know no strings; strings know no comments."""
+    _printable(text)
+    _balanced(_wolfram_brackets(text))
+
+
+def _wolfram_brackets(text: str) -> Iterator[tuple[int, str]]:
+    line, depth, string = 1, 0, False
+    for match in _WOLFRAM.finditer(text):
+        token = match[0]
+        line += token.count("\n")
+        if depth:
+            depth += {"(*": 1, "*)": -1}.get(token, 0)
+        elif token == '"':
+            string = not string
+        elif string:
+            continue
+        elif token == "(*":
+            depth = 1
+        elif token == "*)":
+            raise SyntaxError("'*)' closes nothing", ("", line, 0, None))
+        elif token in "()[]{}":
+            yield line, token
+    if depth or string:
+        raise SyntaxError(f"{'(*' if depth else 'a string'} is never closed", ("", line, 0, None))
+
+
+_LATEX = re.compile(
+    r"""\\(?:begin|end)\s*\{[^{}]*\}|\\(?:left|right)\s*(?:\\[{}|]|.)|\\verb(?P<mark>[^a-zA-Z]).*?(?P=mark)|\\[^a-zA-Z]|\\[a-zA-Z]+|%[^\n]*|\$\$?|[{}]""",
+    re.DOTALL,
+)
+
+
+def _latex(text: str) -> None:
+    """Braces, environments, \\left with \\right, and dollars of mathematics."""
+    _printable(text)
+    opened: list[tuple[int, str]] = []
+    line, place = 1, 0
+    for match in _LATEX.finditer(text):
+        line += text.count("\n", place, match.start())
+        place, token = match.start(), match[0]
+        if token == "{" or token.startswith(("\\begin", "\\left")):
+            if re.fullmatch(r"\\left[a-zA-Z]+", token) is None:
+                opened.append((line, _opener(token)))
+        elif token == "}" or token.startswith(("\\end{", "\\right")):
+            if re.fullmatch(r"\\right[a-zA-Z]+", token) is None:
+                wanted = _opener(token)
+                if not opened or opened[-1][1] != wanted:
+                    raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
+                opened.pop()
+        elif token in ("$", "$$", "\\[", "\\(", "\\]", "\\)"):
+            opening = {"\\]": "\\[", "\\)": "\\("}.get(token, token)
+            if opened and opened[-1][1] == opening:
+                opened.pop()
+            elif token in ("\\]", "\\)") or any(item in ("$", "$$", "\\[", "\\(") for _, item in opened):
+                raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
+            else:
+                opened.append((line, token))
+    if opened:
+        raise SyntaxError(f"{opened[-1][1]!r} is never closed", ("", opened[-1][0], 0, None))
+
+
+def _opener(token: str) -> str:
+    if token in "{}":
+        return "{"
+    if token.startswith(("\\left", "\\right")):
+        return "\\left"
+    return token.replace("\\end", "\\begin").replace(" ", "")
+
+
+def _printable(text: str) -> None:
+    """No control characters but line ends and tabs."""
+    bad = re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
+    if bad is not None:
+        line = text.count("\n", 0, bad.start()) + 1
+        raise SyntaxError(f"the control character U+{ord(bad[0]):04X}", ("", line, 0, None))
+
+
+def _json(text: str) -> None:
+    json.loads(text, parse_constant=_no_number)
+
+
+def _no_number(word: str) -> float:
+    raise ValueError(f"{word} is no number of JSON")
+
+
+_READERS: dict[str, Callable[[str], None]] = {
+    "py": _python, "c": _c, "h": _c, "wl": _wolfram, "tex": _latex, "json": _json,
+}  # fmt: skip

@@ -1,0 +1,90 @@
+"""From an analysis to a file that can be delivered: rendered, and read again.
+
+A result that cannot be written costs its own section of one file; a file that would not be taken by who reads it is not
+delivered; the others are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.failures import Defect, Failure, Severity
+from mbsym.analysis.stages import NoResult
+from mbsym.report.parsing import unreadable
+from mbsym.report.targets import Target
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+class Unreadable(Exception):
+    """A file that was written would be refused by who reads it."""
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """``text`` of a file, or None where there is none and ``failure`` says why.
+
+    ``withheld`` are the problems that it cannot show, with why.
+    """
+
+    filename: str
+    text: str | None
+    failure: NoResult | None = None
+    withheld: tuple[tuple[int, NoResult], ...] = ()
+
+
+def rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> tuple[Rendered, ...]:
+    """A target's files, its companions with it: all of them, or none."""
+    files = tuple(_rendered(part, analysis, problems) for part in (target, *target.companions))
+    failed = next((file for file in files if file.text is None), None)
+    if failed is None:
+        return files
+    return tuple(Rendered(file.filename, None, file.failure or failed.failure) for file in files)
+
+
+def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Rendered:
+    try:
+        return _read_again(analysis, target.filename, target.render(analysis, problems))
+    except Exception as error:
+        whole = _no_result(error)
+    withheld: dict[int, NoResult] = {}
+    for number in problems:
+        if number in target.needs and analysis.stage(number).failure is None:
+            try:
+                target.render(analysis, (number,))
+            except Exception as error:
+                withheld[number] = _no_result(error)
+                _remember(analysis, withheld[number])
+    if withheld:
+        analysis.withheld = withheld
+        try:
+            found = _read_again(analysis, target.filename, target.render(analysis, problems))
+            return replace(found, withheld=tuple(withheld.items()))
+        except Exception as error:
+            whole = _no_result(error)
+        finally:
+            analysis.withheld = {}
+    _remember(analysis, whole)
+    return Rendered(target.filename, None, whole)
+
+
+def _read_again(analysis: Analysis, filename: str, text: str) -> Rendered:
+    reason = unreadable(filename, text)
+    if not reason:
+        return Rendered(filename, text)
+    failure = _no_result(Unreadable(f"{filename}: {reason}"))
+    _remember(analysis, failure)
+    return Rendered(filename, None, failure)
+
+
+def _no_result(error: Exception) -> NoResult:
+    """What a reader is told; the exception goes with it."""
+    return NoResult.of(error if isinstance(error, Failure) else Defect.of(error))
+
+
+def _remember(analysis: Analysis, failure: NoResult) -> None:
+    if failure.severity is Severity.DEFECT and failure.error is not None:
+        analysis.defects.append(failure.error)

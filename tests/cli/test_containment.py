@@ -1,0 +1,229 @@
+"""A failure stays where it happened: planted ones, in each place where one could be."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NoReturn
+
+import pytest
+from click.testing import CliRunner, Result
+
+import mbsym
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.formulas.formula import Formula
+from mbsym.report import results_json, targets
+from mbsym.report.parsing import unreadable
+from mbsym_cli.files import MANIFEST
+from mbsym_cli.main import main
+
+ROOT = Path(__file__).parents[2]
+PENDULUM = ROOT / "systems" / "simple-pendulum.yaml"
+HOSTILE = ROOT / "tests" / "cases" / "hostile"
+FILES = {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json"}
+
+
+def run(*words: object) -> Result:
+    return CliRunner().invoke(main, ["run", *map(str, words)], catch_exceptions=False)
+
+
+def broken(*_: object, **__: object) -> NoReturn:
+    raise OverflowError("planted")
+
+
+def names(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir()}
+
+
+PLACES = {
+    1: "kinematics.kinematics",
+    2: "energy.energy",
+    3: "equations.equations",
+    4: "equilibrium.equilibrium",
+    6: "stability.stability",
+    7: "integrals.integrals",
+}
+
+
+@pytest.mark.parametrize("number", PLACES)
+def test_in_a_problem(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All files are delivered, what does not need the problem is in them, and the terminal says what is lost."""
+    monkeypatch.setattr(f"mbsym.problems.{PLACES[number]}", broken)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert f"problem {number}: internal error: OverflowError: planted" in done.stderr
+    assert "internal error, please report it: OverflowError: planted" in done.stderr
+    assert "Traceback" not in done.output
+    assert names(tmp_path) == FILES | {MANIFEST}
+    results = json.loads((tmp_path / "results.json").read_text())
+    lost = results["unavailable"]
+    assert lost[PLACES[number].split(".")[0]] == "internal error: OverflowError: planted"
+    independent = {"kinematics", "energy"} - set(PLACES[number].split("."))
+    assert independent <= set(results) or number == 2
+    for name in FILES:
+        assert not unreadable(name, (tmp_path / name).read_text())
+
+
+def test_the_traceback_is_there_for_who_wants_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.problems.integrals.integrals", broken)
+    done = run(PENDULUM, "-o", tmp_path, "--debug")
+    assert done.exit_code == 1
+    assert "in broken" in done.stderr
+    assert done.stderr.count("Traceback") == 1
+
+
+def test_from_python_the_cause_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.problems.energy.energy", broken)
+    with pytest.raises(mbsym.algebra.failures.Failure) as lost:
+        _ = mbsym.load(PENDULUM).equations
+    causes, error = [], lost.value.__cause__
+    while error is not None:
+        causes.append(type(error))
+        error = error.__cause__
+    assert OverflowError in causes
+
+
+def test_in_the_self_check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.problems.checks.check_energy", broken)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    checks = {item["name"]: item["outcome"] for item in json.loads((tmp_path / "results.json").read_text())["checks"]}
+    assert checks.pop("energy") == "undecided"
+    assert set(checks.values()) == {"exact"}
+    assert len(checks) > 5
+
+
+def test_in_what_the_checks_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.analysis.pipeline.oracles", broken)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert names(tmp_path) == FILES | {MANIFEST}
+    checks = {item["name"]: item["outcome"] for item in json.loads((tmp_path / "results.json").read_text())["checks"]}
+    assert {checks["kinematics"], checks["energy"], checks["equations of motion"]} == {"undecided"}
+    assert checks["perturbed motion"] == "exact"
+
+
+def test_in_a_claim(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    honest, count = mbsym_claims(), 0
+
+    def examine(*arguments: Any) -> Any:
+        nonlocal count
+        count += 1
+        return broken() if count == 1 else honest(*arguments)
+
+    monkeypatch.setattr("mbsym.problems.claims.examine", examine)
+    done = run(ROOT / "systems" / "orbital-gyrostat.yaml", "-o", tmp_path, "-f", "json")
+    assert done.exit_code == 1
+    outcomes = [item["outcome"] for item in json.loads((tmp_path / "results.json").read_text())["claims"]]
+    assert outcomes[0] == "undecided"
+    assert outcomes[1:] == ["holds exactly"] * 5
+
+
+def mbsym_claims() -> Callable[..., Any]:
+    from mbsym.problems import claims
+
+    return claims.examine
+
+
+def test_in_a_section_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(results_json._SECTIONS, 5, broken)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert "results.json: problem 5 cannot be written: internal error: OverflowError: planted" in done.stderr
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert results["unavailable"] == {"linearisation": "internal error: OverflowError: planted"}
+    assert {"kinematics", "energy", "equations", "equilibrium", "stability", "integrals"} <= set(results)
+    assert names(tmp_path) == FILES | {MANIFEST}
+
+
+def planted_target(monkeypatch: pytest.MonkeyPatch, name: str, text: Callable[..., str]) -> None:
+    monkeypatch.setitem(targets.TARGETS, name, replace(targets.TARGETS[name], text=text))
+
+
+def test_in_a_whole_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    planted_target(monkeypatch, "latex", broken)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert "report.tex cannot be written: internal error: OverflowError: planted" in done.stderr
+    assert names(tmp_path) == (FILES | {MANIFEST}) - {"report.tex"}
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "text"),
+    [("python", "model.py", "A = s1\n"), ("c", "model.c", "int f( {\n"), ("json", "results.json", "{")],
+)
+def test_a_file_that_would_not_be_read_is_not_delivered(
+    name: str, file: str, text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is an older one left in its place, nor one half of a pair."""
+    assert run(PENDULUM, "-o", tmp_path).exit_code == 0
+    planted_target(monkeypatch, name, lambda *_: text)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert f"{file} cannot be written: internal error" in done.stderr
+    lost = {"model.c", "model.h"} if name == "c" else {file}
+    assert names(tmp_path) == (FILES | {MANIFEST}) - lost
+
+
+def test_in_one_file_of_a_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from mbsym_cli import reports
+
+    honest = reports._derive_all
+
+    def derive(analysis: Any, *others: Any) -> None:
+        if analysis.system.name == "first":
+            broken()
+        honest(analysis, *others)
+
+    monkeypatch.setattr(reports, "_derive_all", derive)
+    for name in ("first", "second"):
+        (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text().replace("Simple pendulum", name))
+    done = run(tmp_path, "-o", tmp_path / "out", "-f", "json", "-p", "1")
+    assert done.exit_code == 1
+    assert names(tmp_path / "out") == {"second"}
+
+
+def test_too_little_memory_is_no_mistake_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def exhausted(*_: object) -> NoReturn:
+        raise MemoryError
+
+    monkeypatch.setattr("mbsym.problems.integrals.integrals", exhausted)
+    done = run(PENDULUM, "-o", tmp_path)
+    assert done.exit_code == 1
+    assert "problem 7: out of memory; lower --terms, or ask for fewer --problems" in done.stderr
+    assert "please report" not in done.stderr
+    assert names(tmp_path) == FILES | {MANIFEST}
+
+
+@pytest.mark.parametrize("name", ["dumb", "zig"])
+def test_masses_of_ten_digits(name: str, tmp_path: Path) -> None:
+    done = run(HOSTILE / f"{name}.yaml", "-o", tmp_path)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert names(tmp_path) == FILES | {MANIFEST}
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted"),
+    [("(pi+1)**3", 71.0398678443), ("(2*pi/86164)**2", 5.31749408e-9), ("sqrt(2)*sqrt(2) + atan(1)", 2.7853981634)],
+)
+def test_values_with_repeated_parts(value: str, wanted: float, tmp_path: Path) -> None:
+    """The module imports, and its table holds the numbers of a pocket calculator."""
+    text = (HOSTILE / "def.yaml").read_text().replace("(pi+1)**3", value)
+    (tmp_path / "def.yaml").write_text(text)
+    done = run(tmp_path / "def.yaml", "-o", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    module: dict[str, Any] = {}
+    exec(compile((tmp_path / "out" / "model.py").read_text(), "model.py", "exec"), module)
+    assert module["DEFAULTS"]["m"] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_number_of_thousands_of_digits_is_a_failure_with_its_limit() -> None:
+    ring = mbsym.load(PENDULUM).ring
+    for number in (10**4299, -(10**4299), 1):
+        assert str(Formula(ring, ring.number(number))) == str(number)
+    for write in (Formula.__str__, Formula.latex, Formula.wolfram):
+        with pytest.raises(NoClosedForm, match="4300 digits") as lost:
+            write(Formula(ring, ring.number(10**5000)))
+        assert lost.value.limit is Limit.DIGITS
