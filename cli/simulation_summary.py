@@ -89,7 +89,7 @@ def _rest_line(found: Reduced) -> str:
 
 def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path]) -> str:
     """What happened, when, and in which state."""
-    from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK
+    from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK, UNDEFINED
 
     names = [*found.system.coordinates, *found.system.velocities]
     state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
@@ -101,6 +101,7 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
             "earlier"
         ),
         STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
+        UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
     kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {paths[0].parent}"

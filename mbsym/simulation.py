@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, isfinite, pi
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics import simulate as integration
-from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
+from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated, kinetic_between
 from mbsym.numerics.choice import choose, rates
 from mbsym.numerics.columns import columns, most_rows
 from mbsym.numerics.conservation import Conservation, Standing, confronted, energy_standing, standing, visited
@@ -271,6 +271,7 @@ def simulate(
         chosen = _chosen(dynamics, request, None if request.whole else reduced(dynamics))
     with stage(INTEGRATING):
         found = integration.simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
+    found = replace(found, between=kinetic_between(dynamics, found, chosen.completed))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         energies = _energies(dynamics, found)
@@ -335,8 +336,8 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
 def _energies(dynamics: Dynamics, found: Trajectory) -> tuple[Conservation, Conservation]:
     """Of T2 - T0 - U, and of T - U."""
     points = visited(found.times, found.states, found.change)
-    known, doubt = energy_standing(dynamics, points)
     scale = found.energy_scale
+    known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300))
     if dynamics.natural:
         same = confronted("energy", known, found.change, scale, doubt)
         return same, same

@@ -26,6 +26,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, available
 from mbsym.numerics.methods.interface import Method, Setting, Unusable
+from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.simulate import Integrated, Trajectory, integrated
 
@@ -40,6 +41,9 @@ PARTS = 2_000
 
 #: Where there are fewer samples than this, sizes are taken from so many times more.
 MANY, GRID = 300, 501
+
+#: The tolerance at which sizes, and no more, are looked for.
+COARSE = 1e-6
 
 #: Operations that a better run may cost, and those of a right-hand side beyond which nothing new is compiled for it.
 AFFORDABLE, LONG = 400_000_000, 20_000
@@ -116,6 +120,18 @@ class NoEstimate:
     """There is no estimate, and why."""
 
     why: Lacking
+
+
+def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[Method], Method]) -> float:
+    """The largest kinetic energy of the motion where the samples are too few to show it, by a coarse run; else 0."""
+    if len(found.times) >= MANY or len(found.times) < 2:
+        return 0.0
+    operations = max(1, dynamics.right_hand_side.operations)
+    setting = Setting(COARSE, None, max(1_000, AFFORDABLE // (140 * operations)))
+    run = integrated(dynamics, completed(METHODS["dop853"]), setting, np.linspace(0.0, found.times[-1], GRID).tolist())
+    points = np.vstack([run.times, run.states])
+    kinetic = compiled_kernel(dynamics, "relative_energy")(points)[1]
+    return float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
 
 
 def estimated(
@@ -202,7 +218,7 @@ def _differences(dynamics: Dynamics, found: Trajectory, better: Integrated) -> I
 def usual_sizes(dynamics: Dynamics, found: Trajectory) -> Any:
     """What the scene would move each coordinate and each velocity by, shape (2n,); 0 where that is not known."""
     n = dynamics.size
-    energy = float(np.max(np.abs(found.kinetic), initial=0.0))
+    energy = found.largest_kinetic
     if n > MOST_SCALED or not energy > 0 or not np.isfinite(energy):
         return np.zeros(2 * n)
     chosen = np.linspace(0, len(found.times) - 1, min(16, len(found.times))).astype(int)

@@ -10,14 +10,15 @@ not conserved; where all of them hold zero it is verified numerically along this
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from fractions import Fraction
 from random import Random
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
@@ -26,6 +27,7 @@ from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import PRECISION
 
 #: Bits of the balls, and what counts as zero beside the terms that cancel.
 BITS = 256
@@ -95,13 +97,33 @@ def confronted(
 # --- rates ---
 
 
-def energy_standing(dynamics: Dynamics, points: Any) -> tuple[Standing, Doubt | None]:
-    """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns."""
+def energy_standing(dynamics: Dynamics, points: Any, worth: float = 0.0) -> tuple[Standing, Doubt | None]:
+    """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns.
+
+    A power is zero where its ball holds zero and is narrow beside its terms, or beside ``worth`` (an energy over the
+    time of the run).  The balls are of the formula itself, so one without zero is a power, however small.
+    """
     rate = dynamics.energy_rate
-    if not rate.terms or _vanishes(dynamics, rate):
+    if not rate.terms or not dynamics.energy_power.outputs or _vanishes(dynamics, rate):
         return Standing.PROVED, None
-    code = dynamics.energy_power
-    return judged(dynamics, code, points) if code.outputs else (Standing.PROVED, None)
+    return judged(dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False)
+
+
+def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list[arb]:
+    """The terms of dh/dt at (t, q, q'), from the parameters themselves: as balls, where their values are rounded."""
+    given = dynamics.scenario
+    balls = {name: _ball(value) for name, value in given.parameters.items()} | {"pi": arb.pi()}
+    for name, (initial, speed) in given.prescribed.items():
+        balls[name] = _ball(initial) + _ball(speed) * arb(state[0])
+    balls |= dict(zip(dynamics.inputs, map(arb, state), strict=True))
+    return enclosures(Code(rate.program, tuple(balls), rate.terms), tuple(balls.values()), BITS)
+
+
+def _ball(value: Fraction) -> arb:
+    """A value; with its rounding, where it looks rounded."""
+    middle = arb(fmpq(value.numerator, value.denominator))
+    rounded = value.denominator.bit_length() >= PRECISION // 2
+    return arb(middle.mid(), (abs(middle) * arb(2) ** (2 - PRECISION)).upper()) if rounded else middle
 
 
 def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
@@ -122,26 +144,31 @@ def standing(dynamics: Dynamics, code: Code, output: int, points: Any) -> tuple[
     slopes = gradient(program, code.outputs[output], [program.input(name) for name in dynamics.inputs])
     moving = zip(slopes[1:], rhs.outputs, strict=True)
     terms = [slopes[0], *(program.product(slope, rate) for slope, rate in moving)]
-    return judged(dynamics, Code(program, dynamics.inputs, tuple(terms)), points)
+    whole = Code(program, dynamics.inputs, tuple(terms))
+    return judged(dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True)
 
 
-def judged(dynamics: Dynamics, terms: Code, points: Any) -> tuple[Standing, Doubt | None]:
-    """Whether the sum of the outputs vanishes at visited states, and at some beside the start, in balls."""
+def judged(
+    dynamics: Dynamics, terms: Callable[[Sequence[float]], list[arb]], points: Any, worth: float, rounded: bool
+) -> tuple[Standing, Doubt | None]:
+    """Whether the sum of the terms vanishes at visited states, and at some beside the start, in balls.
+
+    ``rounded``: the terms hold rounded constants, which explain a sum that is tiny beside them.
+    """
     seen = [[float(x) for x in state] for state in np.asarray(points, dtype=float).T]
     decided = 0
     for place, state in enumerate([*seen, *_beside(dynamics)]):
         with ctx.workprec(BITS):
-            found = enclosures(terms, state, BITS)
+            found = terms(state)
             if not all(term.is_finite() for term in found):
                 continue
             total, size = sum(found, arb(0)), sum((abs(term) for term in found), arb(0))
             if not total.contains(0):
-                # A rate so small that the rounding of the constants explains it is no rate.
-                if abs(total) > NOTHING * size:
+                if not rounded or abs(total) > NOTHING * size:
                     return Standing.CHANGING, None
                 vanishes = True
             else:
-                vanishes = size.is_zero() or bool(total.rad() <= NOTHING * size)
+                vanishes = size.is_zero() or bool(total.rad() <= NOTHING * max(size.upper(), arb(worth)))
             decided += vanishes and place < len(seen)
     enough = decided >= min(EVENLY, len(seen))
     return (Standing.VERIFIED, None) if enough else (Standing.UNDECIDED, Doubt.NOT_FINITE)

@@ -21,6 +21,7 @@ from mbsym.numerics.methods.interface import (
     SINGULAR,
     STEP_LIMIT,
     STUCK,
+    UNDEFINED,
     Breakdown,
     Method,
     Setting,
@@ -34,6 +35,9 @@ SINGULAR_PIVOT = 1e-11
 #: The same for an initial state beside its neighbours: sin(x)**2 where x is zero but for rounding.
 SINGULAR_AT_ONCE = 1e-24
 
+#: How far ahead, as parts of the state's size, rates that are no numbers explain why a run could not go on.
+AHEAD = (1e-12, 1e-9, 1e-6, 1e-3, 3e-2)
+
 
 @dataclass(frozen=True)
 class Trajectory:
@@ -42,7 +46,8 @@ class Trajectory:
     ``energy`` is T - U, ``generalized_energy`` h = T2 - T0 - U (one and the same where nothing is prescribed),
     ``change`` h(t) - h(0) in all its digits, and ``kinetic`` the kinetic energy that it is measured by, each of shape
     (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
-    stopped it.
+    stopped it.  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole
+    periods seems to rest.
     """
 
     system: System
@@ -58,11 +63,18 @@ class Trajectory:
     seconds: float
     breakdown: Breakdown | None = None
     interrupted: bool = False
+    between: float = 0.0
+
+    @property
+    def largest_kinetic(self) -> float:
+        """The largest kinetic energy at the samples, or between them where they are few."""
+        known = np.asarray(self.kinetic, dtype=float)
+        return max(self.between, float(np.max(np.abs(known[np.isfinite(known)]), initial=0.0)))
 
     @property
     def energy_scale(self) -> float:
         """What changes of energy are measured by: the largest kinetic energy; |h(0)| where nothing moves, else 1."""
-        return float(np.max(np.abs(self.kinetic), initial=0.0) or abs(self.generalized_energy[0]) or 1.0)
+        return self.largest_kinetic or abs(float(self.generalized_energy[0])) or 1.0
 
     @property
     def drift(self) -> Any:
@@ -106,7 +118,12 @@ def simulate(
     Raises Unusable where the method does not apply to the system.
     """
     run = integrated(dynamics, method, setting, times, scalar, watch)
-    energy, generalized, change, kinetic = _energies(dynamics, np.vstack([run.times, run.states]), scalar)
+    energies = _energies(dynamics, np.vstack([run.times, run.states]), scalar)
+    defined = np.all([np.isfinite(row.astype(float)) for row in energies], axis=0)
+    if not np.all(defined):
+        run, first = _cut(run, int(np.argmin(defined))), max(1, int(np.argmin(defined)))
+        energies = tuple(row[:first] for row in energies)
+    energy, generalized, change, kinetic = energies
     return Trajectory(
         system=dynamics.system,
         method=method.traits.name,
@@ -170,6 +187,14 @@ def integrated(
     return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted)
 
 
+def _cut(run: Integrated, first: int) -> Integrated:
+    """What is left of a run whose energy has no value from a sample on: it went where the model says nothing."""
+    message = "the energy is no real number from here on: a root or a logarithm has left its domain"
+    ended = Breakdown(UNDEFINED, message, float(run.times[first]), run.states[:, first].astype(float))
+    kept = max(1, first)
+    return replace(run, times=run.times[:kept], states=run.states[:, :kept], breakdown=ended)
+
+
 def _energies(dynamics: Dynamics, points: Any, scalar: str) -> tuple[Any, Any, Any, Any]:
     """(T - U, h, h - h(0), T) at points (t, q, q') in columns."""
     kind = EXTENDED if scalar == EXTENDED else FLOAT64
@@ -198,6 +223,8 @@ def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:
         return Breakdown(SINGULAR, singular, 0.0, initial)
     if np.all(np.isfinite(rates)):
         return None
+    if np.any(np.isnan(rates)):
+        return Breakdown(UNDEFINED, "the accelerations at the initial state are no numbers", 0.0, initial)
     return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", 0.0, initial)
 
 
@@ -219,9 +246,28 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
     message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
     if message:
         return Breakdown(SINGULAR, message, found.time, found.state)
+    if _undefined(dynamics, found.time, state):
+        message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
+        return Breakdown(UNDEFINED, message, found.time, found.state)
     if not np.all(np.abs(state) < LARGEST):
         return Breakdown(BLOW_UP, "a coordinate or velocity has left every bound", found.time, found.state)
     return found
+
+
+def _undefined(dynamics: Dynamics, t: float, state: Any) -> bool:
+    """Whether the rates are no numbers (infinite ones are) in a state, or a little ahead of it."""
+    if not np.all(np.isfinite(state)):
+        return False
+    rhs = compiled_kernel(dynamics, "right_hand_side")
+    with np.errstate(all="ignore"):
+        rates = rhs(np.concatenate(([t], state)))
+        if np.any(np.isnan(rates)):
+            return True
+        speed = float(np.max(np.abs(rates), initial=0.0))
+        if not 0 < speed < LARGEST:
+            return False
+        steps = np.array(AHEAD) * (1 + float(np.max(np.abs(state)))) / speed
+        return bool(np.any(np.isnan(rhs(np.vstack([t + steps, state[:, None] + np.outer(rates, steps)])))))
 
 
 def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: float) -> str:

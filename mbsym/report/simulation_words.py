@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
@@ -23,7 +24,8 @@ def standing_words(found: Conservation) -> str:
 def conservation_line(found: Conservation) -> str:
     """With how far the run keeps it: a drift is an error, a change is none."""
     what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
-    return f"{standing_words(found)}; largest relative {what} {found.change:.1e}"
+    far = f"; largest relative {what} {found.change:.1e}" if isfinite(found.change) else ""
+    return standing_words(found) + far
 
 
 def invariant_line(found: Conservation) -> str:

@@ -25,6 +25,9 @@ class Breakdown(Exception):
 
 BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step limit", "step size too small"
 
+#: A root or a logarithm of a negative number: the model says nothing about such states.
+UNDEFINED = "no real value"
+
 
 @dataclass(frozen=True)
 class Setting:

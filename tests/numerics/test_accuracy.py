@@ -1,0 +1,211 @@
+"""Estimated errors of runs against their true errors: closed solutions, and equations written by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import SHIPPED
+
+import mbsym
+from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, QuantityError, contradicted
+from mbsym.numerics.kernels.llvm import available
+from mbsym.numerics.methods.interface import Setting
+from mbsym.report.simulation_words import error_json, error_lines, warnings
+from mbsym.simulation import Simulation
+
+CASES = Path(__file__).parents[1] / "cases" / "statements"
+
+needs_extended = pytest.mark.skipif(not available("extended"), reason="this machine has no extended arithmetic")
+
+#: (q, q') at one time.
+Solution = Callable[[Any], list[Any]]
+
+
+def oscillator(t: Any) -> list[Any]:
+    return [mpmath.cos(t), -mpmath.sin(t)]
+
+
+def kepler(t: Any) -> list[Any]:
+    """a = 1, e = 9/10 from the perihelion: E - e sin E = t."""
+    e = mpmath.mpf(9) / 10
+    anomaly = mpmath.findroot(lambda x: x - e * mpmath.sin(x) - t, t + e * mpmath.sin(t)) if t else mpmath.mpf(0)
+    c, s, b = mpmath.cos(anomaly), mpmath.sin(anomaly), mpmath.sqrt(1 - e * e)
+    return [c - e, b * s, -s / (1 - e * c), b * c / (1 - e * c)]
+
+
+def falling(t: Any) -> list[Any]:
+    """A bob on a telescope without friction falls freely: a parabola in polar coordinates, r counted from l = 1."""
+    g, angle = mpmath.mpf("9.81"), mpmath.mpf("0.4")
+    x, y, v = mpmath.sin(angle) / 2, -mpmath.cos(angle) / 2 - g * t * t / 2, -g * t
+    rho = mpmath.hypot(x, y)
+    return [rho + 1, mpmath.atan2(x, -y), y * v / rho, x * v / rho**2]
+
+
+def decaying(t: Any) -> list[Any]:
+    """x' = v, v' = -1e6 v - x, stiff, and y'' = -y: both by their exact roots."""
+    root = mpmath.sqrt(mpmath.mpf(10) ** 12 - 4)
+    fast, slow = (-(mpmath.mpf(10) ** 6) - root) / 2, (-(mpmath.mpf(10) ** 6) + root) / 2
+    a, b = -slow / (fast - slow), fast / (fast - slow)
+    position = a * mpmath.exp(fast * t) + b * mpmath.exp(slow * t)
+    speed = a * fast * mpmath.exp(fast * t) + b * slow * mpmath.exp(slow * t)
+    return [position, mpmath.cos(t), speed, -mpmath.sin(t)]
+
+
+STIFF = """
+mbsym: 1
+name: Two particles, one of them in honey
+parameters: {m: 1, k: 1, c: 1e6}
+bodies:
+  - {name: slow, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: free, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - spring: {coordinate: y, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+initial: {x: 1, y: 1}
+"""
+
+
+def true_errors(run: Simulation, solution: Solution, rows: int = 60) -> tuple[float, float]:
+    """(at the end, at worst over some rows), each quantity relative to its largest value."""
+    places = np.unique(np.linspace(0, len(run.times) - 1, rows).astype(int))
+    states = run.trajectory.states
+    with mpmath.workdps(40):
+        truth = np.array([solution(mpmath.mpf(float(run.times[k]))) for k in places], dtype=object).T
+        size = np.array([max(abs(x) for x in row) for row in truth])
+        # An extended number is the sum of two doubles.
+        heads = states[:, places].astype(float)
+        tails = (states[:, places] - heads).astype(float)
+        errors = np.array(
+            [
+                [float(abs(mpmath.mpf(h) + mpmath.mpf(r) - x) / s) for h, r, x in zip(hs, rs, xs, strict=True)]
+                for hs, rs, xs, s in zip(heads, tails, truth, size, strict=True)
+            ]
+        )
+    return float(np.max(errors[:, -1])), float(np.max(errors))
+
+
+SETTINGS: list[dict[str, Any]] = [
+    {},
+    {"tolerance": 1e-5},
+    {"tolerance": 1e-15},
+    {"tolerance": 1e-18},
+    {"method": "rk45"},
+    {"method": "rk4", "step": 1e-2},
+    {"method": "lsoda"},
+    {"method": "lsoda", "tolerance": 2e-14},
+    {"arithmetic": "float32"},
+    {"arithmetic": "float32", "tolerance": 1e-9},
+]
+
+
+@needs_extended
+@pytest.mark.parametrize(
+    "setting", SETTINGS, ids=lambda given: " ".join(f"{k}={v}" for k, v in given.items()) or "auto"
+)
+@pytest.mark.parametrize(("case", "solution"), [("osc", oscillator), ("kepler", kepler), ("arm3", falling)])
+def test_estimates_are_true(case: str, solution: Solution, setting: dict[str, Any]) -> None:
+    """Also where the tolerance is below what the arithmetic has: no run is compared with itself."""
+    run = mbsym.simulate(CASES / f"{case}.yaml", 6, estimate=True, **setting)
+    assert isinstance(run.error, ErrorEstimate)
+    final, worst = true_errors(run, solution)
+    rounding = run.error.rounding
+    assert final / 2 <= run.error.final <= 2 * max(final, rounding)
+    assert worst / 2 <= run.error.largest <= 30 * max(worst, rounding)  # the worst row may not be among those looked at
+
+
+@needs_extended
+def test_estimates_of_stiff_systems_are_true() -> None:
+    run = mbsym.simulate(mbsym.loads(STIFF, ()), 2, estimate=True)
+    assert run.chosen.method.traits.implicit
+    assert isinstance(run.error, ErrorEstimate)
+    position = run.error.quantities[0]
+    with mpmath.workdps(40):
+        truth = [decaying(mpmath.mpf(float(t)))[0] for t in run.times[[0, 500, 2000]]]
+    errors = [abs(float(mpmath.mpf(x) - y)) for x, y in zip(run["x"][[0, 500, 2000]], truth, strict=True)]
+    assert position.final == pytest.approx(errors[-1], rel=0.5, abs=1e-16)
+    assert true_errors(run, decaying, 5)[0] <= 2 * run.error.final
+
+
+@needs_extended
+def test_the_finest_run_has_no_estimate() -> None:
+    run = mbsym.simulate(CASES / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
+    assert run.error == NoEstimate(Lacking.FINEST)
+    assert list(error_lines(run.error)) == [f"not estimated: {Lacking.FINEST.value}"]
+    assert error_json(run.error)["available"] is False
+
+
+def test_without_finer_arithmetic_a_clamped_tolerance_has_no_estimate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1e-16 and 1e-18 are one run in float64: their difference, 0, is no error."""
+    monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
+    assert mbsym.simulate(CASES / "osc.yaml", 1, tolerance=1e-16).error == NoEstimate(Lacking.FINEST)
+    coarser = mbsym.simulate(CASES / "osc.yaml", 6, tolerance=1e-8).error
+    assert isinstance(coarser, ErrorEstimate)
+    assert (coarser.against.scalar, coarser.against.setting.tolerance) == ("float64", pytest.approx(1e-10))
+
+
+def test_a_pulse_that_was_stepped_over_is_noticed() -> None:
+    """x(10) = cos 10 + sqrt(pi) sin 5 by the impulse 1000 * 0.001 * sqrt(pi); the run has cos 10."""
+    run = mbsym.simulate(CASES / "pulse.yaml", 10, estimate=True)
+    truth = np.cos(10) + np.sqrt(np.pi) * np.exp(-1e-6 / 4) * np.sin(5)
+    assert isinstance(run.error, ErrorEstimate)
+    if abs(run["x"][-1] - truth) > 1e-3:
+        assert run.error.quantities[0].final == pytest.approx(abs(run["x"][-1] - truth), rel=1e-3)
+        assert any("stepped over something short" in text for text in warnings(run.conservation, run.error))
+    else:
+        assert run.error.quantities[0].final < 1e-3
+
+
+def test_what_rests_by_symmetry_is_measured_by_the_scene() -> None:
+    """The cart under two opposite pendulums stays where it is: rounding of it is no chaos."""
+    run = mbsym.simulate(CASES / "symmetric_cart.yaml", 10, estimate=True)
+    assert isinstance(run.error, ErrorEstimate)
+    by_name = {q.name: q for q in run.error.quantities}
+    assert by_name["x"].rests
+    assert by_name["x_dot"].rests
+    assert not by_name["a"].rests
+    # Kinetic energy 2 (a'^2/2) at most 2 g (1 - cos 0.7); M = 3 for the cart.
+    kinetic = 2 * 9.81 * (1 - np.cos(0.7))
+    assert by_name["x_dot"].scale == pytest.approx(np.sqrt(2 * kinetic / 3), rel=1e-3)
+    assert run.error.largest < 1e-8
+    assert not list(warnings(run.conservation, run.error))
+    assert any("x, x_dot rest" in text for text in error_lines(run.error))
+
+
+def test_sizes_are_those_of_the_whole_motion() -> None:
+    """At whole periods the velocity of an oscillator is nearly 0, which is no size of it."""
+    run = mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=3, estimate=True)
+    assert isinstance(run.error, ErrorEstimate)
+    assert [q.size for q in run.error.quantities] == pytest.approx([1, 1], rel=1e-3)
+    assert run.error.largest < 1e-8
+
+
+def test_light_motion_is_measured_by_itself() -> None:
+    """A swing of 1e-9 rad is motion, not rest."""
+    start = {"theta1": 1e-9, "theta2": 0, "theta1_dot": 0, "theta2_dot": 0}
+    run = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 3, values=start, tolerance=1e-13, estimate=True)
+    assert isinstance(run.error, ErrorEstimate)
+    assert not any(q.rests for q in run.error.quantities)
+    assert run.error.largest > 1e-6, "an absolute tolerance of 1e-13 on 1e-9"
+
+
+def test_an_estimate_that_a_conserved_energy_belies_is_withdrawn() -> None:
+    against = Against("dop853", "float64", Setting(1e-12))
+    estimate = ErrorEstimate(against, (QuantityError("x", 1e-9, 1e-9, 1.0, 1.0),), 10, 1.0, 1e-16)
+    assert contradicted(estimate, 0.5)
+    assert not contradicted(estimate, 1e-8)
+    assert not contradicted(NoEstimate(Lacking.NOT_ASKED), 0.5)
+
+
+def test_a_coarse_run_is_called_so() -> None:
+    run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0, estimate=True)
+    final, worst = true_errors(run, oscillator, 101)
+    assert isinstance(run.error, ErrorEstimate)
+    assert run.error.final == pytest.approx(final, rel=1e-6)
+    assert run.error.largest == pytest.approx(worst, rel=1e-2)
+    assert any("little in common" in text for text in warnings(run.conservation, run.error))

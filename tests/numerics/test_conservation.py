@@ -1,0 +1,164 @@
+"""What a run is said to keep, against what mechanics says that it keeps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SHIPPED
+
+import mbsym
+from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Standing, confronted
+from mbsym.report.simulation_words import conservation_json, conservation_line, warnings
+from mbsym.simulation import Simulation
+
+CASES = Path(__file__).parents[1] / "cases" / "statements"
+
+PARTICLE = """
+mbsym: 1
+name: Particle
+parameters: {m: positive, k: real}
+bodies:
+  - {name: particle, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - LOAD
+values: {m: 1, k: 1}
+initial: {x: {position: 1, velocity: 0.3}, y: {position: 0.2, velocity: -0.4}}
+"""
+
+
+def particle(load: str, folder: Path, time: float = 5.0, **values: object) -> Simulation:
+    path = folder / "particle.yaml"
+    path.write_text(PARTICLE.replace("LOAD", load), encoding="utf-8")
+    return mbsym.simulate(path, time, values=values, invariants=True)  # type: ignore[arg-type]
+
+
+def test_a_late_pulse_and_a_soft_contact_do_work() -> None:
+    """1000 N for about 2 ms at t = 5; a ground that takes energy when it is pressed in: neither keeps the energy."""
+    for case in ("pulse", "contact_energy"):
+        run = mbsym.simulate(CASES / f"{case}.yaml", 10)
+        assert run.conservation.standing is Standing.CHANGING, case
+        assert "conserved (" not in conservation_line(run.conservation)
+        assert conservation_json(run.conservation)["conserved"] is False
+
+
+def test_the_pulse_does_work_before_it_comes() -> None:
+    """At t = 0.1 the force is exp(-24 million) of its peak, and no rounding: the energy of the system changes."""
+    run = mbsym.simulate(CASES / "pulse.yaml", 0.1)
+    assert run.conservation.change < 1e-9
+    assert run.conservation.standing is Standing.CHANGING
+
+
+@pytest.mark.parametrize(
+    ("load", "wanted"),
+    [
+        ("potential: k*x**2*y", Standing.PROVED),
+        # A gyroscopic force does no work, whatever the velocities.
+        ("generalized force: {x: k*y_dot, y: -k*x_dot}", Standing.PROVED),
+        ("generalized force: {x: -k*x, y: -3*k*y}", Standing.CHANGING),
+        ("rayleigh: k*x_dot**2*1e-30", Standing.CHANGING),
+        ("generalized force: {x: 1e-9*exp(-(t - 60)**2)}", Standing.CHANGING),
+        ("force function: k*x*sin(t)*1e-20", Standing.CHANGING),
+        # No power: the force is normal to the velocity, but that is for the ring to see through a root.
+        ("generalized force: {x: k*y_dot*sqrt(1 + x**2), y: -k*x_dot*sqrt(1 + x**2)}", Standing.PROVED),
+    ],
+)
+def test_what_particles_keep(load: str, wanted: Standing, tmp_path: Path) -> None:
+    assert particle(load, tmp_path).conservation.standing is wanted
+
+
+def test_what_only_these_numbers_make_vanish(tmp_path: Path) -> None:
+    """exp(k)*exp(-1) - 1 at k = 1 is no identity that the ring knows: it is seen along the run, and called so."""
+    load = "generalized force: {x: (exp(k)*exp(-1) - 1)*x_dot*cos(t)}"
+    run = particle(load, tmp_path)
+    assert run.conservation.standing in (Standing.PROVED, Standing.VERIFIED)
+    assert particle(load, tmp_path, k=1.001).conservation.standing is Standing.CHANGING
+
+
+def test_two_energies_where_something_is_prescribed() -> None:
+    """A ring that turns at a constant rate: T2 - T0 - U is Jacobi's integral, T - U is not kept by the motor."""
+    bead = """
+mbsym: 1
+name: Bead on a turning ring
+parameters: {m: 2, r: 0.5, g: 9.81, Omega: 6}
+prescribed: {chi: {rate: Omega}}
+bodies:
+  - {name: ring, attached to: 0, rotation: {axes: [2], angles: [chi]}, mass: 0}
+  - {name: bead, attached to: ring, connection point: [r*sin(theta), -r*cos(theta), 0], mass: m, coordinates: [theta]}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+initial: {theta: {position: 1, velocity: 0.5}}
+"""
+    run = mbsym.simulate(mbsym.loads(bead, ()), 5)
+    theta, speed = run["theta"], run["theta_dot"]
+    m, r, g, rate = 2.0, 0.5, 9.81, 6.0
+    moving, carried, height = (
+        m * (r * speed) ** 2 / 2,
+        m * (r * rate * np.sin(theta)) ** 2 / 2,
+        -m * g * r * np.cos(theta),
+    )
+    assert np.allclose(run.energy, moving + carried + height, rtol=1e-13)
+    assert np.allclose(run.generalized_energy, moving - carried + height, rtol=0, atol=1e-12)
+    assert run.conservation.standing is Standing.PROVED
+    assert run.energy_conservation.standing is Standing.CHANGING
+    assert run.conservation.change < 1e-9
+    assert run.energy_conservation.change > 0.1
+
+
+def test_the_two_energies_are_one_where_nothing_is_prescribed() -> None:
+    run = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 1, samples=11)
+    assert run.generalized_energy is run.energy
+    assert run.energy_conservation is run.conservation
+
+
+def test_momenta_are_held_against_the_run(tmp_path: Path) -> None:
+    """A central force keeps the angular momentum about axis 3; its components along the axes are not kept."""
+    run = particle("potential: k*sqrt(x**2 + y**2)", tmp_path)
+    momentum = run["x"] * run["y_dot"] - run["y"] * run["x_dot"]
+    kept = [item for item in run.invariants if np.allclose(item.values, momentum, rtol=1e-12)]
+    assert len(kept) == 1
+    assert kept[0].conservation.standing is Standing.PROVED
+    assert len(run.invariants) == 1
+
+
+# --- the law of a statement and its run ---
+
+
+def test_nothing_but_a_proof_stands_against_a_run() -> None:
+    constant, drifting, broken = np.ones(9), np.linspace(1, 2, 9), np.array([1.0, np.nan])
+    for standing in Standing:
+        assert confronted("I", standing, constant, 1.0).standing is standing
+        assert confronted("I", standing, broken, 1.0).standing is Standing.UNDECIDED
+        assert confronted("I", standing, broken, 1.0).doubt is Doubt.NO_VALUES
+    assert confronted("I", Standing.VERIFIED, drifting, 1.0).standing is Standing.UNDECIDED
+    assert confronted("I", Standing.VERIFIED, drifting, 1.0).doubt is Doubt.CONTRADICTED
+    assert confronted("I", Standing.VERIFIED, drifting, 1.0 / CONTRADICTION).standing is Standing.VERIFIED
+    assert confronted("I", Standing.CHANGING, drifting, 1.0).standing is Standing.CHANGING
+    proved = confronted("I", Standing.PROVED, drifting, 1.0)
+    assert proved.standing is Standing.PROVED
+    assert proved.broken
+    assert not confronted("I", Standing.PROVED, constant, 1.0).broken
+
+
+def test_a_proof_that_a_run_breaks_is_told_as_a_mistake_of_the_run() -> None:
+    """Steps of a sixth of a period: the energy of an oscillator is conserved, but not by this run."""
+    run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
+    assert run.conservation.standing is Standing.PROVED
+    assert run.conservation.broken
+    assert any("does not keep it" in text for text in warnings(run.conservation, run.error))
+
+
+def test_scales_are_those_of_the_motion() -> None:
+    """Sampled at whole periods an oscillator seems to rest: the drift is still a part of its energy."""
+    run = mbsym.simulate(CASES / "osc.yaml", 2 * np.pi, samples=2)
+    assert run.conservation.scale == pytest.approx(0.5, rel=1e-3)
+    assert run.conservation.change < 1e-9
+
+
+def test_words_of_each_standing() -> None:
+    said = {standing: conservation_line(Conservation("energy", standing, 1e-12, 1.0)) for standing in Standing}
+    assert said[Standing.PROVED] == "conserved (proved); largest relative drift 1.0e-12"
+    assert said[Standing.VERIFIED].startswith("conserved (verified numerically along this run); largest relative drift")
+    assert said[Standing.CHANGING] == "not conserved; largest relative change 1.0e-12"
+    assert said[Standing.UNDECIDED] == "undecided; largest relative change 1.0e-12"
