@@ -62,5 +62,7 @@ gallery: $(READY)
 bench: $(READY)
 	$(BIN)/python tests/bench/run.py
 
+# What can be made again; reports are the user's.
 clean:
-	rm -rf $(VENV) reports build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find cli mbsym templates tests -name __pycache__ -type d -prune -exec rm -rf {} +

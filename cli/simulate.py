@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_request import ARITHMETIC, Flags, read_request
@@ -94,7 +94,7 @@ def command(
     try:
         sys.exit(_command(file, folder, settings, texts, Flags(invariants, estimate, quiet, whole)))
     except KeyboardInterrupt:
-        print(f"{file}: interrupted; what has been written is whole", file=sys.stderr)
+        complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
 
 
@@ -109,6 +109,6 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
         return BAD_INPUT
     reason = obstacle(folder)
     if reason:
-        print(f"{file}: the results cannot be written: {reason}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {reason}")
         return FAILED
     return run(file, folder, given, wanted, asked)

@@ -24,7 +24,8 @@ SMOOTHER = 8
 def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """The paths of what was written; names tell whether the trajectory is whole.
 
-    Files of an earlier simulation go with it: they would contradict simulation.json.
+    Files of an earlier simulation go with it: they would contradict simulation.json.  What stops the drawing, as Ctrl-C
+    does, stops it only when the rest is delivered.
     """
     from mbsym.report.simulation_json import simulation_json
     from mbsym.report.trajectory_csv import trajectory_csv
@@ -35,13 +36,20 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         further = {kept.column: kept.values for kept in run.invariants}
         files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further)
     kinds = [kind for kind in asked.formats if kind != "csv"]
-    if kinds:
+    stopped: BaseException | None = None
+    try:
         with status(asked.quiet, "drawing"):
-            for name, content in _pictures(run, kinds).items():
-                stem, _, kind = name.rpartition(".")
-                files[f"{stem}{mark}.{kind}"] = content
+            pictures = _pictures(run, kinds) if kinds else {}
+    except (Exception, KeyboardInterrupt) as error:
+        stopped, pictures = error, {}
+    for name, content in pictures.items():
+        stem, _, kind = name.rpartition(".")
+        files[f"{stem}{mark}.{kind}"] = content
     files["simulation.json"] = simulation_json(run, list(files))
-    return deliver(folder, files, "simulate")
+    paths = deliver(folder, files, "simulate")
+    if stopped is not None:
+        raise stopped
+    return paths
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

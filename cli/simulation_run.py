@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulation_files import write_files
@@ -35,16 +35,16 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         options.refused(file)
         return BAD_INPUT
     except SingularPoint as error:
-        print(f"{file}: error[singular]: singular at these values: {error}", file=sys.stderr)
-        print(f"{file}: nothing was written.", file=sys.stderr)
+        complain(file, f"error[singular]: singular at these values: {error}")
+        complain(file, "nothing was written.")
         return BROKEN_DOWN
     except Failure as error:
-        print(f"{file}: error[no-program]: there is no program for these equations: {error}", file=sys.stderr)
-        print(f"{file}: nothing was written.", file=sys.stderr)
+        complain(file, f"error[no-program]: there is no program for these equations: {error}")
+        complain(file, "nothing was written.")
     except OSError as error:
-        print(f"{file}: the results cannot be written: {error}", file=sys.stderr)
+        complain(file, f"the results cannot be written: {error}")
     except MemoryError:
-        print(f"{file}: out of memory; ask for fewer --samples", file=sys.stderr)
+        complain(file, "out of memory; ask for fewer --samples")
     return FAILED
 
 
@@ -65,8 +65,12 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         return BROKEN_DOWN
     stopped = isinstance(found.error, NoEstimate) and found.error.why is Lacking.INTERRUPTED
     if found.trajectory.interrupted or stopped:
-        kept = f"; kept up to t = {found.times[-1]:.9g} in {paths[0].parent}" if found.trajectory.interrupted else ""
-        print(f"{file}: interrupted{kept}", file=sys.stderr)
+        kept = (
+            f"; kept up to t = {found.times[-1]:.9g} in {printable(paths[0].parent)}"
+            if found.trajectory.interrupted
+            else ""
+        )
+        complain(file, f"interrupted{kept}")
         return INTERRUPTED
     return OK
 

@@ -7,7 +7,7 @@ from math import ceil, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym_cli.console import console, counted
+from mbsym_cli.console import console, counted, printable
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
@@ -23,12 +23,12 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
     from rich.text import Text
 
     out = console()
-    out.print(Text.assemble((run.system.name, "bold"), (f"  {file}", "dim")))
+    out.print(Text.assemble((run.system.name, "bold"), (f"  {printable(file)}", "dim")))
     for name, text in _lines(run):
         style = "yellow" if name == "warning" else "bold cyan"
         out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
     names = ", ".join(path.name for path in paths)
-    out.print(Text.assemble("  files in ", (str(paths[0].parent), "bold"), f": {names}"))
+    out.print(Text.assemble("  files in ", (printable(paths[0].parent), "bold"), f": {names}"))
 
 
 def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
@@ -104,13 +104,13 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
-    kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {paths[0].parent}"
+    kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {printable(paths[0].parent)}"
     return "\n".join(
         [
-            f"{file}: error[{ended.kind.replace(' ', '-')}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
+            f"{printable(file)}: error[{ended.kind.replace(' ', '-')}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
             f"  state: {state}",
             f"  hint: {hints.get(ended.kind, '')}",
-            f"{file}: {kept}",
+            f"{printable(file)}: {kept}",
         ]
     )
 

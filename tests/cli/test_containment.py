@@ -227,3 +227,23 @@ def test_a_number_of_thousands_of_digits_is_a_failure_with_its_limit() -> None:
         with pytest.raises(NoClosedForm, match="4300 digits") as lost:
             write(Formula(ring, ring.number(10**5000)))
         assert lost.value.limit is Limit.DIGITS
+
+
+def simulate(*words: object) -> Result:
+    arguments = ["simulate", str(PENDULUM), "-s", "theta=1", "-t", "1", "--no-estimate", *map(str, words)]
+    return CliRunner().invoke(main, arguments, catch_exceptions=False)
+
+
+@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt, 130), (OverflowError("planted"), 1)])
+def test_in_the_drawing(
+    error: BaseException | type[BaseException], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The table of a simulation does not depend on its pictures."""
+
+    def stopped(*_: object) -> NoReturn:
+        raise error
+
+    monkeypatch.setattr("mbsym_cli.simulation_files._pictures", stopped)
+    done = simulate("-o", tmp_path)
+    assert done.exit_code == code, done.output
+    assert names(tmp_path) == {"trajectory.csv", "simulation.json", MANIFEST}
