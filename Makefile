@@ -65,4 +65,4 @@ bench: $(READY)
 # What can be made again; reports are the user's.
 clean:
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	find cli mbsym templates tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find cli mbsym templates tests -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true

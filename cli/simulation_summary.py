@@ -104,10 +104,12 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
-    kept = f"{counted(len(found.times), 'sample', 'samples')} up to t = {found.times[-1]:.9g} kept in {printable(paths[0].parent)}"
+    samples, where = counted(len(found.times), "sample", "samples"), printable(paths[0].parent)
+    kept = f"{samples} up to t = {found.times[-1]:.9g} kept in {where}"
+    code = ended.kind.replace(" ", "-")
     return "\n".join(
         [
-            f"{printable(file)}: error[{ended.kind.replace(' ', '-')}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
+            f"{printable(file)}: error[{code}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
             f"  state: {state}",
             f"  hint: {hints.get(ended.kind, '')}",
             f"{printable(file)}: {kept}",

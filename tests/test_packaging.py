@@ -1,0 +1,36 @@
+"""What is installed, and what ``make clean`` takes away."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_the_package_says_that_it_is_typed() -> None:
+    packaged = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
+    assert "py.typed" in packaged["mbsym"]
+    assert (ROOT / "mbsym" / "py.typed").exists()
+
+
+def test_every_package_is_listed() -> None:
+    listed = set(tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"])
+    found = {".".join(path.parent.relative_to(ROOT).parts) for path in (ROOT / "mbsym").rglob("__init__.py")}
+    assert found | {"mbsym_cli", "mbsym_templates"} == listed
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make")
+def test_cleaning_keeps_what_belongs_to_the_user(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    own = {"reports/satellite/report.tex", "cli/own.py", "notes.txt"}
+    for name in (*own, ".venv/bin/x", "build/x", "mbsym.egg-info/x", "cli/__pycache__/x"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("x")
+    subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
+    left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
+    assert left == {"Makefile"} | own
