@@ -1,0 +1,120 @@
+"""How far a generated ``model.py`` is from Pinocchio's recursions for the same URDF, at random states."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import math
+import random
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pinocchio
+from urdf import GRAVITY, Converted, angle
+
+
+def urdf_files() -> dict[str, Path]:
+    """The URDF files of the installed package ``example-robot-data`` by folder, folder and name: "ur_description/urdf/ur5_robot".
+
+    Raises importlib.metadata.PackageNotFoundError where it is not installed.
+    """
+    listed = importlib.metadata.files("example-robot-data") or []
+    return {"/".join((*file.parts[-3:-1], file.stem)): Path(str(file.locate())) for file in listed if file.suffix == ".urdf"}
+
+
+def peer(text: str, floating: bool) -> Any:
+    """Pinocchio's model; a floating base has three displacements and yaw, pitch, roll, as the description has.
+
+    Angles that are rounded multiples of pi are made exact here, too: the question is the mechanics, not the rounding.
+    """
+    root = ElementTree.fromstring(text)
+    for origin in root.iter("origin"):
+        if "rpy" in origin.attrib:
+            origin.set("rpy", " ".join(map(_radians, origin.attrib["rpy"].split())))
+    exact = ElementTree.tostring(root, encoding="unicode")
+    if floating:
+        base = pinocchio.JointModelComposite(pinocchio.JointModelTranslation())
+        base.addJoint(pinocchio.JointModelSphericalZYX())
+        model = pinocchio.buildModelFromXML(exact, base)
+    else:
+        model = pinocchio.buildModelFromXML(exact)
+    model.gravity.linear = np.array([0.0, 0.0, -float(GRAVITY)])
+    return model
+
+
+def _radians(text: str) -> str:
+    words = angle(text)
+    if "pi" not in words:
+        return text
+    value, _, divisor = words.partition("/")
+    factor = {"pi": "1", "-pi": "-1"}.get(value, value.partition("*")[0])
+    return repr(math.pi * int(factor) / int(divisor or 1))
+
+
+def loaded(path: Path) -> ModuleType:
+    """A generated module."""
+    spec = importlib.util.spec_from_file_location(f"generated_{path.parent.name.replace('-', '_')}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    sys.modules.pop(spec.name, None)
+    return module
+
+
+def worst_difference(text: str, converted: Converted, module: ModuleType, states: int = 3, seed: int = 20) -> float:
+    """The largest relative difference of M, of M a + h at random accelerations, of h, and of the gravity terms.
+
+    h = C q' + g; each of the four is measured against its own largest entry, over all states.
+    """
+    model = peer(text, converted.floating)
+    data = model.createData()
+    source = random.Random(seed)
+    base = ["root_joint"] if converted.floating else []
+    places = [k for name in [*base, *converted.joints] for k in _velocities(model, name)]
+    worst = 0.0
+    for _ in range(states):
+        q = _random(source, converted.coordinates, math.pi)
+        v, a = _random(source, len(q), 1.0), _random(source, len(q), 1.0)
+        there, speed, rate = pinocchio.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
+        speed[places], rate[places] = v, a
+        _place(model, there, base, q[: 6 * len(base)])
+        for name, value in zip(converted.joints, q[6 * len(base) :], strict=True):
+            _place(model, there, [name], [value])
+        mass = np.array(pinocchio.crba(model, data, there))
+        mass = np.triu(mass) + np.triu(mass, 1).T
+        theirs = (
+            mass[np.ix_(places, places)],
+            pinocchio.rnea(model, data, there, speed, rate)[places],
+            pinocchio.rnea(model, data, there, speed, np.zeros(model.nv))[places],
+            pinocchio.computeGeneralizedGravity(model, data, there)[places],
+        )
+        own = np.array(module.mass_matrix(q, module.DEFAULTS))
+        bias, rest = -np.array(module.forcing(q, v, module.DEFAULTS)), -np.array(module.forcing(q, 0 * v, module.DEFAULTS))
+        for first, second in zip((own, own @ a + bias, bias, rest), theirs, strict=True):
+            worst = max(worst, float(np.abs(first - second).max() / (np.abs(second).max() or 1.0)))
+    return worst
+
+
+def _random(source: random.Random, count: int, bound: float) -> Any:
+    return np.array([source.uniform(-bound, bound) for _ in range(count)])
+
+
+def _velocities(model: Any, name: str) -> range:
+    joint = model.joints[model.getJointId(name)]
+    return range(joint.idx_v, joint.idx_v + joint.nv)
+
+
+def _place(model: Any, there: Any, names: Sequence[str], values: Sequence[float]) -> None:
+    """Writes coordinates into Pinocchio's configuration; a continuous joint has the cosine and the sine there."""
+    for name in names:
+        joint = model.joints[model.getJointId(name)]
+        if joint.nq == 2 and joint.nv == 1:
+            there[joint.idx_q : joint.idx_q + 2] = math.cos(values[0]), math.sin(values[0])
+        else:
+            there[joint.idx_q : joint.idx_q + joint.nq] = values
