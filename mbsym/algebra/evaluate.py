@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from flint import arb, fmpq
+
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NoValue
-from mbsym.algebra.point import Rationals
+from mbsym.algebra.point import BallsAtRationals, Rationals
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
 
@@ -22,6 +24,7 @@ class Carrier:
         self.environment = environment
         self._known: dict[int, Scalar] = {}
         self._powers: dict[tuple[int, int], Scalar] = {}
+        self._exact: dict[int, fmpq | None] = {}
 
     def __call__(self, x: Polynomial) -> Scalar:
         """sum of coefficient * product of powers of generators."""
@@ -32,6 +35,8 @@ class Carrier:
             used = x.degrees()
             self.ring.spend(len(x))
             return x(*(self._generator(k) if used[k] > 0 else algebra.zero for k in range(len(used))))
+        if isinstance(algebra, BallsAtRationals):
+            return self._enclosed(x, algebra)
         self.ring.spend(20 * len(x))
         total = algebra.zero
         for monomial, coefficient in x.terms():
@@ -41,6 +46,39 @@ class Carrier:
                     term = algebra.times(term, self._power(index, int(exponent)))
             total = total + term
         return algebra.reduce(total)
+
+    def _enclosed(self, x: Polynomial, algebra: BallsAtRationals) -> arb:
+        """x as q*g + r for an irrational generator g, and so on with q and r, until all that is left is rational.
+
+        No term is looked at one by one: a ring of many generators has long exponent vectors.
+        """
+        self.ring.spend(2 * len(x))
+        degrees = x.degrees()
+        values = [fmpq(0)] * len(degrees)
+        for k, degree in enumerate(degrees):
+            if degree > 0:
+                value = self._rational(k, algebra)
+                if value is None:
+                    quotient, rest = divmod(x, self.ring.context.gen(k))
+                    ball = self._generator(k) * self._enclosed(quotient, algebra)
+                    return ball + self._enclosed(rest, algebra) if rest else ball
+                values[k] = value
+        return arb(x(*values))
+
+    def _rational(self, index: int, algebra: BallsAtRationals) -> fmpq | None:
+        """The exact value of a generator, or None where only a ball is known."""
+        if index not in self._exact:
+            self._exact[index] = self._exactly(self.ring.generators[index], algebra)
+        return self._exact[index]
+
+    def _exactly(self, g: Generator, algebra: BallsAtRationals) -> fmpq | None:
+        if g.kind in ("sine", "cosine") and g.argument is None:
+            # the generator is the sine of name/denominator, which is what the half-angle tangent belongs to
+            return algebra.basic[g.name][0 if g.kind == "sine" else 1]
+        name = g.name + {"velocity": "_dot", "acceleration": "_ddot"}.get(g.kind, "")
+        # a name may have been given another value here than at the state
+        own = g.argument is None and name in algebra.exact and self.environment.get(name) is algebra.values[name]
+        return algebra.exact[name] if own else None
 
     def _power(self, index: int, exponent: int) -> Scalar:
         key = (index, exponent)

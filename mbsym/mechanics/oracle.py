@@ -20,6 +20,7 @@ from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.tree import names
 from mbsym.model import system as model
 from mbsym.model.system import INERTIAL, System, velocity_name
 
@@ -131,12 +132,30 @@ class Placement:
         self.origin: dict[str, Triple] = {INERTIAL: [zero, zero, zero]}
         self.axes: dict[str, list[Triple]] = {INERTIAL: identity}
         for body in system.bodies:
-            offset = self.lower.vector(body.connection_point)
-            self.origin[body.name] = self.point(body.attached_to, offset)
-            axes = self.axes[body.attached_to]
-            for axis, angle in body.rotation.turns():
-                axes = _product(axes, self._rodrigues(axis - 1, *self.lower.angle(angle)))
-            self.axes[body.name] = axes
+            self._place(body)
+
+    def _place(self, body: model.Body) -> None:
+        offset = self.lower.vector(body.connection_point)
+        self.origin[body.name] = self.point(body.attached_to, offset)
+        axes = self.axes[body.attached_to]
+        for axis, angle in body.rotation.turns():
+            axes = _product(axes, self._rodrigues(axis - 1, *self.lower.angle(angle)))
+        self.axes[body.name] = axes
+
+    @cached_property
+    def joint_names(self) -> dict[str, set[str]]:
+        """The names that a body's place and turns against the body before it depend on."""
+        return {
+            body.name: set().union(
+                *map(names, body.connection_point), *(names(angle) for _, angle in body.rotation.turns())
+            )
+            for body in self.system.bodies
+        }
+
+    @cached_property
+    def matter_names(self) -> dict[str, set[str]]:
+        """The names that a body's mass centre depends on."""
+        return {body.name: set().union(*map(names, body.mass_centre)) for body in self.system.bodies}
 
     def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
         """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
@@ -212,6 +231,70 @@ def _transpose(a: list[Triple]) -> list[Triple]:
     return [[a[j][i] for j in range(3)] for i in range(3)]
 
 
+class Displacement(Placement):
+    """The system at rest in the state, displaced along one coordinate q: series in the displacement, first order.
+
+    A joint whose own expressions contain q is placed anew.  What hangs on it moves with it as one rigid body,
+
+        r' = r_O' + theta x (r - r_O),   e' = theta x e     (O, theta: origin and rotation vector of the displaced body),
+
+    and everything else stays where ``rest`` has it.
+    """
+
+    def __init__(self, state: State, environment: Mapping[str, Series], rest: Placement, name: str) -> None:
+        self.system, self.name, self.rest = rest.system, name, rest
+        self.algebra = TaylorSeries(state.numbers, environment)
+        self.lower = Lowering(self.algebra, environment)
+        self._centres, self._tensors, self._spins = {}, {}, {}
+        self.origin, self.axes = {INERTIAL: rest.origin[INERTIAL]}, {INERTIAL: rest.axes[INERTIAL]}
+        #: The displaced joint that carries a body; bodies that stay are not in it.
+        self._carrier: dict[str, str] = {}
+        for body in self.system.bodies:
+            if name in rest.joint_names[body.name]:
+                self._carrier[body.name] = body.name
+                self._place(body)
+            elif body.attached_to in self._carrier:
+                carrier = self._carrier[body.name] = self._carrier[body.attached_to]
+                theta = self.spin(carrier)[0]
+                self.origin[body.name] = self._carried(carrier, theta, rest.origin[body.name])
+                columns = [self._turned(theta, column) for column in _transpose(rest.axes[body.name])]
+                self.axes[body.name] = _transpose(columns)
+                self._spins[body.name] = (theta, [])
+            else:
+                self.origin[body.name], self.axes[body.name] = rest.origin[body.name], rest.axes[body.name]
+
+    def moves(self, body: model.Body) -> bool:
+        """Whether the displacement moves anything of a body."""
+        return body.name in self._carrier or self.name in self.rest.matter_names[body.name]
+
+    def mass_centre(self, body: model.Body) -> Triple:
+        if self.name in self.rest.matter_names[body.name]:
+            return super().mass_centre(body)
+        if body.name not in self._carrier:
+            return self.rest.mass_centre(body)
+        if body.name not in self._centres:
+            carrier = self._carrier[body.name]
+            theta = self.spin(carrier)[0]
+            self._centres[body.name] = self._carried(carrier, theta, self.rest.mass_centre(body))
+        return self._centres[body.name]
+
+    def _carried(self, carrier: str, theta: Sequence[Scalar], point: Triple) -> Triple:
+        arm = [x.a - o.a for x, o in zip(point, self.rest.origin[carrier], strict=True)]
+        turned = _cross(theta, arm)
+        zero = self.algebra.numbers.zero
+        return [
+            Series(x.a, o.b + along, zero) for x, o, along in zip(point, self.origin[carrier], turned, strict=True)
+        ]
+
+    def _turned(self, theta: Sequence[Scalar], direction: Triple) -> Triple:
+        turned = _cross(theta, [x.a for x in direction])
+        return [Series(x.a, along, self.algebra.numbers.zero) for x, along in zip(direction, turned, strict=True)]
+
+
+def _cross(u: Sequence[Scalar], v: Sequence[Scalar]) -> list[Scalar]:
+    return [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
 class Oracle:
     """All generalised forces of a system at one state."""
 
@@ -219,6 +302,7 @@ class Oracle:
         self.system = system
         self.state = state
         self.numbers = state.numbers
+        self._last: Displacement | None = None
 
     @cached_property
     def moving(self) -> Placement:
@@ -226,9 +310,15 @@ class Oracle:
         return Placement(self.system, self.state, self.in_time)
 
     @cached_property
-    def displaced(self) -> dict[str, Placement]:
-        """The system at rest in the state, displaced along each coordinate: series in the displacement."""
-        return {name: Placement(self.system, self.state, self._displaced(name)) for name in self.system.coordinates}
+    def rest(self) -> Placement:
+        """The system at rest in the state."""
+        return Placement(self.system, self.state, self._constants())
+
+    def displaced(self, name: str) -> Displacement:
+        """The system at rest in the state, displaced along a coordinate; only the last one asked for is kept."""
+        if self._last is None or self._last.name != name:
+            self._last = Displacement(self.state, self._displaced(name), self.rest, name)
+        return self._last
 
     @cached_property
     def residuals(self) -> dict[str, Scalar]:
@@ -283,8 +373,10 @@ class Oracle:
 
     def _inertia(self, name: str) -> Scalar:
         total = self.numbers.zero
-        displaced = self.displaced[name]
+        displaced = self.displaced(name)
         for body, force, change in self.momentum_rates:
+            if not displaced.moves(body):
+                continue
             total = total + _dot(force, [x.b for x in displaced.mass_centre(body)])
             if change is not None:
                 total = total + _dot(change, displaced.spin(body.name)[0])
@@ -294,7 +386,7 @@ class Oracle:
         total = self.numbers.zero
         for load in self.system.loads:
             if type(load) in _FORCE_FUNCTIONS:
-                total = total + _FORCE_FUNCTIONS[type(load)](load, self.displaced[name]).b
+                total = total + _FORCE_FUNCTIONS[type(load)](load, self.displaced(name)).b
             else:
                 total = total + _GENERALIZED_FORCES[type(load)](self, load, name)
         return total
@@ -340,7 +432,7 @@ class Oracle:
     def along(self, name: str, body: str, point: Sequence[Scalar]) -> list[Scalar]:
         """dr_P/dq in inertial axes."""
         constant = [self.moving.algebra.constant(x) for x in point]
-        return [x.b for x in self.displaced[name].point(body, constant)]
+        return [x.b for x in self.displaced(name).point(body, constant)]
 
     def numbers_of(self, components: Sequence[Any]) -> list[Scalar]:
         return [self.moving.lower(x).a for x in components]
@@ -565,7 +657,7 @@ def _point_force(oracle: Oracle, load: model.PointForce, name: str) -> Scalar:
 
 def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
     torque = oracle.in_inertial_axes(load.axes, load.components)
-    place = oracle.displaced[name]
+    place = oracle.displaced(name)
     turned = place.spin(load.body)[0] if load.body != INERTIAL else [oracle.numbers.zero] * 3
     if load.reaction_on is not None and load.reaction_on != INERTIAL:
         turned = [a - b for a, b in zip(turned, place.spin(load.reaction_on)[0], strict=True)]

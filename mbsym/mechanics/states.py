@@ -8,9 +8,10 @@ from functools import cached_property
 
 from flint import arb, fmpq
 
-from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.point import Balls, BallsAtRationals, Rationals
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.variables import has_linear_angles
 from mbsym.model.system import System
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
@@ -30,14 +31,26 @@ def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
     source = random.Random(SEED)
     for _ in range(count):
         values = _values(system, ring, source) | {"pi": fmpq(355, 113)}
-        tangents = {name: fmpq(source.randint(-9, 9) or 1, source.randint(1, 9)) for name in ring.angles}
-        yield State(Rationals(tangents, ring.angles), values)
+        yield State(Rationals(_tangents(ring, source), ring.angles), values)
+
+
+def _tangents(ring: Ring, source: random.Random) -> dict[str, fmpq]:
+    return {name: fmpq(source.randint(-9, 9) or 1, source.randint(1, 9)) for name in ring.angles}
 
 
 def ball_states(system: System, ring: Ring, count: int) -> Iterator[State]:
-    """States in which irrational functions have rigorous enclosures."""
+    """States in which irrational functions have rigorous enclosures.
+
+    Where every angle is a linear form, the rest of the state is rational, so that long polynomials stay cheap.
+    """
     source = random.Random(SEED)
+    plain = has_linear_angles(system)
     for _ in range(count):
+        if plain:
+            exact = _values(system, ring, source)
+            numbers = BallsAtRationals(_tangents(ring, source), ring.angles, exact)
+            yield State(numbers, {**numbers.values, "pi": arb.pi()})
+            continue
         values = {name: arb(value) for name, value in _values(system, ring, source).items()} | {"pi": arb.pi()}
         yield State(Balls(values), values)
 

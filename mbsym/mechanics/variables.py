@@ -11,7 +11,7 @@ from typing import Any
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Ring
-from mbsym.expressions.angles import linear_form
+from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import (
     ONE,
     ZERO,
@@ -179,6 +179,17 @@ def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set
     values = (entry.value for entry in system.motion)
     forms = (linear_form(x) for x in (*_angles(system), *arguments, *values))
     return {(form.turns % 2, form.constant) for form in forms if form is not None and (form.turns or form.constant)}
+
+
+def has_linear_angles(system: System) -> bool:
+    """Whether every angle is a number, or a linear form in names: no rates, no number that is no multiple of pi."""
+    return all(map(_is_plain, map(linear_form, _angles(system))))
+
+
+def _is_plain(form: LinearForm | None) -> bool:
+    if form is None or (form.constant and form.coefficients):
+        return False
+    return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
 
 
 def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expression] = ()) -> Ring:
