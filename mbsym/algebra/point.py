@@ -123,8 +123,8 @@ class BallsAtRationals(Balls):
     """Balls at a state that is rational but for the roots and functions in the formulas: the ``half_tangents`` t of the
     angles and the ``exact`` values of the names.
 
-    What is polynomial there is computed exactly and enclosed last, which is many times faster than with balls throughout.
-    As in ``Rationals``, q, sin q and cos q are independent; so every angle has to be a linear form.
+    What is polynomial there is computed exactly and enclosed last: many times faster than with balls throughout.  As in
+    ``Rationals``, q, sin q and cos q are independent; so every angle has to be a linear form.
     """
 
     def __init__(

@@ -18,7 +18,8 @@ that a result does not depend on the machine.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
@@ -77,6 +78,13 @@ class Generator:
     name: str
     denominator: int = 1
     argument: Polynomial = None
+
+
+@dataclass(slots=True)
+class Spent:
+    """The work that a block did, once it is left."""
+
+    work: int = 0
 
 
 class Ring(Algebra):
@@ -168,6 +176,17 @@ class Ring(Algebra):
     def limit_work(self, most: int) -> None:
         """Lowers the budget of work to ``most`` candidate terms, if it is not lower already."""
         self.work_budget = min(self.work_budget, most)
+
+    @contextmanager
+    def budget(self, most: int) -> Iterator[Spent]:
+        """Within this block at most so much work is done, counted by itself; what follows is not charged with it."""
+        work, limit, spent = self.work, self.work_budget, Spent()
+        self.work, self.work_budget = 0, max(most, 0)
+        try:
+            yield spent
+        finally:
+            spent.work = self.work
+            self.work, self.work_budget = work, limit
 
     def spend(self, work: int) -> None:
         """Counts work, in candidate terms of products.  Raises NoClosedForm when the budget is used up."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.mechanics.variables import angle_denominators, ring_of
+from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.claims import Claim
 from mbsym.problems import claims, stability
 from mbsym.problems.claims import ClaimResult
@@ -37,9 +37,9 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     further = {key: some for key, some in arguments.items() if angle_denominators(system, some) != own}
     source = analysis
     if further:
-        source = type(analysis)(system, analysis.problems, analysis.terms)
+        angles = [one for some in further.values() for one in some]
+        source = type(analysis)(system, analysis.problems, analysis.terms, angles=angles)
         source.defects = analysis.defects
-        source.ring = ring_of(system, analysis.terms, [one for some in further.values() for one in some])
     allowance = analysis.ring.work_budget // CLAIMS_SHARE
     found = []
     for claim in system.claims:
@@ -52,18 +52,16 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
 def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:
     """One claim and the work that it took, bounded by itself."""
     ring = source.ring
-    work, budget = ring.work, ring.work_budget
-    ring.work, ring.work_budget = 0, min(budget // CLAIM_SHARE, max(allowance, 0))
-    try:
-        with source.strictly():  # a claim is no better than the checks of what it is compared with
-            result = claims.examine(source, claim)
-    except Failure as reason:
-        result = claims.undecided(source.system, claim, str(reason))
-    except Exception as error:
-        source.defects.append(error)
-        result = claims.undecided(source.system, claim, Defect.of(error).reason)
-    spent, ring.work, ring.work_budget = ring.work, work, budget
-    return result, spent
+    with ring.budget(min(ring.work_budget // CLAIM_SHARE, allowance)) as spent:
+        try:
+            with source.strictly():  # a claim is no better than the checks of what it is compared with
+                result = claims.examine(source, claim)
+        except Failure as reason:
+            result = claims.undecided(source.system, claim, str(reason))
+        except Exception as error:
+            source.defects.append(error)
+            result = claims.undecided(source.system, claim, Defect.of(error).reason)
+    return result, spent.work
 
 
 def trials(analysis: Analysis) -> Trials:

@@ -18,6 +18,7 @@ from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import approximation, judging, second_routes
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
+from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
@@ -89,11 +90,16 @@ class Analysis(Stages):
 
     ``problems`` are the numbers that reports and self-checks are about; any attribute may be asked for nevertheless.
     ``terms`` is the budget of terms a closed formula may have.  With ``suggests`` false no other coordinates are tried
-    where a motion is not steady.
+    where a motion is not steady.  ``angles`` are angles under sin and cos besides those of the system.
     """
 
     def __init__(
-        self, system: System, problems: Iterable[int] | None = None, terms: int = TERM_BUDGET, suggests: bool = True
+        self,
+        system: System,
+        problems: Iterable[int] | None = None,
+        terms: int = TERM_BUDGET,
+        suggests: bool = True,
+        angles: Iterable[Expression] = (),
     ) -> None:
         super().__init__()
         self._checks: dict[str, Check] = {}
@@ -103,6 +109,7 @@ class Analysis(Stages):
         self.suggests = suggests
         #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
         self.withheld: dict[int, NoResult] = {}
+        self.angles = tuple(angles)
 
     @property
     def asked(self) -> tuple[Problem[Any], ...]:
@@ -118,7 +125,7 @@ class Analysis(Stages):
 
     @cached_property
     def ring(self) -> Ring:
-        return ring_of(self.system, self.terms)
+        return ring_of(self.system, self.terms, self.angles)
 
     scene = Derived["Analysis", Scene](lambda a: a.over_ring())
     parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False))

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
+#: One check may take this part of the work that a run may take.
+CHECK_SHARE = 2
+
+
 def checks(analysis: Analysis) -> tuple[Check, ...]:
     """Every check on which the asked-for problems stand, as far as their results allow it, and those of the program."""
     for number in analysis.problems:
@@ -28,9 +32,14 @@ def checks(analysis: Analysis) -> tuple[Check, ...]:
 
 
 def check(analysis: Analysis, name: str) -> Check | None:
-    """One check; None where there is nothing to compare, ``undecided`` where it cannot be carried out."""
+    """One check; None where there is nothing to compare, ``undecided`` where it cannot be carried out.
+
+    It has work of its own to spend: what the derivation used up does not keep a finished result from being checked.
+    """
+    ring = analysis.ring
     try:
-        return SECOND_ROUTES[name](analysis)
+        with ring.budget(ring.work_budget // CHECK_SHARE):
+            return SECOND_ROUTES[name](analysis)
     except Failure as reason:
         return Check(name, "", "", comparison.UNDECIDED, str(reason))
     except Exception as error:

@@ -152,11 +152,6 @@ class Placement:
             for body in self.system.bodies
         }
 
-    @cached_property
-    def matter_names(self) -> dict[str, set[str]]:
-        """The names that a body's mass centre depends on."""
-        return {body.name: set().union(*map(names, body.mass_centre)) for body in self.system.bodies}
-
     def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
         """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
         one, zero = self.algebra.one, self.algebra.zero
@@ -236,7 +231,7 @@ class Displacement(Placement):
 
     A joint whose own expressions contain q is placed anew.  What hangs on it moves with it as one rigid body,
 
-        r' = r_O' + theta x (r - r_O),   e' = theta x e     (O, theta: origin and rotation vector of the displaced body),
+        r' = r_O' + theta x (r - r_O),   e' = theta x e     (O, theta: its origin and rotation vector),
 
     and everything else stays where ``rest`` has it.
     """
@@ -265,11 +260,9 @@ class Displacement(Placement):
 
     def moves(self, body: model.Body) -> bool:
         """Whether the displacement moves anything of a body."""
-        return body.name in self._carrier or self.name in self.rest.matter_names[body.name]
+        return body.name in self._carrier
 
     def mass_centre(self, body: model.Body) -> Triple:
-        if self.name in self.rest.matter_names[body.name]:
-            return super().mass_centre(body)
         if body.name not in self._carrier:
             return self.rest.mass_centre(body)
         if body.name not in self._centres:
@@ -282,9 +275,7 @@ class Displacement(Placement):
         arm = [x.a - o.a for x, o in zip(point, self.rest.origin[carrier], strict=True)]
         turned = _cross(theta, arm)
         zero = self.algebra.numbers.zero
-        return [
-            Series(x.a, o.b + along, zero) for x, o, along in zip(point, self.origin[carrier], turned, strict=True)
-        ]
+        return [Series(x.a, o.b + along, zero) for x, o, along in zip(point, self.origin[carrier], turned, strict=True)]
 
     def _turned(self, theta: Sequence[Scalar], direction: Triple) -> Triple:
         turned = _cross(theta, [x.a for x in direction])

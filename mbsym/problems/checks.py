@@ -40,8 +40,8 @@ EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", "verified numerically", "undecide
 
 #: How many states; each is enough to catch a slip with probability close to one.
 STATES = 3
-#: Terms of formulas that one check evaluates in all its states: where formulas are long there are fewer states, and where
-#: even one is too much the longest formulas are left out.  Both are said in the check's detail.
+#: Terms of formulas that one check evaluates in all its states: where formulas are long there are fewer states, and
+#: where even one is too much the longest formulas are left out.  Both are said in the check's detail.
 MOST_EVALUATED = 600_000
 #: Bodies times coordinates from which on one state has to do: every partial velocity is formed there.
 MOST_DISPLACED = 1_000
@@ -77,7 +77,7 @@ def oracles(system: System, ring: Ring) -> Oracles:
 
 @dataclass(frozen=True)
 class Extent:
-    """What a check can afford: ``chosen`` of its parts (bodies, equations), at so many ``states``; ``remark`` says it."""
+    """What a check can afford: ``chosen`` parts (bodies, equations), at so many ``states``; ``remark`` says it."""
 
     chosen: tuple[str, ...]
     states: int

@@ -19,12 +19,14 @@ from urdf import GRAVITY, Converted, angle
 
 
 def urdf_files() -> dict[str, Path]:
-    """The URDF files of the installed package ``example-robot-data`` by folder, folder and name: "ur_description/urdf/ur5_robot".
+    """The URDF files of the package ``example-robot-data`` by folders and name: ur_description/urdf/ur5_robot.
 
     Raises importlib.metadata.PackageNotFoundError where it is not installed.
     """
     listed = importlib.metadata.files("example-robot-data") or []
-    return {"/".join((*file.parts[-3:-1], file.stem)): Path(str(file.locate())) for file in listed if file.suffix == ".urdf"}
+    return {
+        "/".join((*file.parts[-3:-1], file.stem)): Path(str(file.locate())) for file in listed if file.suffix == ".urdf"
+    }
 
 
 def peer(text: str, floating: bool) -> Any:
@@ -95,7 +97,10 @@ def worst_difference(text: str, converted: Converted, module: ModuleType, states
             pinocchio.computeGeneralizedGravity(model, data, there)[places],
         )
         own = np.array(module.mass_matrix(q, module.DEFAULTS))
-        bias, rest = -np.array(module.forcing(q, v, module.DEFAULTS)), -np.array(module.forcing(q, 0 * v, module.DEFAULTS))
+        bias, rest = (
+            -np.array(module.forcing(q, v, module.DEFAULTS)),
+            -np.array(module.forcing(q, 0 * v, module.DEFAULTS)),
+        )
         for first, second in zip((own, own @ a + bias, bias, rest), theirs, strict=True):
             worst = max(worst, float(np.abs(first - second).max() / (np.abs(second).max() or 1.0)))
     return worst

@@ -1,4 +1,4 @@
-"""A robot's URDF as an mbsym description, written by hand for the tests: one body a link, every number as it is printed.
+"""A robot's URDF as an mbsym description, by hand for the tests: one body a link, every number as it is printed.
 
     python tests/robots/urdf.py robot.urdf [--floating] > robot.yaml
 
@@ -13,7 +13,7 @@ third axis, the joint's turn, and turned back.
   no part of the rigid model.  A joint that moves no inertia is held still at zero: no equation determines it.
 * ``mimic`` is a constraint and is not imposed: such a joint is a coordinate of its own.
 * A floating base has three displacements along the inertial axes and yaw, pitch, roll.
-* Inertia tensors are about the mass centre.  Where the URDF gives them in turned axes, a body fixed to the link has them.
+* Inertia tensors are about the mass centre.  Where they are given in turned axes, a body fixed to the link has them.
 
 Angles that are a multiple of pi/4 or pi/6 rounded to the digits that were printed are spelled so.
 """
@@ -55,7 +55,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Joint:
-    """One joint: ``origin`` and ``turned`` (roll, pitch, yaw) in the axes of ``parent``, ``axis`` in those of ``child``."""
+    """One joint: ``origin``, ``turned`` (roll, pitch, yaw) in axes of ``parent``, ``axis`` in axes of ``child``."""
 
     name: str
     kind: str
@@ -270,7 +270,14 @@ class _Writer:
         return link in self.carrying
 
     def _body(
-        self, name: str, parent: str, place: Texts, turns: Turns, coordinates: list[str], matter: list[str], joint: str = ""
+        self,
+        name: str,
+        parent: str,
+        place: Texts,
+        turns: Turns,
+        coordinates: list[str],
+        matter: list[str],
+        joint: str = "",
     ) -> None:
         lines = [f"name: {_quoted(name)}", f"attached to: {parent if parent == '0' else _quoted(parent)}"]
         if place != NOWHERE:
