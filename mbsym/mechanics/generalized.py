@@ -5,17 +5,24 @@ Q_i = sum over bodies of  F . dV_O/dq'_i + M . domega/dq'_i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import actions
+from mbsym.mechanics.loads.kinds import KINDS, actions
+from mbsym.model.system import Load
 
 
-def generalized_forces(scene: Scene) -> dict[str, Polynomial]:
-    """Q_i, for every coordinate, of the loads that have no force function; the scene's algebra is the ring."""
+def generalized_forces(scene: Scene, loads: Sequence[Load] | None = None) -> dict[str, Polynomial]:
+    """Q_i, for every coordinate, of some loads; else of those that have no force function.
+
+    The scene's algebra is the ring.
+    """
     ring = scene.algebra
     assert isinstance(ring, Ring)
     totals = dict.fromkeys(scene.system.coordinates, ring.zero)
-    for action in actions(scene, potential=False):
+    acting = actions(scene, potential=False) if loads is None else [KINDS[type(x)].action(x, scene) for x in loads]
+    for action in acting:
         for name, force in action.generalized.items():
             totals[name] = totals[name] + force
         for wrench in action.wrenches:

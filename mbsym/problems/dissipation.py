@@ -9,7 +9,8 @@ That the linear part of Q vanishes is not enough: x'' + x = x'^3 is unstable.  W
 omega on the motion) Routh's reduced energy takes the place of h: the sum is then over the others, provided that neither
 L nor Q contains psi and Q_psi = 0.
 
-* ``CONSERVED``: P = 0 identically.
+* ``CONSERVED``: P = 0 identically, or the forces have a potential that nobody named (a dead load: a force that keeps
+  its direction in space): Q depends on q alone, with dQ_i/dq_j = dQ_j/dq_i, and joins the energy.
 * ``NOT_GROWING``: P <= 0 near the motion, proved: a sum of squares and even powers with coefficients of known sign, or
   a quadratic part of P that is negative definite in all the velocities that occur in P.
 * ``GROWS``: P >= 0 near the motion and not zero, proved by the same sums.
@@ -26,6 +27,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
+from itertools import combinations
 from itertools import product as choices
 from typing import Any
 
@@ -185,7 +187,37 @@ class Balance:
 
     @property
     def _others(self) -> list[Load]:
-        return [load for load in self._without_potential if not isinstance(load, _FORMULAS)]
+        return [load for load in self._acting if not isinstance(load, _FORMULAS)]
+
+    @property
+    def _acting(self) -> list[Load]:
+        """The loads whose power has to be looked at."""
+        return [load for load in self._without_potential if load not in self._gradients]
+
+    @cached_property
+    def _gradients(self) -> tuple[Load, ...]:
+        """Forces that are the gradient of a function of the coordinates: together, or each by itself."""
+        given = [load for load in self._without_potential if isinstance(load, (PointForce, Torque, GeneralizedForce))]
+        if not given or not self.scene.motions:
+            return ()
+        if self._is_gradient(given):
+            return tuple(given)
+        return tuple(load for load in given if len(given) > 1 and self._is_gradient([load]))
+
+    def _is_gradient(self, loads: Sequence[Load]) -> bool:
+        ring, system = self.scene.ring, self.scene.system
+        try:
+            forces = {name: self._put(x) for name, x in generalized_forces(self.scene, loads).items()}
+            if any(ring.dependencies(x, (*system.velocities, *self._running)) for x in forces.values()):
+                return False
+            if any(not forces[name].is_zero() for name in turning(self.scene)):
+                return False
+            return all(
+                ring.is_zero(ring.derivative(forces[a], b) - ring.derivative(forces[b], a)) is True
+                for a, b in combinations(system.coordinates, 2)
+            )
+        except Failure:
+            return False
 
     @cached_property
     def _running(self) -> tuple[str, ...]:
@@ -249,7 +281,7 @@ class Balance:
     def _formulas(self) -> EnergyLaw:
         """The power of dampers of coordinates, dissipation functions and generalised forces together."""
         system = self.scene.system
-        loads = [load for load in self._without_potential if isinstance(load, _FORMULAS)]
+        loads = [load for load in self._acting if isinstance(load, _FORMULAS)]
         spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
         if any(spinning & self._names_of(load) for load in loads):
             return EnergyLaw.UNKNOWN

@@ -1,0 +1,110 @@
+"""Forces that have a potential which nobody named: dead loads belong to the energy, followers do not."""
+
+from __future__ import annotations
+
+import pytest
+
+import mbsym
+from mbsym.problems.stability.word import Word
+
+RODS = """
+mbsym: 1
+name: Two rods pulled at their end
+parameters: {{F: {F}}}
+bodies:
+  - {{name: rod, attached to: 0, rotation: {{axes: [3], angles: [a]}}, mass centre: [1, 0, 0], mass: 1}}
+  - name: second
+    attached to: rod
+    connection point: [2, 0, 0]
+    rotation: {{axes: [3], angles: [b]}}
+    mass centre: [1, 0, 0]
+    mass: 1
+loads:
+  - spring: {{coordinate: a, stiffness: 1}}
+  - spring: {{coordinate: b, stiffness: 1}}
+  - {load}
+motion: {{a: 0, b: 0}}
+"""
+DEAD = "force: {body: second, point: [2, 0, 0], components: [F, 0, 0], axes: 0}"
+FOLLOWER = "force: {body: second, point: [2, 0, 0], components: [F, 0, 0], axes: second}"
+
+
+def word(text: str) -> Word:
+    verdict = mbsym.loads(text).stability.numerical
+    assert verdict is not None
+    return verdict.word
+
+
+def test_a_dead_load_is_conservative() -> None:
+    """V = (a^2 + b^2)/2 - F (2 cos a + 2 cos(a + b)): K = [[1 + 4 F, 2 F], [2 F, 1 + 2 F]], definite iff
+    1 + 6 F + 4 F^2 > 0 and F > -1/4: for F > (sqrt 5 - 3)/4 = -0.19098.
+    """
+    for force, expected in (("3", Word.STABLE), ("-19/100", Word.STABLE), ("-192/1000", Word.UNSTABLE)):
+        assert word(RODS.format(F=force, load=DEAD)) is expected
+
+
+def test_a_follower_is_not() -> None:
+    """At the same small pressure the follower leaves all roots imaginary, and no energy is there to decide."""
+    assert word(RODS.format(F="-19/100", load=FOLLOWER)) is Word.CRITICAL
+
+
+PLANE = """
+mbsym: 1
+name: Block
+parameters: {{c: 1/2}}
+bodies:
+  - {{name: block, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+loads:
+  - spring: {{coordinate: x, stiffness: 1}}
+  - spring: {{coordinate: y, stiffness: 1}}
+  - generalized force: {{{force}}}
+motion: {{x: 0, y: 0}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "expected"),
+    [
+        ("x: c*y, y: c*x", Word.STABLE),
+        ("x: x**2*y, y: x**3/3", Word.STABLE),
+        ("x: x**2*y, y: x**3", Word.CRITICAL),  # dQ_x/dy = x^2, dQ_y/dx = 3 x^2
+        ("x: c*y, y: -c*x", Word.UNSTABLE),
+        ("x: x_dot**3, y: 0", Word.CRITICAL),
+    ],
+)
+def test_a_generalised_force_is_a_gradient_or_not(force: str, expected: Word) -> None:
+    assert word(PLANE.format(force=force)) is expected
+
+
+def test_one_coordinate_always_has_a_potential_unless_it_knows_velocities_or_the_time() -> None:
+    text = """
+mbsym: 1
+name: Rod under a follower
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [1, 0, 0], mass: 1}
+loads:
+  - spring: {coordinate: a, stiffness: 3}
+  - force: {body: rod, point: [2, 0, 0], components: [0, -sin(a), 0], axes: rod}
+motion: {a: 0}
+"""
+    assert word(text) is Word.STABLE
+    assert word(text.replace("-sin(a)", "sin(a)*a_dot**2")) is Word.CRITICAL
+
+
+def test_a_force_that_turns_with_a_prescribed_frame_is_left_alone() -> None:
+    """The force varies with the time: nothing is conserved, and the first approximation varies or decides nothing."""
+    text = """
+mbsym: 1
+name: Block pulled from a turning frame
+parameters: {W: 3}
+prescribed: {chi: {rate: W}}
+bodies:
+  - {name: frame, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - {name: block, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - spring: {coordinate: y, stiffness: 1}
+  - force: {body: block, point: [0, 0, 0], components: [x**3, 0, 0], axes: frame}
+motion: {x: 0, y: 0}
+"""
+    assert word(text) is Word.CRITICAL
