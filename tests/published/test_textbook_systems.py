@@ -152,7 +152,7 @@ def test_theorems_of_other_parts_do_not_carry_a_weaker_verdict() -> None:
 
 
 def test_an_undecided_verdict_says_why(tmp_path: Path) -> None:
-    a = analysed(tmp_path, THREE_BODIES.replace("sqrt(3)/2", "4/5"), MU="0.01")
+    a = analysed(tmp_path, THREE_BODIES.replace("sqrt(3)/2", "sqrt(3)/2 + mu"), MU="0.01")
     assert verdict(a).word == Word.UNDECIDED
     (line,) = summary(a, [6], []).problems
     assert any(
