@@ -414,6 +414,8 @@ class Ring(Algebra):
         if constant is not None and constant < 0:
             s, c = self.sin_cos_of(-argument)
             return -s, c
+        if constant is None and (parts := self._arc_tangents(argument)):
+            return self._with_arc_tangents(argument, parts)
         index = self._adjoined("sine", argument)
         if index is None:
             c = self._adjoin("cosine", argument)
@@ -430,6 +432,55 @@ class Ring(Algebra):
                         c: -self.times(self._gens[s], inner),
                     }
         return self._gens[index], self._gens[index + 1]
+
+    def _arc_tangents(self, angle: Polynomial) -> list[tuple[int, int]]:
+        """(generator of atan x, n) for every n atan x, n a whole number, that an angle is a sum of."""
+        found = []
+        for monomial, coefficient in angle.terms():
+            present = [k for k, exponent in enumerate(monomial) if exponent]
+            if len(present) == 1 and monomial[present[0]] == 1 and int(coefficient.q) == 1:
+                g = self.generators[present[0]]
+                if g.kind == "function" and g.name == "atan":
+                    found.append((present[0], int(coefficient.p)))
+        return found
+
+    def _with_arc_tangents(self, angle: Polynomial, parts: Sequence[tuple[int, int]]) -> tuple[Polynomial, Polynomial]:
+        """sin and cos by the addition theorems and  cos(atan x) = 1/sqrt(1 + x^2),  sin(atan x) = x/sqrt(1 + x^2)."""
+        rest = angle
+        for index, n in parts:
+            rest = rest - self._gens[index] * n
+        form = self._foreseen(rest)
+        sine, cosine = self.sin_cos_of(rest) if form is None else self.sin_cos(form)
+        for index, n in parts:
+            top, denominators = self.fraction(self.generators[index].argument)
+            bottom = self.one
+            for factor, exponent in denominators:
+                bottom = self.times(bottom, self._power(factor, exponent))
+            if not self.is_positive(bottom):  # |bottom| would be needed
+                top, bottom = self.generators[index].argument, self.one
+            square = self.reduce(self.times(top, top) + self.times(bottom, bottom))
+            inverse = self.times(self.square_root(square), self.reciprocal(square))
+            s, c = self.multiple_angle(self.times(top, inverse), self.times(bottom, inverse), n)
+            sine, cosine = self.sum_of_angles(sine, cosine, s, c)
+        return self.reduce(sine), self.reduce(cosine)
+
+    def _foreseen(self, angle: Polynomial) -> LinearForm | None:
+        """An angle that is made of multiples of pi and of names whose sines are there; None for any other."""
+        coefficients, turns = [], Fraction(0)
+        for monomial, coefficient in angle.terms():
+            present = [k for k, exponent in enumerate(monomial) if exponent]
+            if len(present) != 1 or monomial[present[0]] != 1:
+                return None
+            g, factor = self.generators[present[0]], Fraction(int(coefficient.p), int(coefficient.q))
+            if g.name == "pi":
+                turns = factor
+            elif g.argument is None and g.kind in ("coordinate", "prescribed", "parameter") and g.name in self.angles:
+                coefficients.append((g.name, factor))
+            else:
+                return None
+        form = LinearForm(tuple(coefficients), turns)
+        whole = (factor * self.angles[name] for name, factor in coefficients)
+        return form if all(multiple.denominator == 1 for multiple in whole) else None
 
     def constant_value(self, x: Polynomial) -> arb | None:
         """An enclosure of what is a number (made of numbers, pi, and roots, sines ... of such), or None."""

@@ -73,9 +73,11 @@ def _bounds(scene: Scene, told: Signs) -> list[tuple[Polynomial, str]]:
 
 
 def _with_reciprocals(scene: Scene, known: Signs) -> Signs:
-    """1/p has the sign of p."""
+    """1/p has the sign of p, and sqrt(p) > 0 where p > 0."""
     words = list(known.words)
     for index, g in enumerate(scene.ring.generators):
+        if g.kind == "root" and words[index] == "nonnegative" and known.sign(g.argument) == "positive":
+            words[index] = "positive"
         if g.kind == "reciprocal" and words[index] == "real":
             word = known.sign(g.argument)
             words[index] = {"nonnegative": "positive", "nonpositive": "negative"}.get(word, word)
