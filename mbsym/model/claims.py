@@ -92,6 +92,7 @@ class Claim:
     ``of`` is the name of a coordinate, body or quantity, ``of_expression`` an expression instead; ``entry`` holds
     indices counted from 1; ``at`` a product of velocities; ``variable`` the symbol of a characteristic polynomial.
     A condition's ``role`` is necessary, sufficient (those of one place together), or "" for either.
+    ``tolerance`` (absolute) or ``digits`` (significant ones that count) say how exact a number at a state is meant.
     ``state`` gives numbers for coordinates, velocities, parameters and t (or they are those of the initial state with
     ``at_initial``), and then ``printed`` keeps a decimal number as it was printed, with its digits.
     """
@@ -109,6 +110,8 @@ class Claim:
     at_initial: bool = False
     state: tuple[tuple[str, Expression], ...] = ()
     printed: str = ""
+    tolerance: Expression | None = None
+    digits: int = 0
     place: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
 

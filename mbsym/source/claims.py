@@ -21,7 +21,7 @@ from mbsym.model.claims import (
     Claim,
     ClaimKind,
 )
-from mbsym.model.system import INERTIAL
+from mbsym.model.system import INERTIAL, rational
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
 from mbsym.source.placed import Mapping, Node, Scalar
@@ -126,6 +126,8 @@ class _Reader:
             at_initial=self.at_initial,
             state=self.state(),
             printed=printed,
+            tolerance=self.tolerance(),
+            digits=self.digits(),
             place=fields.text("place"),
             span=fields.key_span("claim"),
         )
@@ -164,8 +166,19 @@ class _Reader:
             "at": kind.at,
             "variable": kind.variable,
             "state": kind.state,
+            "tolerance": kind.state,
+            "digits": kind.state,
         }
         self.fields.exclude(f"claim: {self.word}", [key for key, needed in wanted.items() if not needed])
+        if "tolerance" in self.fields.found:
+            self.fields.exclude("tolerance", ["digits"])
+        if kind.state and "state" not in self.fields.found:
+            for key in ("tolerance", "digits"):
+                if key in self.fields.found:
+                    hint = "add for example state: initial; formulas are compared exactly"
+                    self.reading.error(
+                        "missing-key", f"'{key}' is about numbers at a state", self.fields.key_span(key), hint
+                    )
 
     # --- what is claimed ---
 
@@ -200,6 +213,28 @@ class _Reader:
             return ""
         del scope.kinds[scalar.text]
         return scalar.text
+
+    def tolerance(self) -> Expression | None:
+        node = self.fields.get("tolerance")
+        if node is None:
+            return None
+        value = self.reading.expression(node, NUMBER)
+        number = rational(value)
+        if number is not None and number <= 0:
+            self.reading.error("bad-number", "a tolerance is a positive number", node.span, "write for example 1e-9")
+        return value
+
+    def digits(self) -> int:
+        node = self.fields.get("digits")
+        scalar = None if node is None else self.reading.scalar(node, "'digits'")
+        if scalar is None:
+            return 0
+        text = scalar.text.strip()
+        if not (text.isascii() and text.isdigit() and len(text) < 5 and int(text) > 0):
+            message = f"{ascii_safe(scalar.text)} is no number of digits"
+            self.reading.error("bad-number", message, scalar.span, "write a whole number from 1")
+            return 0
+        return int(text)
 
     # --- of what ---
 

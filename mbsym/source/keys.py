@@ -150,6 +150,8 @@ CLAIM = {
     "that": "the inequality that is claimed, for a condition",
     "as": "of a condition: necessary, or sufficient (those of one place together); either when left out",
     "equals": "the formula or number as it was printed",
+    "tolerance": "of a number at a state: how far it may be off, instead of half a unit of its last place",
+    "digits": "the same: how many digits of a number count, from the first that is not zero",
     "state": "'initial' or {name: number}: the claim is about numbers at this state, to the digits printed",
     "place": "where it was printed: eq. (3)",
 }

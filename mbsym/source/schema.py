@@ -147,6 +147,7 @@ def _claim_values() -> dict[str, Schema]:
         "variable": {"type": "string", "pattern": _NAME},
         "that": {"type": "string"},
         "as": {"enum": [NECESSARY, SUFFICIENT]},
+        "digits": {"anyOf": [{"type": "integer", "minimum": 1}, {"type": "string", "pattern": "^[1-9][0-9]{0,3}$"}]},
         "state": {"anyOf": [{"const": INITIAL_STATE}, {**state, "additionalProperties": False}]},
         "place": {"type": "string"},
     }

@@ -201,6 +201,10 @@ def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
         shape["equals"] = claim.printed or text(claim.equals)
     else:
         shape["that"] = assumption_text(claim.equals, claim.relation, claim.right)
+    if claim.tolerance is not None:
+        shape["tolerance"] = text(claim.tolerance)
+    if claim.digits:
+        shape["digits"] = str(claim.digits)
     if claim.role:
         shape["as"] = claim.role
     if claim.place:

@@ -22,7 +22,9 @@ one place count together, and are proved where they decide the cases of problem 
 conditions of problem 6, with its relation, or a necessary one.  It is refuted by parameters at which the motion is
 stable without it, or, as sufficient, unstable with it, both exactly; what is neither is undecided.  Where only cases
 of equality are open, it holds "but for border cases".  A number at a state is compared by rigorous balls with the
-digits that were printed: 1.234 means 1.234 +- 0.0005.
+digits that were printed: 1.234 means 1.234 +- 0.0005 (0 means nothing but zero), unless 'tolerance' or 'digits' says
+how exact it is meant.  A number of 15 to 17 digits may come from double precision: what the rounding of doubles can
+explain, in evaluating this very quantity, is not held against it, and is told.
 
 Under roots of squares signs matter: sqrt(r**2) is r for r > 0 only.  What holds only for positive coordinates and
 parameters (those whose sign is not declared) is said to hold for these.
@@ -41,6 +43,7 @@ from mbsym.problems.claims.result import (
     BORDERS,
     DIFFERS,
     DIGITS,
+    DOUBLES,
     EQUIVALENT,
     EXACT,
     FACTOR,
@@ -48,6 +51,7 @@ from mbsym.problems.claims.result import (
     NUMERICAL,
     RELATIONS,
     SCALED,
+    TOLERANCE,
     UNDECIDED,
     ClaimResult,
     Derived,
@@ -61,6 +65,7 @@ __all__ = [
     "BORDERS",
     "DIFFERS",
     "DIGITS",
+    "DOUBLES",
     "EQUIVALENT",
     "EXACT",
     "FACTOR",
@@ -68,6 +73,7 @@ __all__ = [
     "NUMERICAL",
     "RELATIONS",
     "SCALED",
+    "TOLERANCE",
     "UNDECIDED",
     "ClaimResult",
     "Derived",

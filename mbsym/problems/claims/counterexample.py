@@ -338,10 +338,10 @@ def against_constancy(
     return None
 
 
-def shown(value: Any) -> str:
-    """A dozen digits, zero where nothing but rounding is left."""
+def shown(value: Any, digits: int = DIGITS_SHOWN) -> str:
+    """A dozen digits, or so many; zero where nothing but rounding is left."""
     if value.contains(0):
         return "0"
-    written = str(value.mid().str(DIGITS_SHOWN, radius=False))
+    written = str(value.mid().str(digits, radius=False))
     mantissa, mark, exponent = written.partition("e")
     return (mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa) + mark + exponent

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from dataclasses import replace
 from typing import Any
 
@@ -9,22 +10,40 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NotRational
+from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls
 from mbsym.expressions.tree import (
     Expression,
     names,
+    text,
 )
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import accelerated
+from mbsym.mechanics.states import SEED
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, acceleration_name, velocity_name
-from mbsym.problems.claims.counterexample import PRECISION, follow, shown
+from mbsym.problems.claims.counterexample import DIGITS_SHOWN, PRECISION, follow, shown
 from mbsym.problems.claims.quantities import derived_quantity
-from mbsym.problems.claims.result import DIFFERS, DIGITS, NUMERICAL, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.result import (
+    DIFFERS,
+    DIGITS,
+    DOUBLES,
+    NUMERICAL,
+    TOLERANCE,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+)
 from mbsym.problems.claims.signs_under_roots import ROUNDING
 from mbsym.problems.claims.symbols import Symbols
 
+#: The value is shown to so many digits more than the claim has.
+MORE_DIGITS = 2
+#: Decimal digits in which doubles are printed, and the bits of their mantissas.
+DIGITS_OF_DOUBLES, BITS_OF_DOUBLES = range(15, 18), 53
+UNIT_OF_DOUBLES = fmpq(1, 2 ** (BITS_OF_DOUBLES - 1))
+#: Computations that are rounded in different ways, and how many times their largest error another way may have.
+ROUNDED_WAYS, OTHER_WAYS = 8, 2
 #: Working precisions in bits: numbers whose digits cancel are tried again with more of them.
 FINER = (PRECISION, 1024, 4096)
 
@@ -44,34 +63,95 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 
 def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> ClaimResult | None:
     """The verdict in the working precision, None where balls are too wide for one."""
-    state = _state(derived.system, claim)
-    symbols = Symbols(derived.system)
     try:
-        printed = _number(symbols, state, claim.equals)
-        if claim.of_expression is not None:
-            value = _value(derived, symbols, state, claim.of_expression)
-        else:
-            value = Carrier(derived.ring, state.numbers, state.values)(derived_quantity(derived, claim))
+        printed, value = _both(derived, claim)
     except KeyError as missing:
         raise NotRational(f"no number is given for {missing.args[0]}") from None
     for what, number in (("the value", value), ("the claimed value", printed)):
         if not number.is_finite():
             return ClaimResult(claim, about, UNDECIDED, remark=f"{what} is not finite") if last else None
-    result = ClaimResult(claim, about, DIGITS, value=shown(value))
+    digits, unit = _printed(claim.printed) if claim.printed else (0, fmpq(0))
+    result = ClaimResult(claim, about, DIGITS, value=shown(value, max(DIGITS_SHOWN, digits + MORE_DIGITS)))
     error = abs(printed - value)
-    if not claim.printed:
+    if claim.tolerance is not None or claim.digits:
+        return _within(claim, result, printed, error)
+    if not unit:  # an expression, or a bare zero
         if not error.contains(0):
             return replace(result, outcome=DIFFERS)
         # Where the value itself cannot be told from zero, there is nothing that it could be compared with.
-        size = 1 + abs(value) if last else value.abs_lower()
-        return replace(result, outcome=NUMERICAL) if error.rad() <= ROUNDING * size else None
-    digits, unit = _printed(claim.printed)
+        size = 1 + abs(value) if last or claim.printed else value.abs_lower()
+        outcome = DIGITS if claim.printed else NUMERICAL
+        return replace(result, outcome=outcome) if error.rad() <= ROUNDING * size else None
     tolerance = arb(unit) / 2
-    if error < tolerance or ((error - tolerance).contains(0) and error.rad() < ROUNDING * tolerance):
+    if _is_below(error, tolerance):
         return replace(result, printed_digits=digits, digits=digits)
     if not error > tolerance:
         return None
-    return replace(result, outcome=DIFFERS, printed_digits=digits, digits=_agreeing(error, value, digits))
+    right = _agreeing(error, value, digits)
+    if digits in DIGITS_OF_DOUBLES and error < _rounding_of_doubles(derived, claim, value):
+        found = replace(result, outcome=DOUBLES)
+        return found if value.contains(0) else replace(found, printed_digits=digits, digits=right)
+    return replace(result, outcome=DIFFERS, printed_digits=digits, digits=right)
+
+
+def _both(derived: Derived, claim: Claim) -> tuple[Any, Any]:
+    """The claimed and the derived number as balls of the working precision.  Raises KeyError where a number lacks."""
+    state = _state(derived.system, claim)
+    return _number(Symbols(derived.system), state, claim.equals), _derived_number(derived, claim, state)
+
+
+def _derived_number(derived: Derived, claim: Claim, state: State) -> Any:
+    """The derived quantity at the state."""
+    if claim.of_expression is not None:
+        return _value(derived, Symbols(derived.system), state, claim.of_expression)
+    return Carrier(derived.ring, state.numbers, state.values)(derived_quantity(derived, claim))
+
+
+def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> ClaimResult | None:
+    """The verdict where the claim says how exact it is meant."""
+    if claim.tolerance is not None:
+        tolerance, words = Lowering(Balls({}), {"pi": arb.pi()})(claim.tolerance), text(claim.tolerance)
+    elif printed.contains(0):
+        return replace(result, outcome=UNDECIDED, remark="a claimed zero has no significant digits: give a tolerance")
+    else:
+        first = (abs(printed).mid().log() / arb(10).log()).floor().mid()
+        tolerance = arb(10) ** (first - claim.digits + 1) / 2
+        words = f"{claim.digits} digit{'' if claim.digits == 1 else 's'}"
+    if _is_below(error, tolerance):
+        return replace(result, outcome=TOLERANCE, remark=words)
+    return replace(result, outcome=DIFFERS, remark=f"by more than {words}") if error > tolerance else None
+
+
+def _is_below(error: Any, tolerance: Any) -> bool:
+    """Whether an error is within a tolerance, or just as large."""
+    return bool(error < tolerance or ((error - tolerance).contains(0) and error.rad() < ROUNDING * tolerance))
+
+
+def _rounding_of_doubles(derived: Derived, claim: Claim, value: Any) -> Any:
+    """What the rounding of doubles can explain of an error.
+
+    The quantity is computed in 53 bits from inputs that are changed by half a unit in their last place, at random (the
+    same ones every time), and several times the largest error found is allowed, and a unit in the last place of the
+    value: who computed the number may have taken another way.  What is zero has no digits; there the unit is that of
+    the largest number at the state.
+
+    Source: the stochastic arithmetic of Vignes (CESTAC).
+    """
+    source, worst, largest = random.Random(SEED), arb(0), arb(0)
+    for _ in range(ROUNDED_WAYS):
+        with ctx.workprec(BITS_OF_DOUBLES):
+            state = _state(derived.system, claim)
+            changed = {}
+            for name, number in state.values.items():
+                largest = max(largest, arb(abs(number).mid()), key=float)
+                changed[name] = number * (1 + UNIT_OF_DOUBLES * fmpq(source.randint(-8, 8), 16))
+            try:
+                found = _derived_number(derived, claim, State(Balls(changed), changed)).mid()
+            except (KeyError, *NOT_THERE):
+                return arb(0)
+        worst = max(worst, abs(arb(found) - value).upper(), key=float)
+    unit = largest if value.contains(0) else abs(value)
+    return OTHER_WAYS * worst + unit * UNIT_OF_DOUBLES
 
 
 def _state(system: System, claim: Claim) -> State:
@@ -120,11 +200,13 @@ def _value(derived: Derived, symbols: Symbols, state: State, expression: Express
 
 
 def _printed(number: str) -> tuple[int, fmpq]:
-    """Significant digits of a decimal number, and one unit of its last place."""
+    """Significant digits of a decimal number, and one unit of its last place (none of a bare zero)."""
     mantissa, _, exponent = number.lower().lstrip("+-").partition("e")
     whole, _, decimals = mantissa.partition(".")
-    digits = len((whole + decimals).lstrip("0")) or 1
-    return digits, fmpq(10) ** (int(exponent or 0) - len(decimals))
+    figures = (whole + decimals).lstrip("0")
+    if not figures and not decimals:
+        return 1, fmpq(0)
+    return len(figures) or 1, fmpq(10) ** (int(exponent or 0) - len(decimals))
 
 
 def _agreeing(error: Any, value: Any, digits: int) -> int:

@@ -33,6 +33,8 @@ FACTOR = "holds up to a factor"
 BORDERS = "holds but for border cases"
 EQUIVALENT = "holds up to a total time derivative"
 DIGITS = "holds to the digits printed"
+TOLERANCE = "holds within the tolerance"
+DOUBLES = "holds to the rounding of double precision"
 NUMERICAL = "verified numerically"
 UNDECIDED = "undecided"
 DIFFERS = "differs"
@@ -94,7 +96,8 @@ class ClaimResult:
     ``factor`` is claimed / derived where one is a multiple of the other; else, where it is given, the difference is
     claimed - factor*derived.  For a first integral I the difference is dI/dt on the equations of motion instead.
     ``where`` are the signs to which the outcome is restricted, ``counterexample`` numbers that refute the claim.  For
-    numbers at a state ``value`` is the derived one, ``digits`` how many of the ``printed_digits`` hold.  ``remark``
+    numbers at a state ``value`` is the derived one, to more digits than the claim has, ``digits`` how many of the
+    ``printed_digits`` hold.  ``remark``
     says what else there is to say.
     """
 
@@ -114,7 +117,7 @@ class ClaimResult:
 
     @property
     def holds(self) -> bool:
-        return self.outcome in (EXACT, RELATIONS, FACTOR, BORDERS, EQUIVALENT, DIGITS, NUMERICAL)
+        return self.outcome in (EXACT, RELATIONS, FACTOR, BORDERS, EQUIVALENT, DIGITS, TOLERANCE, DOUBLES, NUMERICAL)
 
     @property
     def refuted(self) -> bool:
