@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability.requirements import Case, Requirement
+from mbsym.problems.stability.requirements import Case, Place, Requirement
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Statement:
     """``formula`` ``relation`` 0.
 
     ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.  ``never``
-    is the polynomial, as it arises, of a statement that cannot hold.
+    is the polynomial, as it arises, of a statement that cannot hold.  ``place``: what follows where it fails.
     """
 
     label: str
@@ -23,6 +23,12 @@ class Statement:
     relation: str
     note: str = ""
     never: Formula | None = None
+    place: Place = Place.NECESSARY
+
+    @property
+    def remark(self) -> str:
+        """What is to be said of its place where it is not that of the others."""
+        return self.place.value if self.place in (Place.METHOD, Place.FIRST) else ""
 
 
 def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = False) -> Iterator[Statement]:
@@ -36,16 +42,19 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
         several = condition.kind == "inequality" or len(condition.nonzero) > 1
         if condition.kind == "inequality":
             label = _part(requirement.label, "without squares") if condition.nonzero else requirement.label
-            yield Statement(label, Formula(ring, condition.polynomial), requirement.relation, note)
+            yield Statement(
+                label, Formula(ring, condition.polynomial), requirement.relation, note, None, requirement.place
+            )
         elif condition.kind == "unwritten":
-            yield Statement(requirement.label, None, requirement.relation, "too long to be written out")
+            too_long = "too long to be written out"
+            yield Statement(requirement.label, None, requirement.relation, too_long, None, requirement.place)
         elif condition.kind == "never":
             never = Formula(ring, requirement.polynomial)
-            yield Statement(requirement.label, None, requirement.relation, "never holds", never)
+            yield Statement(requirement.label, None, requirement.relation, "never holds", never, requirement.place)
         for number, polynomial in enumerate(condition.nonzero, 1):
             which = f"squared factor {number}" if len(condition.nonzero) > 1 else "squared factor"
             label = _part(_bare(requirement.label), which) if several else requirement.label
-            yield Statement(label, Formula(ring, polynomial), "!=", note)
+            yield Statement(label, Formula(ring, polynomial), "!=", note, None, requirement.strict)
 
 
 def _bare(label: str) -> str:

@@ -175,6 +175,7 @@ def _stability(found: Stability, system: System) -> dict[str, Any]:
         "characteristic_polynomials": [polynomial_text(part.characteristic, lam) for part in parts],
         "conditions": [statement_text(item) for items in wanted for item in items],
         "condition_labels": [[item.label for item in items] for items in wanted],
+        "condition_places": [[item.place for item in items] for items in wanted],
         "cases": [
             [_case(case, items) for case in cases(part.ring, part.theory.cases)]
             for part, items in zip(parts, wanted, strict=True)

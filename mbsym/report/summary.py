@@ -127,7 +127,7 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word is Word.DEPENDS and items:
             necessary = part.theory.method is Method.EVEN and not part.theory.potential
-            verdict += f"; {'necessary ' if necessary else ''}conditions:"
+            verdict += "; necessary conditions, but for the case of equality:" if necessary else "; conditions:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         for item in items:
             yield f"  {_condition(item)}"
@@ -165,7 +165,8 @@ def _condition(item: Statement) -> str:
         value = str(item.never)
         left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
         return f"{left} {item.relation} 0 {item.note}"
-    return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}"
+    remark = f" ({item.remark})" if item.remark else ""
+    return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
 def _verdict(verdict: Verdict) -> str:

@@ -9,9 +9,22 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 * only even powers of lambda: all roots in lambda^2 real, negative and simple (coefficients and discriminants);
 * otherwise: all roots to the left of the imaginary axis (Lienard-Chipart).
 
+Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
+necessary for stability.  That p is not 0 either is necessary for asymptotic stability (second kind), but of the first
+kind it is only this method that needs it, as it needs roots that do not coincide: there the motion may be stable.
+K > 0 is sufficient.
+
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
-gyroscopically stabilised only; stable in first approximation only, critical; unstable; undecided.  With symbolic
-parameters it comes as cases, and at numerical values it is decided exactly (irrational ones by enclosures).
+gyroscopically stabilised only; stable in first approximation only, critical; unstable; depends on the parameters (the
+cases say how); undecided (no theorem applies).  At numerical values it is decided exactly (irrational ones by
+enclosures).  A theorem is named where all its hypotheses are shown:
+
+* Lagrange-Dirichlet (G = 0), Routh: M > 0, K > 0, N = 0, D >= 0, and the energy of the nonlinear system does not grow;
+* Kelvin-Chetaev: N = 0, D > 0, and K > 0 or det K != 0; or D = N = 0 and det K < 0;
+* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins.
+
+Verdicts of subsystems combine to the weakest that they share: all asymptotically stable, or all with K > 0 under one
+energy that does not grow (a damped part beside an undamped one: stable), or none of them dissipative; else critical.
 
 Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
 

@@ -1,4 +1,10 @@
-"""Conditions as values: what has to be positive or not zero, and which verdict follows from which."""
+"""Conditions as values: what has to be positive or not zero, its logical place, and which verdict follows from which.
+
+The places follow from continuity of roots.  While no root has a positive real part, coefficients, Hurwitz minors and,
+with only even powers, (sub)discriminants are limits of positive numbers, so they are >= 0: **that** is necessary for
+stability.  That they are > 0 is necessary for asymptotic stability; where the best that can be had is stability it is
+a demand of the method, which leaves the borders open: at a border roots may coincide and be semisimple (a lamina that
+spins about its axis of largest inertia), or be zero where higher terms make the motion stable."""
 
 from __future__ import annotations
 
@@ -19,6 +25,20 @@ class Method(StrEnum):
     NONE = "none"
 
 
+class Place(StrEnum):
+    """What follows where a condition fails."""
+
+    #: p > 0: where p < 0 the motion is unstable; where p = 0 the method leaves it open.
+    NECESSARY = "necessary, but for the case of equality"
+    #: Without it the first approximation has solutions that grow (linearly in time); the motion may be stable.
+    FIRST = "necessary in the first approximation"
+    #: Without it the first approximation is not asymptotically stable.
+    ASYMPTOTIC = "necessary for asymptotic stability"
+    SUFFICIENT = "sufficient"
+    #: Without it this method decides nothing; the motion may be stable.
+    METHOD = "needed by this method only"
+
+
 class Definite(StrEnum):
     """Whether a symmetric matrix is positive definite."""
 
@@ -31,7 +51,8 @@ class Definite(StrEnum):
 class Requirement:
     """``polynomial`` ``relation`` 0, as it arises (``label``: v4, discriminant, ...) and reduced by what is known.
 
-    ``by_mass``: it holds because the kinetic energy is positive definite.
+    ``by_mass``: it holds because the kinetic energy is positive definite.  ``place`` is the one of ``relation``,
+    ``strict`` the one of ``polynomial`` != 0, which may be a condition of its own.
     """
 
     label: str
@@ -39,6 +60,8 @@ class Requirement:
     condition: Condition
     relation: str = ">"
     by_mass: bool = False
+    place: Place = Place.NECESSARY
+    strict: Place = Place.METHOD
 
     @property
     def always(self) -> bool:
@@ -104,7 +127,8 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
     requirements: list[Requirement] = []
     for i, minor in enumerate(leading_minors(matrix), start=1):
         condition = signs.condition(minor)
-        requirements.append(Requirement(f"minor {i} of {name}", minor, condition))
+        place = Place.SUFFICIENT
+        requirements.append(Requirement(f"minor {i} of {name}", minor, condition, place=place, strict=place))
         if condition.kind == "inequality" and len(condition.polynomial) <= MOST_TERMS:
             signs = signs.assuming([(condition.polynomial, ">"), *((p, "!=") for p in condition.nonzero)])
     if all(r.always for r in requirements):
@@ -126,7 +150,7 @@ def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirem
 
 
 def differs(label: str, p: Polynomial, known: Signs) -> Requirement:
-    return Requirement(label, p, known.nonzero_condition(p), "!=")
+    return Requirement(label, p, known.nonzero_condition(p), "!=", place=Place.METHOD)
 
 
 def unwritten(p: Polynomial) -> Requirement:

@@ -52,6 +52,7 @@ from mbsym.problems.stability.requirements import (
     Definiteness,
     Factor,
     Method,
+    Place,
     Requirement,
     against,
     definiteness,
@@ -236,7 +237,12 @@ def _requirements(
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
             requirements.append(unwritten(p[0]))
             continue
-        reduced = [Requirement(label + suffix, value, known.condition(value)) for label, value in wanted]
+        place = Place.NECESSARY if even else Place.ASYMPTOTIC
+        strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
+        reduced = [
+            Requirement(label + suffix, value, known.condition(value), place=place, strict=strict)
+            for label, value in wanted
+        ]
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
     if even and not is_potential(system):
         requirements += _simple(system, factors, known, remarks)

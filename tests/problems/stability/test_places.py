@@ -1,0 +1,73 @@
+"""The logical place of every condition, against motions that are known to be stable where it fails."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from conftest import at_values
+
+import mbsym
+from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.stability.requirements import Place
+from mbsym.report.conditions import statements
+from mbsym.report.summary import summary
+from mbsym.report.targets import TARGETS
+
+CASES = Path(__file__).parents[2] / "cases" / "statements"
+
+
+def places(part: SubsystemStability) -> dict[str, tuple[str, Place]]:
+    """Of the open conditions by label: the relation and the place."""
+    return {x.label: (x.relation, x.place) for x in statements(part.ring, part.theory.requirements)}
+
+
+def at(path: Path, **values: str) -> str:
+    """The verdict at values, in a word."""
+    found = at_values(path, **values).stability.numerical
+    assert found is not None
+    return found.word
+
+
+def test_a_lamina_spins_stably_about_its_largest_axis() -> None:
+    """C = A + B makes the frequencies W and W sqrt((C - A)(C - B)/(A B)) coincide; K > 0 all the same."""
+    a = mbsym.load(CASES / "s_euler_lamina.yaml")
+    (part,) = [x for x in a.stability.subsystems if len(x.coordinates) == 2]
+    assert places(part) == {
+        "v0 of factor 1": (">", Place.NECESSARY),
+        "resultant of factors 1 and 2": ("!=", Place.METHOD),
+    }
+    assert at(CASES / "s_euler_lamina.yaml", A="2", B="3", C="5", W="1").startswith("stable")  # not necessary
+    assert at(CASES / "s_euler_lamina.yaml", A="2", B="4", C="3", W="1") == "unstable"  # the middle axis: v0 < 0
+    (line,) = summary(a, (6,), []).problems
+    assert "    resultant of factors 1 and 2: A + B - C != 0 (needed by this method only)" in [
+        "  " + x for x in line.lines
+    ]
+    assert "(needed by this method only)" in TARGETS["latex"].render(a, (6,))
+    told = json.loads(TARGETS["json"].render(a, (6,)))["stability"]
+    assert told["condition_places"][-1] == ["necessary, but for the case of equality", "needed by this method only"]
+    assert [list(map(len, told[key])) for key in ("condition_labels", "condition_places")] == [[0, 2], [0, 2]]
+
+
+def test_squared_factors_of_discriminants_are_no_conditions_of_stability() -> None:
+    """Two equal tops that spin in opposite directions: W1 + W2 = 0 makes frequencies coincide without Jordan blocks."""
+    a = mbsym.load(CASES / "cg_claims.yaml")
+    found = places(a.stability.subsystems[0])
+    squared = {label: place for label, (relation, place) in found.items() if relation == "!="}
+    assert len(squared) >= 4
+    assert {*squared.values()} == {Place.METHOD}
+    assert {place for relation, place in found.values() if relation == ">"} == {Place.NECESSARY}
+
+
+def test_strict_inequalities_are_necessary_for_asymptotic_stability() -> None:
+    a = mbsym.load(CASES / "claims_spin.yaml")
+    (part,) = [x for x in a.stability.subsystems if len(x.coordinates) == 3]
+    assert {place for _, place in places(part).values()} == {Place.ASYMPTOTIC}
+
+
+def test_one_potential_well() -> None:
+    """x'' = -(a - b)^2 x: at a = b the first approximation is x'' = 0, whose solutions grow."""
+    a = mbsym.load(CASES / "claims_min.yaml")
+    (part,) = a.stability.subsystems
+    assert places(part) == {"v0": ("!=", Place.FIRST)}
+    assert {r.place for r in part.theory.stiffness.requirements} == {Place.SUFFICIENT}
