@@ -28,7 +28,6 @@ from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
 from mbsym.problems import (
-    conserved,
     dissipation,
     energy,
     equations,
@@ -38,6 +37,7 @@ from mbsym.problems import (
     kinematics,
     knowledge,
     linearisation,
+    open_verdicts,
     stability,
 )
 from mbsym.problems.checks import Check, oracles
@@ -213,7 +213,7 @@ class Analysis(Stages):
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.linearisation
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
-        return conserved.decided(found, scene, self.balance, self.equilibrium, lambda: self.optional("integrals") or ())
+        return open_verdicts.decided(found, scene, self.equilibrium)
 
     def _balance(self) -> Balance:
         energies = self.optional("energy")

@@ -8,35 +8,23 @@ out is a function.  Components of a conserved momentum that turn with them come 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-
-from flint import arb, ctx, fmpq_poly
 
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import turning, unperturbed
 from mbsym.mechanics.programs import programs
 from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
-from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
-from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import PROVED, Integral
-from mbsym.problems.stability import Stability, parameter_values
 from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, drifting
-from mbsym.problems.stability.word import Word
 
-#: Verdicts that the first approximation leaves open.
-OPEN = (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
-#: Working precision of enclosures, in bits.
-PRECISION = 200
 #: Momenta of more terms than this are not squared.
 MOST_TERMS = 80
 #: Coordinates of systems whose integrals are looked for.
@@ -135,34 +123,3 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
         return None
     kept = tuple(name for name in system.coordinates if name not in left_out)
     return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), kept, system.coordinates)
-
-
-def decided(
-    found: Stability, scene: Scene, balance: Balance, equilibrium: Equilibrium, known: Callable[[], Sequence[Integral]]
-) -> Stability:
-    """Problem 6 with the verdict at the description's values decided by integrals, where it is open and they do.
-
-    ``known`` gives the integrals of problem 7; it is asked only where they may help.
-    """
-    if found.numerical is None or found.numerical.word not in OPEN or len(scene.system.coordinates) > MOST_COORDINATES:
-        return found
-    left_out = tuple(name for name in balance.ignorable if name not in balance.driven)
-    values = parameter_values(scene, equilibrium)
-    if values is None or not {*turning(scene)} <= {*left_out}:
-        return found
-    state = of_integrals(scene, known(), left_out)
-    if state is None:
-        return found
-    ring, here = scene.ring, unperturbed(scene)
-    numbers = {ring.index("parameter", name): ring.number(x) for name, x in values.items() if isinstance(x, Fraction)}
-
-    def value(x: Polynomial) -> Element | None:
-        try:
-            number = ring.substitute(ring.substitute(x, dict(here)), dict(numbers))
-        except NOT_THERE:
-            return None
-        return fmpq_poly([number.leading_coefficient() if number else 0]) if number.is_constant() else None
-
-    with ctx.workprec(PRECISION):
-        names = state.combination(value, NumberField(fmpq_poly([0, 1]), lambda element: arb(element[0])))
-    return found if names is None else replace(found, numerical=by_integrals(names, bool(left_out)))

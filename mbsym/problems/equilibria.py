@@ -47,7 +47,7 @@ from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.rest_bounds import reach
 from mbsym.problems.rest_candidates import Candidate, candidates, only_root
-from mbsym.problems.rest_place import PRECISION, Place
+from mbsym.problems.rest_place import PRECISION, Place, exact_rates
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
 from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
@@ -424,11 +424,7 @@ class _ChartSearch:
             exact |= {ring.index("coordinate", name): fmpq_poly([0])}
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-        return Place(self.found, balls, exact | self._exact_rates(), point.modulus, point.enclosure)
-
-    def _exact_rates(self) -> dict[int, Any]:
-        rates = {k: rate for k, rate in self.found.rates.items() if rate.is_constant()}
-        return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
+        return Place(self.found, balls, exact | exact_rates(self.found), point.modulus, point.enclosure)
 
     def _add_free_point(self) -> None:
         self._add(self._zero(), EXACT)
@@ -474,7 +470,7 @@ class _ChartSearch:
         special = list(candidates(self.found, names, self.equations)) if not self.chart.restrictions else []
         special = [x for x in special if not any(x.vanishes(y) for y in self.nonzero)]
         for candidate in special:
-            place = candidate.place(self.found, self._exact_rates())
+            place = candidate.place(self.found, exact_rates(self.found))
             if not self._known([float(place.balls[name].mid()) for name in names], 1e-12):
                 self._add(place, EXACT)
         limited = [name for name in names if not self._periodic(name)]
@@ -548,7 +544,7 @@ class _ChartSearch:
             exact[ring.index("coordinate", name)] = zero
             if name in ring.angles:
                 exact |= {ring.index("sine", name): zero, ring.index("cosine", name): one}
-        return Place(self.found, {}, exact | self._exact_rates(), fmpq_poly([0, 1]))
+        return Place(self.found, {}, exact | exact_rates(self.found), fmpq_poly([0, 1]))
 
     def _square_system(self) -> list[Polynomial] | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""

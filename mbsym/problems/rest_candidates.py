@@ -43,11 +43,12 @@ class Candidate:
         ring, balls = self.ring, {}
         exact: dict[int, Any] = {}
         for name in found.constant:
+            if name in self.forms:
+                continue
             exact[ring.index("coordinate", name)] = fmpq_poly([0])
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
         for k, value in self.images.items():
-            exact.pop(k, None)
             if value.is_constant():
                 exact[k] = fmpq_poly([value.leading_coefficient() if value else 0])
         with ctx.workprec(PRECISION):
@@ -71,10 +72,14 @@ def candidates(found: Rest, names: Sequence[str], equations: Sequence[Polynomial
         if forms in tried:
             continue
         tried.append(forms)
-        images = _images(found.ring, forms)
-        candidate = Candidate(found.ring, forms, images)
+        candidate = candidate_at(found, forms)
         if all(candidate.vanishes(x) for x in equations):
             yield candidate
+
+
+def candidate_at(found: Rest, forms: Mapping[str, LinearForm]) -> Candidate:
+    """The place with these coordinates."""
+    return Candidate(found.ring, forms, _images(found.ring, forms))
 
 
 def _images(ring: Ring, forms: Mapping[str, LinearForm]) -> dict[int, Polynomial]:

@@ -16,6 +16,12 @@ from mbsym.mechanics.rest import Rest
 PRECISION = 200
 
 
+def exact_rates(found: Rest) -> dict[int, Any]:
+    """The rates of a steady motion, by the index of their velocity, where they are rational numbers."""
+    rates = {k: rate for k, rate in found.rates.items() if rate.is_constant()}
+    return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
+
+
 class Place:
     """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic.
 

@@ -15,26 +15,35 @@ from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
-from mbsym.problems.conserved import OPEN, Conserved, by_integrals, conserved
+from mbsym.problems.conserved import Conserved, by_integrals, conserved
+from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
 from mbsym.problems.rest_place import PRECISION, Place
-from mbsym.problems.stability.bundle import NumberField
+from mbsym.problems.stability.bundle import Element, NumberField
+from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.verdict import Verdict, combine, undecided
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
+from mbsym.problems.stability.word import Word
+
+#: Verdicts that the first approximation leaves open.
+OPEN = (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
+#: Derivatives of fourth order of a potential in more coordinates than this are not formed.
+MOST_DEGENERATE = 4
 
 
 @dataclass(frozen=True)
 class LinearAtRest:
     """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes.
 
-    ``conservative``: the energy does not grow near any of these states, in all orders.
+    ``law``: what the energy does near all of these states; ``ignorable``: coordinates that no equation contains.
     """
 
     matrices: tuple[Sequence[Sequence[Polynomial]], ...]
-    conservative: bool
+    law: EnergyLaw
     cyclic: tuple[int, ...]
     varying: tuple[str, ...]
     tilts: tuple[int, ...]
@@ -46,16 +55,62 @@ class LinearAtRest:
     def verdict(self, place: Place) -> Verdict:
         """By the first approximation, and where that leaves it open by the integrals of the motion."""
         verdict = self._by_first_approximation(place)
-        if verdict.word not in OPEN or verdict.coordinates_singular:
+        return self.decided(verdict, place)
+
+    def decided(self, verdict: Verdict, place: Place) -> Verdict:
+        """An open verdict decided by terms of higher order of the energy, or by further integrals; else as it is."""
+        if verdict.word not in OPEN or verdict.coordinates_singular or self.varying or place.modulus is None:
             return verdict
-        if self.varying or self._conserved is None or place.modulus is None:
-            return verdict
+        field = NumberField(place.modulus, place.enclose)
         try:
             with ctx.workprec(PRECISION):
-                names = self._conserved.combination(place.residue, NumberField(place.modulus, place.enclose))
+                by_energy = self._by_higher_order(place, field)
+                if by_energy is not None:
+                    return by_energy
+                names = None if self._conserved is None else self._conserved.combination(place.residue, field)
         except NotRational:
             return verdict
         return verdict if names is None else by_integrals(names, bool(self.ignorable))
+
+    def _by_higher_order(self, place: Place, field: NumberField) -> Verdict | None:
+        """Where no coordinate turns, V = T_2 part of the energy apart: K = V'' as a formula gives all derivatives."""
+        ring, names = self.found.ring, self.found.system.coordinates
+        if not self.conservative or self.found.turning or any(x != 0 for row in self.matrices[4] for x in row):
+            return None
+        kept = [i for i, name in enumerate(names) if name not in self.ignorable]
+        if not kept or len(kept) > MOST_DEGENERATE:
+            return None
+        stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
+        of = [names[i] for i in kept]
+
+        def derivative(i: int, j: int, *further: int) -> Element | None:
+            x = stiffness[i][j]
+            for k in further:
+                x = ring.derivative(x, of[k])
+            return place.residue(x)
+
+        if len(kept) == 1:
+            extremum, order = in_one_coordinate(lambda n: derivative(0, 0, *(0 for _ in range(n - 2))), field)
+            if extremum is Extremum.NONE and len(names) == 1 and self.law is EnergyLaw.CONSERVED:
+                facts = {Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED}
+                return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
+            if extremum is not Extremum.MINIMUM:
+                return None
+        else:
+            second = [[derivative(i, j) for j in range(len(kept))] for i in range(len(kept))]
+            if any(x is None for row in second for x in row):
+                return None
+            if not of_fourth_order(second, derivative, derivative, field):
+                return None
+            order = 4
+        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
+        found = concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
+        return drifting(found) if self.ignorable else found
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the energy does not grow near any of these states, in all orders."""
+        return self.law.bounded
 
     @cached_property
     def _conserved(self) -> Conserved | None:
@@ -123,9 +178,7 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    return LinearAtRest(
-        parts, balance.law.bounded, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic)
-    )
+    return LinearAtRest(parts, balance.law, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic))
 
 
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])

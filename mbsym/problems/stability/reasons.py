@@ -24,6 +24,8 @@ class Because(Enum):
     MINIMUM_AND_DISSIPATION = auto()
     UNDAMPED_MOTION = auto()  # (coordinates)
     INTEGRALS = auto()  # (which)
+    HIGHER_MINIMUM = auto()  # (order)
+    NO_MINIMUM = auto()  # (order)
     # of what no theorem carries
     GYROSCOPIC_ONLY = auto()
     GYROSCOPIC_ENCLOSED = auto()

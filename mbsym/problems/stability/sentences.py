@@ -59,6 +59,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     ),
     Because.UNDAMPED_MOTION: _undamped,
     Because.INTEGRALS: _integrals,
+    Because.HIGHER_MINIMUM: (
+        "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format
+    ),
+    Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order {} decide.".format,
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
         "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and the nonlinear "

@@ -10,6 +10,8 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
   D = N = 0 and det K < 0: unstable, whatever G is.
 * Lyapunov's first method: all roots to the left, or one to the right.
 * Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.
+* Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
+  in a system of one coordinate, where the converse holds.
 * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
 
 A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
@@ -45,6 +47,10 @@ class Fact(Enum):
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
     #: No root to the right, and those on the imaginary axis are semisimple and not zero.
     BOUNDED = "the first approximation is stable"
+    #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
+    MINIMUM_OF_HIGHER_ORDER = "V has a strict minimum, by terms of higher order"
+    NO_MINIMUM_IN_ONE_COORDINATE = "V has no minimum, and is a function of one coordinate alone"
+    ENERGY_CONSERVED = "the energy of the nonlinear system is constant"
     #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
     #: their values (``bundle``): shown of the whole system, never of a subsystem.
     INTEGRALS_DEFINITE = "a combination of integrals of the nonlinear system has a strict minimum"
@@ -79,6 +85,7 @@ KELVIN_CHETAEV = "Kelvin-Chetaev"
 LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
 CHETAEV = "Chetaev's combination of integrals"
+CONVERSE = "converse of Lagrange-Dirichlet"
 
 _PLAIN = (Fact.MASS_POSITIVE, Fact.POTENTIAL)
 _MINIMUM = (*_PLAIN, Fact.STIFFNESS_POSITIVE, Fact.ENERGY_NEVER_GROWS)
@@ -110,6 +117,8 @@ THEOREMS = (
         Fact.NOT_GYROSCOPIC,
     ),
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
+    _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
+    _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED),
     _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
 )
 

@@ -1,0 +1,110 @@
+"""K with a null direction: terms of higher order decide, by hand."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from conftest import TESTS
+
+import mbsym
+from mbsym.mechanics.rest import given_values
+from mbsym.problems.equilibria import equilibria
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
+
+BLOCK = """
+mbsym: 1
+name: Blocks
+bodies:
+  - {{name: block, attached to: 0, connection point: [{point}], mass: 1, coordinates: [{coordinates}]}}
+loads:
+  - potential: {potential}
+{more}motion: {{{motion}}}
+"""
+
+
+def verdict(potential: str, coordinates: str = "x", more: str = "") -> Verdict:
+    names = coordinates.split(", ")
+    point = ", ".join([*names, "0", "0"][:3])
+    motion = ", ".join(f"{name}: 0" for name in names)
+    text = BLOCK.format(potential=potential, coordinates=coordinates, point=point, more=more, motion=motion)
+    found = mbsym.loads(text).stability.numerical
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(
+    ("potential", "word"),
+    [
+        ("x**4", Word.STABLE),
+        ("x**6 - x**8", Word.STABLE),
+        ("-x**4", Word.UNSTABLE),
+        ("x**3", Word.UNSTABLE),
+        ("x**5 + x**6", Word.UNSTABLE),
+        ("cos(x) + x**2/2", Word.STABLE),  # x^4/24
+        ("cos(x) + x**2/2 - x**4/24", Word.UNSTABLE),  # -x^6/720
+        ("x**12", Word.UNDECIDED),  # beyond what is looked at
+    ],
+)
+def test_one_coordinate(potential: str, word: Word) -> None:
+    assert verdict(potential).word is word
+
+
+@pytest.mark.parametrize(
+    ("potential", "word"),
+    [
+        # V = (y + a x^2)^2/2 + b x^4 has its minimum iff b > 0; without the splitting it is (a^2/2 + b) x^4.
+        ("(y + x**2)**2/2 + x**4/10", Word.STABLE),
+        ("(y + x**2)**2/2 - x**4/10", Word.UNDECIDED),
+        ("(y + x**2)**2/2", Word.UNDECIDED),
+        ("y**2 + x**4", Word.STABLE),
+        ("y**2 + x**3", Word.UNDECIDED),
+        ("y**2 + x*y**2 + x**4 + x**2*y", Word.STABLE),  # y = -x^2/2 + ...: x^4 (1 - 1/4)
+        ("y**2 + x**4 + 3*x**2*y", Word.UNDECIDED),  # x^4 (1 - 9/4)
+        ("(x + y)**2 + (x - y)**4", Word.STABLE),
+        ("x**4 + y**4", Word.UNDECIDED),  # two null directions
+    ],
+)
+def test_two_coordinates(potential: str, word: Word) -> None:
+    assert verdict(potential, "x, y").word is word
+
+
+def test_three_coordinates_need_what_lies_across_the_null_direction() -> None:
+    potential = "(y + x**2)**2/2 + (z - 2*x**2 + y)**2 + x**4/10"
+    assert verdict(potential, "x, y, z").word is Word.STABLE
+    assert verdict(potential.replace("+ x**4/10", "- x**4/10"), "x, y, z").word is Word.UNDECIDED
+
+
+def test_friction_keeps_a_minimum_and_forbids_to_speak_of_the_converse() -> None:
+    assert verdict("x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word in (Word.STABLE, Word.ASYMPTOTIC)
+    assert verdict("x**4", more="  - rayleigh: -x_dot**2/2\n").word is Word.UNSTABLE
+    assert verdict("x**4", more="  - rayleigh: -x_dot**4/4\n").word is Word.UNDECIDED, "driven"
+    assert verdict("-x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word is Word.UNDECIDED
+
+
+def test_an_upright_rod_on_the_torsional_spring_that_just_holds_it() -> None:
+    """k th^2/2 + cos th at k = 1: th^4/24."""
+    system = mbsym.load(TESTS / "cases" / "statements" / "torsion.yaml").system
+    (one,) = equilibria(system, given_values(system, {"k": Fraction(1)})).equilibria
+    assert (one.verdict.word, one.verdict.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
+
+
+@pytest.mark.parametrize(("rate", "word"), [("3", Word.STABLE), ("16/5", Word.UNSTABLE)])
+def test_a_bead_on_a_turning_hoop_at_its_border(rate: str, word: Word) -> None:
+    """V = -g cos a - W^2 sin^2 a / 2: at W^2 = g = 9 it is g (-1 + a^4/8), a minimum."""
+    text = """
+mbsym: 1
+name: Bead on a hoop that is turned
+parameters: {g: 9, W: 3}
+prescribed: {chi: {rate: W}}
+bodies:
+  - {name: hoop, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - {name: arm, attached to: hoop, rotation: {axes: [1], angles: [a]}, mass centre: [0, 0, -1], mass: 1}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+motion: {a: 0}
+"""
+    found = mbsym.loads(text.replace("W: 3", f"W: {rate}")).stability.numerical
+    assert found is not None
+    assert found.word is word
