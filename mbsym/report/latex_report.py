@@ -24,6 +24,7 @@ from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.latex_description import call, expression, load_in_words
+from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     printed = claimed_names(analysis)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
+    long = withheld([found[number] for number in COUNTED if number in found], PAPER)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
     text = rendered(
@@ -61,10 +63,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "tex": escaped,
             "name": lambda name: str(names[name]),
             "dotted": lambda name: names[name].accented("dot"),
-            "math": formula,
+            "math": lambda value: formula(value, long),
             "expression": lambda value: expression(value, names),
-            "matrix": matrix,
-            "row": row,
+            "matrix": lambda value: matrix(value, long),
+            "row": lambda values: row(values, long),
             "entries": entries,
             "sum": polynomial,
             "condition": condition,
@@ -170,10 +172,10 @@ def label(words: str) -> str:
 # --- formulas ---
 
 
-def formula(value: Formula) -> str:
-    """A formula that may be broken; one that is too long for paper is only counted."""
-    if value.terms > LONGEST:
-        return f"\\text{{({value.terms} terms: see the machine-readable files)}}"
+def formula(value: Formula, long: frozenset[int] = frozenset()) -> str:
+    """A formula that may be broken; one that is too long for paper, or is among the ``long`` ones, is only counted."""
+    if value.terms > LONGEST or id(value) in long:
+        return f"\\text{{({not_printed(value)})}}"
     return latex_text(value.ring, value.polynomial, breaks=True)
 
 
@@ -199,9 +201,9 @@ def width(latex: str) -> float:
     return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
 
 
-def matrix(value: Matrix) -> str:
-    """A pmatrix, or nothing if that would be too wide."""
-    return _matrix(value)[0]
+def matrix(value: Matrix, long: frozenset[int] = frozenset()) -> str:
+    """A pmatrix, or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    return "" if any(id(x) in long for row in value for x in row) else _matrix(value)[0]
 
 
 def _matrix(value: Matrix) -> tuple[str, float]:
@@ -251,8 +253,10 @@ def index(k: object) -> str:
     return f"_{{{k}}}" if k else ""
 
 
-def row(values: Column) -> str:
-    """Components side by side, or nothing if that would be too wide."""
+def row(values: Column, long: frozenset[int] = frozenset()) -> str:
+    """Components side by side, or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    if any(id(x) in long for x in values):
+        return ""
     written = [x.latex() if x.terms <= 30 else "" for x in values]
     fits = all(written) and sum(map(width, written)) <= WIDEST
     return ",\\; ".join(written) if fits else ""
@@ -333,6 +337,8 @@ def _code(analysis: Analysis, names: LatexNames) -> Any:
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     nodes = [programs.mass_matrix[i][j] for i, j in upper]
     body = listing(programs.program, [*nodes, *programs.forcing], symbols, DIALECT)
+    if len(body.assignments) > PAPER_PROGRAM:
+        return [f"\\text{{({program_not_printed(len(body.assignments))})}}"]
     comma = "," if n > 9 else ""
     lines = [f"{name} = {text}" for name, text in body.assignments]
     lines += [f"M_{{{i + 1}{comma}{j + 1}}} = {text}" for (i, j), text in zip(upper, body.results, strict=False)]

@@ -22,9 +22,14 @@ from mbsym.problems.stability.spectrum import numbers
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, statements
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.lengths import COUNTED, FILE, not_printed, withheld
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+
+
+#: The text of a formula, or its length.
+Write = Callable[[Formula], str]
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -44,11 +49,16 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
         "checks": [vars(check) for check in analysis.checks],
     }
     unavailable: dict[str, str] = {}
-    for number in problems:
+    stages = {number: analysis.stage(number) for number in problems}
+    long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
+
+    def write(formula: Formula) -> str:
+        return not_printed(formula) if id(formula) in long else str(formula)
+
+    for number, stage in stages.items():
         key = PROBLEMS[number].attribute
-        stage = analysis.stage(number)
         if stage.failure is None:
-            found[key] = _SECTIONS[number](stage.value, system)
+            found[key] = _SECTIONS[number](stage.value, system, write)
         else:
             unavailable[key] = stage.failure.reason
     accepted = accepted_inertias(system)
@@ -107,66 +117,66 @@ def _parameters(system: System) -> list[dict[str, str | None]]:
     ]
 
 
-def _column(values: Column) -> list[str]:
-    return [str(x) for x in values]
+def _column(values: Column, write: Write) -> list[str]:
+    return [write(x) for x in values]
 
 
-def _matrix(values: Matrix) -> list[list[str]]:
-    return [_column(row) for row in values]
+def _matrix(values: Matrix, write: Write) -> list[list[str]]:
+    return [_column(row, write) for row in values]
 
 
-def _kinematics(found: Kinematics, system: System) -> dict[str, Any]:
+def _kinematics(found: Kinematics, system: System, write: Write) -> dict[str, Any]:
     return {
         "bodies": [
             {
                 "name": body.name,
-                "rotation": _matrix(body.rotation),
-                "angular_velocity": _column(body.angular_velocity),
-                "velocity_origin": _column(body.velocity_origin),
-                "velocity_mass_centre": _column(body.velocity_mass_centre),
+                "rotation": _matrix(body.rotation, write),
+                "angular_velocity": _column(body.angular_velocity, write),
+                "velocity_origin": _column(body.velocity_origin, write),
+                "velocity_mass_centre": _column(body.velocity_mass_centre, write),
             }
             for body in found.bodies
         ]
     }
 
 
-def _energy(found: Energy, system: System) -> dict[str, Any]:
+def _energy(found: Energy, system: System, write: Write) -> dict[str, Any]:
     return {
-        "kinetic_energy": str(found.kinetic_energy),
-        "A2": _matrix(found.A2),
-        "A1": _column(found.A1),
-        "A0": str(found.A0),
-        "force_function": str(found.force_function),
+        "kinetic_energy": write(found.kinetic_energy),
+        "A2": _matrix(found.A2, write),
+        "A1": _column(found.A1, write),
+        "A0": write(found.A0),
+        "force_function": write(found.force_function),
         "cyclic": list(found.cyclic),
     }
 
 
-def _equations(found: Equations, system: System) -> dict[str, Any]:
-    return {"mass_matrix": _matrix(found.mass_matrix), "forcing": _column(found.forcing)}
+def _equations(found: Equations, system: System, write: Write) -> dict[str, Any]:
+    return {"mass_matrix": _matrix(found.mass_matrix, write), "forcing": _column(found.forcing, write)}
 
 
-def _equilibrium(found: Equilibrium, system: System) -> dict[str, Any]:
+def _equilibrium(found: Equilibrium, system: System, write: Write) -> dict[str, Any]:
     return {
         "satisfied": found.satisfied,
-        "conditions": _column(found.conditions),
+        "conditions": _column(found.conditions, write),
         "solved": {name: str(value) for name, value in found.solved},
     }
 
 
-def _linearisation(found: Linearisation, system: System) -> dict[str, Any]:
+def _linearisation(found: Linearisation, system: System, write: Write) -> dict[str, Any]:
     return {
-        **_five(found),
-        "subsystems": [{"coordinates": list(part.coordinates), **_five(part)} for part in found.subsystems],
+        **_five(found, write),
+        "subsystems": [{"coordinates": list(part.coordinates), **_five(part, write)} for part in found.subsystems],
         "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
         "notation": {item.name: text(item.value) for item in system.notation},
     }
 
 
-def _five(found: Any) -> dict[str, list[list[str]]]:
-    return {name: _matrix(getattr(found, name)) for name in "MDGKN"}
+def _five(found: Any, write: Write) -> dict[str, list[list[str]]]:
+    return {name: _matrix(getattr(found, name), write) for name in "MDGKN"}
 
 
-def _stability(found: Stability, system: System) -> dict[str, Any]:
+def _stability(found: Stability, system: System, write: Write) -> dict[str, Any]:
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
     lam = free_name("lam", taken)
     parts = found.subsystems
@@ -231,14 +241,14 @@ def _case(case: CaseStatement, listed: Sequence[Statement]) -> dict[str, Any]:
     }
 
 
-def _integrals(found: tuple[Integral, ...], system: System) -> list[dict[str, str]]:
+def _integrals(found: tuple[Integral, ...], system: System, write: Write) -> list[dict[str, str]]:
     return [
-        {"name": item.name, "kind": item.kind, "of": item.of, "formula": str(item.formula), "status": item.status}
+        {"name": item.name, "kind": item.kind, "of": item.of, "formula": write(item.formula), "status": item.status}
         for item in found
     ]
 
 
-_SECTIONS: dict[int, Callable[[Any, System], Any]] = {
+_SECTIONS: dict[int, Callable[[Any, System, Write], Any]] = {
     1: _kinematics,
     2: _energy,
     3: _equations,

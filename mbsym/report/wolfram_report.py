@@ -22,6 +22,7 @@ from mbsym.model.system import System
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import prescribed_value
+from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -40,10 +41,18 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     used = {names[name] for name in names.table}
+    long = withheld([found[number] for number in COUNTED if number in found], FILE)
+    closed = found.get(3)
+    if closed is not None and any(id(x) in long for x in formulas((closed.mass_matrix, closed.forcing))):
+        del found[3]  # equations that are not whole are none: the program takes their place
+
+    def written(value: Formula) -> str:
+        return string(not_printed(value)) if id(value) in long else wolfram_text(value.ring, value.polynomial)
+
     return rendered(
         "report.wl.j2",
         {
-            "wl": lambda formula: wolfram_text(formula.ring, formula.polynomial),
+            "wl": written,
             "expression": lambda value: wolfram_expression(value, names),
             "list": listed,
             "entries": entries,
@@ -138,6 +147,8 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
     nodes: list[Node] = [x for row in programs.mass_matrix for x in row]
     n = len(system.coordinates)
     body: Listing = listing(programs.program, [*nodes, *programs.forcing], inputs, DIALECT)
+    if len(body.assignments) > FILE_PROGRAM:
+        return {"omitted": program_not_printed(len(body.assignments))}
     prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
     return {
         "positions": [names[name] + "_" for name in system.coordinates],
@@ -146,4 +157,5 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
         "prescribed": prescribed,
         "mass": [body.results[i * n : (i + 1) * n] for i in range(n)],
         "forcing": body.results[n * n :],
+        "omitted": "",
     }

@@ -1,0 +1,67 @@
+"""Which formulas of a report are counted instead of printed: nobody reads thousands of terms, and files have limits.
+
+A formula is printed if it has at most ``longest`` terms and its problem has room for it, the shortest first; every
+problem has the same room of its own, so that the kinematics of a long chain does not keep the energy out.  The rule
+counts terms, so a report does not depend on the machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+from mbsym.formulas.formula import Formula
+
+
+@dataclass(frozen=True)
+class Limit:
+    """``longest``: the terms of one formula; ``whole``: those of all formulas of one problem."""
+
+    longest: int
+    whole: int
+
+
+#: The problems whose formulas are counted; those of the others have rules of their own.
+COUNTED = (1, 2, 3, 5, 7)
+#: Longer straight-line programs are left to ``model.py`` and ``model.c``: so many assignments.
+PAPER_PROGRAM, FILE_PROGRAM = 1_000, 20_000
+#: For people: about half a megabyte a problem.
+PAPER = Limit(2_000, 10_000)
+#: For programs; the numbers of long equations come from straight-line programs anyway.
+FILE = Limit(6_000, 40_000)
+
+
+def withheld(results: Iterable[Any], limit: Limit) -> frozenset[int]:
+    """The identities (``id``) of the formulas in some problems' results that are not printed."""
+    found: set[int] = set()
+    for result in results:
+        room = limit.whole
+        for formula in sorted(formulas(result), key=lambda formula: formula.terms):
+            if formula.terms > min(limit.longest, room):
+                found.add(id(formula))
+            else:
+                room -= formula.terms
+    return frozenset(found)
+
+
+def formulas(result: Any) -> Iterator[Formula]:
+    """Every formula of a result, in the order of its fields."""
+    if isinstance(result, Formula):
+        yield result
+    elif isinstance(result, (tuple, list)):
+        for item in result:
+            yield from formulas(item)
+    elif is_dataclass(result):
+        for field in fields(result):
+            yield from formulas(getattr(result, field.name))
+
+
+def program_not_printed(steps: int) -> str:
+    """The same for straight-line code."""
+    return f"{steps} steps, not printed; model.py and model.c have them"
+
+
+def not_printed(formula: Formula) -> str:
+    """What stands in a formula's place."""
+    return f"{formula.terms} terms, not printed"
