@@ -459,7 +459,8 @@ def test_verdicts_presume_the_conditions_of_problem_4():
 
 def test_the_summary_says_what_a_verdict_depends_on():
     (line,) = summary(analysis_of("heavy-top.yaml"), (6,), []).problems
-    assert line.lines[0] == "alpha, beta: depends on the parameters; necessary conditions, but for the case of equality:"
+    heading = "necessary conditions, but for the case of equality"
+    assert line.lines[0] == f"alpha, beta: depends on the parameters; {heading}:"
     assert "whole system: depends on the parameters" in line.lines
     never = mbsym.loads(HOOP.replace("theta: theta0}", "theta: 0}") + "assumptions: [R*Omega**2 > g]\n")
     (line,) = summary(never, (6,), []).problems
