@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, OK, counted, printable, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, counted, defect, printable, read_description
 from mbsym_cli.options import Options
 
 
@@ -28,11 +28,19 @@ def command(files: tuple[Path, ...]) -> None:
         sys.exit(BAD_INPUT)
     worst = OK
     for path in paths:
-        system = read_description(path)
-        if system is None:
-            worst = BAD_INPUT
-            continue
-        bodies = counted(len(system.bodies), "body", "bodies")
-        freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
-        print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
+        try:
+            worst = max(worst, _check(path))
+        except Exception as error:  # a defect of ours must not cost the rest of the batch
+            defect(error, path)
+            worst = max(worst, FAILED)
     sys.exit(worst)
+
+
+def _check(path: Path) -> int:
+    system = read_description(path)
+    if system is None:
+        return BAD_INPUT
+    bodies = counted(len(system.bodies), "body", "bodies")
+    freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
+    print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
+    return OK

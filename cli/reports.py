@@ -40,14 +40,14 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 
     ``base`` is the folder that the reports must not leave.
     """
-    system = read_description(path)
-    if system is None:
-        return BAD_INPUT
-    reason = obstacle(folder, base)
-    if reason:
-        complain(path, f"the reports cannot be written: {reason}")
-        return FAILED
     try:
+        system = read_description(path)
+        if system is None:
+            return BAD_INPUT
+        reason = obstacle(folder, base)
+        if reason:
+            complain(path, f"the reports cannot be written: {reason}")
+            return FAILED
         return _derive(path, system, folder, request)
     except OSError as error:
         complain(path, f"the reports cannot be written: {reason_of(error)}")
@@ -69,7 +69,10 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:
             say(f"{path.name}: ledger")
-            found = _ledger(analysis, texts)
+            try:
+                found = _ledger(analysis, texts)
+            except Exception as error:  # finished reports are not lost to it
+                analysis.defects.append(error)
     missing = [file.filename for file in files if file.text is None]
     written = deliver(folder, texts, "run", gone=missing)
     _show(analysis, path, written, request, time.perf_counter() - started, found)

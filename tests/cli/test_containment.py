@@ -247,3 +247,26 @@ def test_in_the_drawing(
     done = simulate("-o", tmp_path)
     assert done.exit_code == code, done.output
     assert names(tmp_path) == {"trajectory.csv", "simulation.json", MANIFEST}
+
+
+def test_in_the_ledger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.numerics.ledger.table.ledger", broken)
+    done = run(PENDULUM, "-o", tmp_path, "--ledger")
+    assert done.exit_code == 1
+    assert "internal error, please report it: OverflowError: planted" in done.stderr
+    assert names(tmp_path) == FILES | {MANIFEST}
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_in_the_reading_of_one_file(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from mbsym_cli import console
+
+    honest = console.load
+    monkeypatch.setattr(console, "load", lambda path: broken() if path.name == "first.yaml" else honest(path))
+    for name in ("first", "second"):
+        (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text())
+    further = ["-o", tmp_path / "out", "-f", "json", "-p", "1"] if command == "run" else []
+    done = CliRunner().invoke(main, [command, str(tmp_path), *map(str, further)], catch_exceptions=False)
+    assert done.exit_code == 1
+    assert "first.yaml: internal error, please report it: OverflowError: planted" in done.stderr
+    assert "Simple pendulum" in done.stdout
