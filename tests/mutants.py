@@ -12,24 +12,26 @@ from random import Random
 
 #: Numbers that formulas, printers or integers may stumble over.
 NUMBERS = (
-    "0", "1", "-1", "-0", "1/3", "0.1", "1e-30", "1e30", "1e300", "12345678901.2345", "2147483648", "9223372036854775808",
-    "10**40", "0.30000000000000004", "pi", "pi/7", "pi/12", "(pi+1)**3", "(2*pi/86164)**2", "sqrt(2)", "sqrt(-1)",
+    "0", "1", "-1", "-0", "1/3", "0.1", "1e-30", "1e30", "1e300", "12345678901.2345", "2147483648",
+    "9223372036854775808", "10**40", "0.30000000000000004", "pi", "pi/7", "pi/12",
+    "(pi+1)**3", "(2*pi/86164)**2", "sqrt(2)", "sqrt(-1)",
     "1/0", "0.0", "7/5", "3**-2", "cos(1)", "exp(2)", "1e-400", "1_000", "0x10", "1,5", "nan", "inf", "1e5000",
 )  # fmt: skip
 
 #: Names that mean something in one of the languages of the reports, or nearly.
 NAMES = (
-    "lambda", "int", "double", "e", "I", "E", "N", "D", "K", "C", "O", "Pi", "def", "None", "True", "np", "math", "self",
-    "s1", "s2", "q", "qd", "p", "t", "x", "M", "f", "result", "value", "main", "sin_x", "Sin", "Dt", "alpha1", "beta_2",
-    "phi_dot", "theta", "a1b2", "restrict", "static", "inline", "class", "import", "y1", "j0", "gamma", "exp1", "i", "l",
-    "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", "_x", "x_", "A0", "Omega", "omega_0", "model", "errno", "INFINITY",
+    "lambda", "int", "double", "e", "I", "E", "N", "D", "K", "C", "O", "Pi", "def", "None", "True", "np", "math",
+    "self", "s1",
+    "s2", "q", "qd", "p", "t", "x", "M", "f", "result", "value", "main", "sin_x", "Sin", "Dt", "alpha1", "beta_2",
+    "phi_dot", "theta", "a1b2", "restrict", "static", "inline", "class", "import", "y1", "j0", "gamma", "exp1", "i",
+    "l", "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", "_x", "x_", "A0", "Omega", "omega_0", "model", "errno", "INFINITY",
 )  # fmt: skip
 
 #: Texts for people that want to be code.
 TEXTS = (
     '*/ int x; /*', "//", "/* /*", '\\"\\"\\"', "'''", "\\\\", "\\\\end{document}", "$x$ % & # _ ^ ~", "(* *) *) (*",
-    "\\\\u0041", "é ü ß", "漢字 Ω ∑", "a" * 300, "{", "}", "[[", "trigraph ??/", "\\\\n", "#include <x>", "'", "`", "<<>>",
-    "null", "yes: no", "%s %d {0}", "\\\\VAR{x}", "\\\\BLOCK{ if }", "{{x}}", " ", "-", "-->",
+    "\\\\u0041", "é ü ß", "漢字 Ω ∑", "a" * 300, "{", "}", "[[", "trigraph ??/", "\\\\n", "#include <x>", "'", "`",
+    "<<>>", "null", "yes: no", "%s %d {0}", "\\\\VAR{x}", "\\\\BLOCK{ if }", "{{x}}", " ", "-", "-->",
 )  # fmt: skip
 
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
@@ -38,14 +40,15 @@ _DECLARED = re.compile(r"^  ?([A-Za-z]\w*):|[\[{,]\s*([A-Za-z]\w*)(?=[:,\]}])", 
 _TEXT = re.compile(r"((?:name|description|meaning|place):\s*)([^\n,}\"']+)")
 
 #: Words that are keys or values of the language of descriptions, not names of a system.
-_KEYS = set(
-    "mbsym name description parameters bodies attached to rotation axes angles mass centre inertia about joint loads "
-    "coordinates motion values initial relations notation positive real negative nonnegative meaning value rate position "
-    "velocity point connection acceleration direction gravity uniform spring damper potential force function torque "
-    "prescribed between stiffness rest coefficient coordinate generalized rayleigh claims claim equals place newtonian "
-    "constant order body vector axes entry of state component that as abbreviations assumptions moment gyrostatic sin cos "
-    "tan sqrt exp log atan sinh cosh tanh pi dimensionless time relative length".split()
-)
+_WORDS = """
+mbsym name description parameters bodies attached to rotation axes angles mass centre inertia about joint loads
+coordinates motion values initial relations notation positive real negative nonnegative meaning value rate position
+velocity point connection acceleration direction gravity uniform spring damper potential force function torque
+prescribed between stiffness rest coefficient coordinate generalized rayleigh claims claim equals place newtonian
+constant order body vector entry of state component that as abbreviations assumptions moment gyrostatic sin cos tan sqrt
+exp log atan sinh cosh tanh pi dimensionless time relative length
+"""
+_KEYS = frozenset(_WORDS.split())
 
 
 def mutant(text: str, chance: Random) -> str:
@@ -72,7 +75,7 @@ def _scaled(text: str, chance: Random) -> str:
     if not names:
         return text
     name, value = chance.choice(names), chance.choice(NUMBERS)
-    places = [match for match in re.finditer(rf"(?<![\w.]){name}(?![\w:])", text)]
+    places = list(re.finditer(rf"(?<![\w.]){name}(?![\w:])", text))
     if not places:
         return text
     place = chance.choice(places)
@@ -127,7 +130,9 @@ def _indented(text: str, chance: Random) -> str:
 
 def _character(text: str, chance: Random) -> str:
     at = chance.randrange(len(text))
-    new = chance.choice(["", *"{}[]:,#&*!|>'\"%@`\\-?", "\x00", "\x1b", "\u202e", "\ufeff", "\u00a0", "é", "\u2028", "0"])
+    new = chance.choice(
+        ["", *"{}[]:,#&*!|>'\"%@`\\-?", "\x00", "\x1b", "\u202e", "\ufeff", "\u00a0", "é", "\u2028", "0"]
+    )
     return text[:at] + new + text[at + chance.randint(0, 2) :]
 
 
@@ -142,7 +147,15 @@ def _repeated(text: str, chance: Random) -> str:
     return text[:start] + piece * chance.choice([2, 20, 200]) + text[start:]
 
 
-_VARIATIONS: tuple[Callable[[str, Random], str], ...] = (_number, _scaled, _scaled, _renamed, _renamed, _worded, _operator)
+_VARIATIONS: tuple[Callable[[str, Random], str], ...] = (
+    _number,
+    _scaled,
+    _scaled,
+    _renamed,
+    _renamed,
+    _worded,
+    _operator,
+)
 _MUTATIONS = (*_VARIATIONS, _swapped, _line_gone, _line_twice, _indented, _character, _character, _cut, _repeated)
 
 
