@@ -4,54 +4,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import (
-    BAD_INPUT,
-    BROKEN_DOWN,
-    FAILED,
-    INTERRUPTED,
-    OK,
-    complain,
-    console,
-    printable,
-    read_description,
-    status,
-)
-from mbsym_cli.files import deliver, folder_for, obstacle
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
+from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
-
-if TYPE_CHECKING:
-    from mbsym.model.system import System
-    from mbsym.numerics.fidelity import ModelError
-    from mbsym.numerics.methods.interface import Method
-    from mbsym.numerics.scenario import Scenario
-    from mbsym.numerics.tradeoff import Measured, Tradeoff
-
-FORMATS = ("csv", "svg", "png")
+from mbsym_cli.tradeoff_run import Request, run
 
 #: Accuracy is asked for between these.
 FINEST, COARSEST = 1e-15, 0.1
-
-#: Times at which solutions are compared, the start included.
-SAMPLES = 9
-
-
-@dataclass(frozen=True)
-class Request:
-    """What was asked for, numbers read."""
-
-    end: float
-    target: float
-    budget: float
-    fidelity: bool
-    every_row: bool
-    quiet: bool
 
 
 @click.command("tradeoff")
@@ -127,133 +92,7 @@ def _command(
         complain(file, f"the results cannot be written: {reason}")
         return FAILED
     try:
-        return _measure(file, folder, given, [METHODS[name] for name in names], request)
+        return run(file, folder, given, [METHODS[name] for name in names], request)
     except OSError as error:
         complain(file, f"the results cannot be written: {error}")
     return FAILED
-
-
-def _measure(file: Path, folder: Path, found: Scenario, methods: list[Method], request: Request) -> int:
-    import numpy as np
-
-    from mbsym.algebra.failures import Failure
-    from mbsym.numerics import fidelity
-    from mbsym.numerics.dynamics import Dynamics
-    from mbsym.numerics.methods.interface import Breakdown
-    from mbsym.numerics.methods.table import METHODS
-    from mbsym.numerics.reference import reference
-    from mbsym.numerics.tradeoff import tradeoff
-
-    times = [float(t) for t in np.linspace(0.0, request.end, SAMPLES)]
-    with status(request.quiet) as say:
-        try:
-            dynamics = Dynamics(found)
-            say(f"{file.name}: reference solution")
-            truth = reference(
-                dynamics,
-                times,
-                budget=max(30.0, request.budget),
-                watch=lambda t: say(f"{file.name}: reference solution, t = {t:.4g} of {request.end:g}"),
-            )
-            trade = tradeoff(dynamics, methods, truth, request.budget, lambda label: say(f"{file.name}: {label}"))
-            models: tuple[ModelError, ...] = ()
-            if request.fidelity and not trade.interrupted:
-                models = fidelity.measured(found, METHODS["dop853"], times, lambda label: say(f"{file.name}: {label}"))
-        except Breakdown as error:
-            complain(file, f"there is no reference solution up to t = {request.end:g}: {error}")
-            return BROKEN_DOWN
-        except Failure as error:
-            complain(file, f"the equations have no program: {error}")
-            return BROKEN_DOWN
-        say(f"{file.name}: drawing")
-        paths = [] if not trade.rows else _write(folder, found.system, trade, models, request)
-    if trade.rows:
-        _print(file, found.system, trade, models, request, paths)
-    if trade.interrupted:
-        kept = f"; what was measured is kept in {printable(paths[0].parent)}" if trade.rows else ""
-        complain(file, f"interrupted{kept}")
-        return INTERRUPTED
-    return OK
-
-
-def _write(
-    folder: Path, system: System, trade: Tradeoff, models: tuple[ModelError, ...], request: Request
-) -> list[Path]:
-    from mbsym.report.tradeoff_figure import work_precision
-    from mbsym.report.tradeoff_table import fidelity_csv, tradeoff_csv
-
-    mark = "-partial" if trade.interrupted else ""
-    texts: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade)}
-    if models:
-        texts["fidelity.csv"] = fidelity_csv(models)
-    title = f"{system.name}, t = 0 to {request.end:g}"
-    pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
-    texts |= {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
-    return deliver(folder, texts, "tradeoff")
-
-
-def _print(
-    file: Path, system: System, trade: Tradeoff, models: tuple[ModelError, ...], request: Request, paths: list[Path]
-) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    from mbsym.numerics.tradeoff import advice
-    from mbsym.report.tradeoff_table import models_shown, shown
-
-    out = console()
-    if request.quiet:
-        print(advice(trade, request.target))
-        return
-    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, t = 0 to {request.end:g}", "dim")))
-    truth = trade.reference
-    out.print(
-        f"  reference: {truth.method}, estimated error {truth.error:.1e}, {truth.seconds:.1f} s; "
-        f"errors below {trade.smallest_judged:.0e} are not told apart"
-    )
-    rows = trade.rows if request.every_row else [row for row in trade.rows if row.front or _near(row, request.target)]
-    table = Table(box=None, padding=(0, 1), header_style="bold cyan")
-    for name, side in zip(
-        ("method", "setting", "error", "drift", "evaluations", "steps", "time", "front"),
-        ("left", "left", "right", "right", "right", "right", "right", "center"),
-        strict=True,
-    ):
-        table.add_column(name, justify=side, no_wrap=True)  # type: ignore[arg-type]
-    for line in shown(rows, trade.smallest_judged):
-        table.add_row(*line, style="" if line[-1] else "dim")
-    out.print(table)
-    for order in trade.orders:
-        if order.pairs > 1:
-            out.print(
-                f"  {order.method}, {order.scalar}: measured order {order.measured:.2f}, nominal {order.nominal} "
-                f"(from {order.pairs} halvings of the step)"
-            )
-    for name, reason in trade.unusable:
-        out.print(Text(f"  {name}: not used: {reason}", style="yellow"))
-    if models:
-        _print_models(models_shown(models))
-    out.print(Text(advice(trade, request.target), style="bold"))
-    out.print(
-        Text.assemble("  files in ", (printable(paths[0].parent), "bold"), ": ", ", ".join(p.name for p in paths))
-    )
-
-
-def _near(row: Measured, target: float) -> bool:
-    return target / 10 < row.error < target * 10
-
-
-def _print_models(lines: list[tuple[str, ...]]) -> None:
-    from rich.table import Table
-
-    table = Table(box=None, padding=(0, 1), header_style="bold cyan")
-    for name, side in (
-        ("model", "left"),
-        ("what it neglects", "left"),
-        ("error", "right"),
-        ("operations", "right"),
-        ("time", "right"),
-    ):
-        table.add_column(name, justify=side)  # type: ignore[arg-type]
-    for line in lines:
-        table.add_row(*line)
-    console().print(table)

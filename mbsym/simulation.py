@@ -25,7 +25,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics import simulate as integration
-from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated, kinetic_between
+from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.choice import choose, rates
 from mbsym.numerics.columns import columns, most_rows
 from mbsym.numerics.conservation import Conservation, Standing, confronted, energy_standing, standing, visited
@@ -35,6 +35,7 @@ from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.reduced import Reduced, reduced
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.sizes import kinetic_between
 
 if TYPE_CHECKING:
     from mbsym.numerics.simulate import Trajectory

@@ -6,10 +6,7 @@ The better run differs in more than name: in an arithmetic of more digits, by an
 times smaller at least; two runs that come down to the same settings are never compared.  It takes no step longer than a
 two thousandth of the whole, so that short events are not stepped over twice.
 
-A quantity that rests but for rounding (the cart under two pendulums that swing against each other) has no size of its
-own.  It is measured by what the scene would move it: the velocity that carries the largest kinetic energy T alone,
-
-    v_i = sqrt(2 T / M_ii),      q_i = v_i tau,      tau the shortest ratio of a coordinate's range to its speed.
+What a quantity is relative to is settled by the scene where it rests but for rounding (``mbsym.numerics.sizes``).
 """
 
 from __future__ import annotations
@@ -22,13 +19,12 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels import arrays
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
 from mbsym.numerics.methods.interface import Method, Setting, Unusable
-from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.simulate import Integrated, Trajectory, integrated
+from mbsym.numerics.sizes import AFFORDABLE, GRID, MANY, scaled, usual_sizes
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
 TIGHTER, LEAST_RATIO = 1e-2, 0.1
@@ -39,23 +35,11 @@ AGAINST_FIXED = 1e-15
 #: No step of the better run is longer than this part of the whole time.
 PARTS = 2_000
 
-#: Where there are fewer samples than this, sizes are taken from so many times more.
-MANY, GRID = 300, 501
-
-#: The tolerance at which sizes, and no more, are looked for.
-COARSE = 1e-6
-
-#: Operations that a better run may cost, and those of a right-hand side beyond which nothing new is compiled for it.
-AFFORDABLE, LONG = 400_000_000, 20_000
-
-#: Below this part of what the scene would move it by, a quantity rests but for rounding.
-RESTS = 1e-6
+#: Nothing new is compiled for a right-hand side with more operations.
+LONG = 20_000
 
 #: A relative tolerance below this many roundings is not taken by the methods themselves.
 LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
-
-#: Systems with more coordinates than this are measured by the sizes of their quantities alone.
-MOST_SCALED = 40
 
 
 class Lacking(Enum):
@@ -120,18 +104,6 @@ class NoEstimate:
     """There is no estimate, and why."""
 
     why: Lacking
-
-
-def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[Method], Method]) -> float:
-    """The largest kinetic energy of the motion where the samples are too few to show it, by a coarse run; else 0."""
-    if len(found.times) >= MANY or len(found.times) < 2:
-        return 0.0
-    operations = max(1, dynamics.right_hand_side.operations)
-    setting = Setting(COARSE, None, max(1_000, AFFORDABLE // (140 * operations)))
-    run = integrated(dynamics, completed(METHODS["dop853"]), setting, np.linspace(0.0, found.times[-1], GRID).tolist())
-    points = np.vstack([run.times, run.states])
-    kinetic = compiled_kernel(dynamics, "relative_energy")(points)[1]
-    return float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
 
 
 def estimated(
@@ -207,33 +179,12 @@ def _differences(dynamics: Dynamics, found: Trajectory, better: Integrated) -> I
     """Row by row, at the times of ``found``."""
     places = np.searchsorted(better.times, found.times)
     sizes = np.max(np.abs(better.states), axis=1).astype(float)
+    scales = scaled(sizes, usual_sizes(dynamics, found.times, found.states, found.largest_kinetic))
     with np.errstate(all="ignore"):
         errors = np.abs(found.states - better.states[:, places]).astype(float)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
-    for name, row, size, usual in zip(names, errors, sizes, usual_sizes(dynamics, found), strict=True):
-        scale = size if size >= RESTS * usual else usual
-        yield QuantityError(name, float(row[-1]), float(np.max(row)), float(size), float(scale) or 1.0)
-
-
-def usual_sizes(dynamics: Dynamics, found: Trajectory) -> Any:
-    """What the scene would move each coordinate and each velocity by, shape (2n,); 0 where that is not known."""
-    n = dynamics.size
-    energy = found.largest_kinetic
-    if n > MOST_SCALED or not energy > 0 or not np.isfinite(energy):
-        return np.zeros(2 * n)
-    chosen = np.linspace(0, len(found.times) - 1, min(16, len(found.times))).astype(int)
-    states = np.asarray(found.states, dtype=float)
-    whole = dynamics.mass_matrix
-    diagonal = Code(whole.program, whole.inputs, whole.outputs[:: n + 1])
-    masses = np.max(np.abs(arrays.kernel(diagonal)(np.vstack([found.times, states])[:, chosen])), axis=1)
-    with np.errstate(all="ignore"):
-        speeds = np.where(masses > 0, np.sqrt(2 * energy / masses), 0.0)
-        own = np.max(np.abs(states[n:]), axis=1)
-        spans = np.ptp(states[:n], axis=1) / own
-    moving = (own > RESTS * speeds) & np.isfinite(spans)
-    shortest = float(np.min(spans[moving])) if np.any(moving) else 0.0
-    usual = np.concatenate([speeds * shortest, speeds])
-    return np.where(np.isfinite(usual), usual, 0.0)
+    for name, row, size, scale in zip(names, errors, sizes, scales, strict=True):
+        yield QuantityError(name, float(row[-1]), float(np.max(row)), float(size), float(scale))
 
 
 def contradicted(estimate: ErrorEstimate | NoEstimate, drift: float) -> bool:

@@ -65,9 +65,9 @@ class Judged:
     def wrong(self, scalar: str) -> bool:
         """Whether the floats contradict an exact verdict that was reached."""
         said = self.floats[scalar]
-        if self.exact.word == Word.UNDECIDED:
+        if self.exact.word in (Word.UNDECIDED, Word.DEPENDS):
             return False
-        stable = self.exact.word in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_CYCLIC)
+        stable = self.exact.word in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_CYCLIC, Word.ASYMPTOTIC_BUT_TURNED)
         if self.exact.word == Word.UNSTABLE:
             return said != Word.UNSTABLE
         return said == Word.UNSTABLE or (said == Word.ASYMPTOTIC and not stable)

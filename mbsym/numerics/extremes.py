@@ -8,7 +8,7 @@ said in sentences follows from the rows and from nothing else.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -262,34 +262,49 @@ def sentences(found: Extremes, say: Callable[[Word], str] = str) -> Iterator[str
     for kind, subject in found.ladders:
         if kind == SINGULAR:
             yield from _singular(found, subject)
-    for kind, title in (
-        (RATES, "rates from 1e-8 to 1e8"),
-        (EQUILIBRIUM, "quantities of states that approach the unperturbed motion"),
-    ):
-        yield from _range(found, kind, title)
+    yield from _range(found, RATES, "Rates")
+    yield from _range(found, EQUILIBRIUM, "States at distances from the unperturbed motion")
     yield from _ratios(found)
     yield from _verdicts(found, say)
     yield from _formulas(found)
 
 
+def _onward(sizes: Iterable[float], bad: Iterable[float]) -> str:
+    """``from 1e-05 on`` where everything nearer is bad as well, else the places one by one."""
+    places = sorted(set(bad), reverse=True)
+    if {size for size in sizes if size <= places[0]} == set(places):
+        return f"from {places[0]:.0e} on"
+    return "at " + ", ".join(f"{place:.0e}" for place in places)
+
+
+def _short(size: float) -> str:
+    """``1e-8``, ``1e8``."""
+    return f"{size:.0e}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+
+
 def _singular(found: Extremes, subject: str) -> Iterator[str]:
     parts = []
     for quantity in ("accelerations", "Jacobian"):
-        rows = found.of(SINGULAR, subject, quantity)
+        rows = [r for r in found.of(SINGULAR, subject, quantity) if r.found.bits]
         for scalar in FULL:
             lost = [r.size for r in rows if r.found.digits[scalar] < FEW]
             if lost:
-                parts.append(f"{scalar} keeps fewer than {FEW:.0f} digits of the {quantity} from {max(lost):.0e} on")
-    what = "; ".join(parts) if parts else "nothing is lost down to 1e-14"
-    yield f"{subject}: the mass matrix is singular; {what}."
-    rows = found.of(SINGULAR, subject, "accelerations")
-    avoidable = [r for r in rows if r.found.verdict == "formula"]
+                where = _onward((r.size for r in rows), lost)
+                parts.append(f"{scalar} keeps fewer than {FEW:.0f} digits of the {quantity} {where}")
+    known = [r for r in found.of(SINGULAR, subject, "accelerations") if r.found.bits]
+    if not parts and known:
+        least = min(r.found.digits[FLOAT64] for r in known)
+        nearest = min(r.size for r in known)
+        parts = [f"float64 keeps at least {least:.1f} digits of the accelerations down to {nearest:.0e}"]
+    yield f"{subject}: the mass matrix is singular" + "".join(f"; {part}" for part in parts) + "."
+    avoidable = [r for r in known if r.found.verdict == "formula"]
     if avoidable:
-        r = avoidable[0]
+        r = max(avoidable, key=lambda row: row.size)
+        where = _onward((row.size for row in known), (row.size for row in avoidable))
         yield (
-            f"{subject}: from {r.size:.0e} on more digits of the accelerations are lost than the question makes "
-            f"unavoidable (condition {r.found.condition:.0e}, {r.found.formula:.1f} digits at the state as rounded); "
-            "other coordinates help, see --sequences."
+            f"{subject}: {where} more digits of the accelerations are lost than the question makes "
+            f"unavoidable (condition {r.found.condition:.0e} and {r.found.formula:.1f} digits at the state as rounded, "
+            f"at {r.size:.0e}); other coordinates may keep them (--sequences tries other angles)."
         )
 
 
@@ -299,25 +314,32 @@ def _range(found: Extremes, kind: str, title: str) -> Iterator[str]:
         return
     least = min(rows, key=lambda r: r.found.digits[FLOAT64])
     single = min(rows, key=lambda r: r.found.digits[FLOAT32])
+    sizes = [r.size for r in rows]
     yield (
-        f"{title[0].upper()}{title[1:]}: float64 keeps at least {least.found.digits[FLOAT64]:.1f} digits (worst: "
-        f"{least.quantity} at {least.size:.0e}), float32 {single.found.digits[FLOAT32]:.1f} ({single.quantity} at "
-        f"{single.size:.0e})."
+        f"{title} from {_short(min(sizes))} to {_short(max(sizes))}: "
+        f"float64 keeps at least {least.found.digits[FLOAT64]:.1f} digits (worst: {least.quantity} at {least.size:.0e}), float32 {single.found.digits[FLOAT32]:.1f} "
+        f"({single.quantity} at {single.size:.0e})."
     )
 
 
 def _ratios(found: Extremes) -> Iterator[str]:
     rows = [r for r in found.rows if r.kind == RATIO and r.found.bits]
-    if not rows:
-        return
     poor: dict[str, list[Row]] = {}
+    fine: dict[tuple[float, ...], dict[str, float]] = {}
     for row in rows:
         if row.found.digits[FLOAT64] < GOOD:
             poor.setdefault(row.subject, []).append(row)
-    fine = [subject for kind, subject in found.ladders if kind == RATIO and subject not in poor]
-    if fine:
-        least = min(row.found.digits[FLOAT64] for row in rows if row.subject in fine)
-        yield f"Times 1e-12 to 1e12, {', '.join(fine)}: float64 keeps at least {least:.1f} digits of everything."
+    for subject in dict.fromkeys(row.subject for row in rows):
+        own = [row for row in rows if row.subject == subject]
+        if subject not in poor:
+            factors = tuple(sorted({row.size for row in own}))
+            fine.setdefault(factors, {})[subject] = min(row.found.digits[FLOAT64] for row in own)
+    for factors, subjects in fine.items():
+        listed = ", ".join(f"{factor:.0e}" for factor in factors)
+        yield (
+            f"{', '.join(subjects)} times {listed}: float64 keeps at least {min(subjects.values()):.1f} digits of "
+            "everything that was measured."
+        )
     for subject, lost in poor.items():
         worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
         names = ", ".join(dict.fromkeys(r.quantity for r in lost))
@@ -333,20 +355,38 @@ def _verdicts(found: Extremes, say: Callable[[Word], str]) -> Iterator[str]:
     subjects = dict.fromkeys(row.subject.rsplit(" from ", 1)[0] for row in borders)
     for subject in subjects:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
-        words = {row.subject.rsplit(" ", 1)[1]: say(row.judged.exact.word) for row in own}
-        below, above = words.get("below", ""), words.get("above", "")
-        text = f"{subject}: a border, {below} below and {above} above, decided exactly down to a distance of "
-        text += f"{min(row.size for row in own):.0e}"
+        sides = [[row for row in own if row.subject.endswith(f" from {side}")] for side in ("below", "above")]
+        below, above = (_side(rows, say) for rows in sides)
+        text = f"{subject}: a border, {below} below and {above} above"
+        if all(len({row.judged.exact.word for row in rows}) == 1 for rows in sides):
+            text += (
+                f", decided exactly down to a distance of {max(min(row.size for row in rows) for rows in sides):.0e}"
+            )
         for scalar in FULL:
             wrong = [row.size for row in own if row.judged.wrong(scalar)]
             if wrong:
-                text += f"; {scalar} eigenvalues say otherwise from {max(wrong):.0e} on"
+                text += f"; {scalar} eigenvalues say otherwise {_onward((row.size for row in own), wrong)}"
         yield text + "."
     others = [row for row in found.verdicts if row.kind == RATIO]
     misjudged = [row for row in others if row.judged.wrong(FLOAT64)]
     if misjudged:
-        listed = ", ".join(f"{row.subject} times {row.size:.0e}" for row in misjudged[:8])
-        yield f"float64 eigenvalues contradict the exact verdict for {listed}."
+        listed = ", ".join(f"{row.subject} times {row.size:.0e}" for row in misjudged[:LISTED])
+        more = f" and {len(misjudged) - LISTED} more" if len(misjudged) > LISTED else ""
+        yield f"float64 eigenvalues contradict the exact verdict for {listed}{more}."
+
+
+def _side(rows: Sequence[VerdictRow], say: Callable[[Word], str]) -> str:
+    """The verdict on one side of a border; where it varies, all of it."""
+    if not rows:
+        return "not looked at"
+    words = dict.fromkeys(row.judged.exact.word for row in rows)
+    if len(words) == 1:
+        return say(rows[0].judged.exact.word)
+    parts = []
+    for word in words:
+        places = [row.size for row in rows if row.judged.exact.word == word]
+        parts.append(f"{say(word)} {_onward((row.size for row in rows), places)}")
+    return " and ".join(parts)
 
 
 def _formulas(found: Extremes) -> Iterator[str]:
@@ -358,4 +398,5 @@ def _formulas(found: Extremes) -> Iterator[str]:
         yield f"More is lost than the condition explains, so another formula could keep it: {', '.join(listed)}."
     open_ = dict.fromkeys(f"{r.quantity} ({r.subject} {r.size:.0e})" for r in found.rows if not r.found.bits)
     if open_:
-        yield f"Undecided, no tight enclosure within 2048 bits: {', '.join(list(open_)[:8])}."
+        undecided = f"Undecided, no tight enclosure within 2048 bits: {', '.join(list(open_)[:LISTED])}"
+        yield undecided + (f" and {len(open_) - LISTED} more." if len(open_) > LISTED else ".")

@@ -38,6 +38,9 @@ from mbsym.numerics.specialise import Specialised, substituted
 #: Tolerance at which variants are integrated, and what differences below ``RESOLVED`` mean nothing.
 TIGHT, RESOLVED = 1e-13, 1e-11
 
+#: The label of the model that the description gives.
+DESCRIBED = "as described"
+
 #: Runs timed for each variant.
 REPEATS = 5
 
@@ -128,7 +131,7 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     system = scenario.system
     fields = [load for load in system.loads if isinstance(load, NewtonianGravity)]
     faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
-    yield Variant("as described", "nothing that the description has", Dynamics(scenario), faithful)
+    yield Variant(DESCRIBED, "nothing that the description has", Dynamics(scenario), faithful)
     for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
         if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
             continue
@@ -163,10 +166,12 @@ def measured(
     method: Method,
     times: Sequence[float],
     watch: Callable[[str], None] = lambda label: None,
+    scale: Any | None = None,
 ) -> tuple[ModelError, ...]:
     """The error of every variant at ``times`` against the most faithful one, and its cost at a tight tolerance.
 
-    The error is the largest difference over coordinates, velocities and times, each relative to its largest value.
+    The error is the largest difference over coordinates, velocities and times, each relative to ``scale``, shape (2n,);
+    by default its largest value at the times.
     """
     runs = []
     for variant in variants(scenario):
@@ -179,13 +184,27 @@ def measured(
     if not solved:
         return ()
     truth = max(solved, key=lambda item: item[0])[1]
-    size = np.max(np.abs(truth), axis=1)
-    scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
+    if scale is None:
+        size = np.max(np.abs(truth), axis=1)
+        scale = np.where(size > 0, size, 1.0)
+    scale = np.asarray(scale)[:, np.newaxis]
     rows = []
     for variant, states, operations, evaluations, seconds, trouble in runs:
         error = inf if states is None else float(np.max(np.abs(states - truth) / scale))
         rows.append(ModelError(variant, error if isfinite(error) else inf, operations, evaluations, seconds, trouble))
     return tuple(rows)
+
+
+def model_advice(models: Sequence[ModelError], target: float) -> str:
+    """How far the model that was simulated is from the most faithful one; empty where that is the same or unknown."""
+    own = next((row for row in models if row.variant.label == DESCRIBED), None)
+    best = max((row for row in models if not row.trouble), key=lambda row: row.variant.rank, default=None)
+    if own is None or best is None or best is own or own.trouble or not own.error > RESOLVED:
+        return ""
+    text = f"The model as described is {own.error:.1e} away from {best.variant.label}"
+    if own.error > target:
+        return f"{text}: an error of {target:.0e} is one of its equations, not of the motion."
+    return f"{text}, which adds to the error."
 
 
 def _run(

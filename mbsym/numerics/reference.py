@@ -29,7 +29,7 @@ COLUMNS = 12
 class Reference:
     """``states`` at ``times``, shape (2n, m), rounded to float64; ``error`` is the estimated error of the solution,
 
-    the largest difference from a second solution, each component relative to its largest absolute value.
+    the largest difference from a second solution, each component relative to ``scale``, shape (2n,).
     """
 
     times: Any
@@ -37,6 +37,7 @@ class Reference:
     error: float
     seconds: float
     method: str
+    scale: Any
 
 
 class _Extrapolation:
@@ -110,9 +111,11 @@ def reference(
     tolerance: float = 1e-24,
     budget: float = 120.0,
     watch: Callable[[float], None] = lambda t: None,
+    scale: Any | None = None,
 ) -> Reference:
     """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
 
+    ``scale`` says what each component is measured by; by default its largest absolute value at the times.
     Raises Breakdown where the solution does not exist up to the end, or after ``budget`` seconds.
     """
     started = time.perf_counter()
@@ -127,10 +130,12 @@ def reference(
                 watch(float(t))
             runs.append(states)
         first, second = runs
-        error = 0.0
-        for i in range(len(first[0])):
-            size = max(abs(float(state[i])) for state in first) or 1.0
-            error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
         states_ = np.array([[float(x) for x in state] for state in first]).T
+        if scale is None:
+            size = np.max(np.abs(states_), axis=1)
+            scale = np.where(size > 0, size, 1.0)
+        error = 0.0
+        for i, size in enumerate(map(float, scale)):
+            error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
     seconds = time.perf_counter() - started
-    return Reference(np.asarray(times, dtype=float), states_, error, seconds, f"extrapolation, {BITS} bits")
+    return Reference(np.asarray(times, dtype=float), states_, error, seconds, f"extrapolation, {BITS} bits", scale)

@@ -1,6 +1,7 @@
 """What accuracy costs: ladders over method, tolerance or step, and arithmetic, measured on one system on this machine.
 
-error    largest |x_i(t) - reference_i(t)| / max |reference_i| over all coordinates, velocities and sampled times
+error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and sampled times, each relative to its size
+         in the whole motion (``mbsym.numerics.sizes``)
 drift    largest change of the energy h, relative to the largest kinetic energy
 seconds  median of the integration itself; compiling is not counted (it happens once)
 
@@ -15,7 +16,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf, isfinite, log2, log10
+from math import inf, isfinite, log2
 from typing import Any
 
 import numpy as np
@@ -92,14 +93,14 @@ class Tradeoff:
     interrupted: bool = False
 
     def cheapest(self, target: float) -> Measured | None:
-        """The least expensive row whose error is at most ``target``."""
-        good = [row for row in self.rows if row.error <= target]
+        """The least expensive row whose error, with that of the reference, is at most ``target``."""
+        good = [row for row in self.rows if row.error + self.reference.error <= target]
         return min(good, key=lambda row: row.seconds, default=None)
 
     @property
     def smallest_judged(self) -> float:
-        """Errors below this cannot be told from the reference's own."""
-        return MARGIN * self.reference.error
+        """Errors below this cannot be told from the reference's own, or from the rounding of what is compared."""
+        return max(MARGIN * self.reference.error, float(np.finfo(float).eps))
 
 
 def tradeoff(
@@ -140,8 +141,7 @@ class _Judge:
     def __init__(self, dynamics: Dynamics, reference: Reference) -> None:
         self.dynamics = dynamics
         self.reference = reference
-        size = np.max(np.abs(reference.states), axis=1)
-        self.scale = np.where(size > 0, size, 1.0)[:, np.newaxis]
+        self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
         self.spent = 0.0
 
@@ -248,32 +248,52 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
 
 
 def advice(found: Tradeoff, target: float) -> str:
-    """One sentence: which setting reaches the target at the least cost, and what a digit more or less would cost."""
+    """One sentence: which setting reaches the target at the least cost, and what a digit more or less would cost.
+
+    Nothing is said to be reached but what was measured, with the reference's own error added.
+    """
+    known = found.reference.error
     if target < found.smallest_judged:
         return (
-            f"The reference itself is known to {found.reference.error:.1e} only: an error of {target:.0e} cannot be "
+            f"The reference itself is known to {known:.1e} only: an error of {target:.0e} cannot be "
             f"judged here; choose a target of at least {found.smallest_judged:.0e}."
         )
     best = found.cheapest(target)
     if best is None:
         nearest = min(found.rows, key=lambda row: row.error)
+        if nearest.error == inf:
+            return f"Nothing tried reaches {target:.0e}: no run came to the end."
         return (
             f"Nothing tried reaches {target:.0e}; the most accurate is {nearest.candidate.label} with an error of "
             f"{nearest.error:.1e} in {duration(nearest.seconds)}."
         )
+    judged = best.error > found.smallest_judged
+    error = f"{best.error:.1e}" if judged else f"below {found.smallest_judged:.0e}"
+    times = len(found.reference.times) - 1
     return (
-        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {best.error:.1e} in "
-        f"{duration(best.seconds)}; one digit more costs {_neighbour(found, best, target / 10)}, one digit less "
-        f"{_neighbour(found, best, target * 10)}."
+        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {error} at {times} times compared (the "
+        f"reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
+        f"{_more(found, best, target / 10)}, one digit less {_less(found, best, target * 10)}."
     )
 
 
-def _neighbour(found: Tradeoff, best: Measured, target: float) -> str:
+def _more(found: Tradeoff, best: Measured, target: float) -> str:
+    if target < found.smallest_judged:
+        return "cannot be judged by this reference"
     other = found.cheapest(target)
-    if other is None or target < found.smallest_judged:
-        return "more than anything tried here can give"
+    if other is None:
+        return "costs more than anything tried here can give"
     if other is best:
-        return f"nothing extra (it already has {-log10(max(best.error, 1e-300)):.1f} digits)"
+        return "costs nothing extra (it is there already)"
+    return f"costs {_compared(other, best)}"
+
+
+def _less(found: Tradeoff, best: Measured, target: float) -> str:
+    other = found.cheapest(target)
+    return "saves nothing" if other is None or other is best else f"costs {_compared(other, best)}"
+
+
+def _compared(other: Measured, best: Measured) -> str:
     return f"{duration(other.seconds)}, {other.seconds / best.seconds:.2g} times as much ({other.candidate.label})"
 
 

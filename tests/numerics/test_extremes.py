@@ -374,7 +374,7 @@ def test_the_command_writes_everything(tmp_path: Path) -> None:
 def test_numbers_stay_whole_on_a_narrow_terminal(whole: Any, width: int) -> None:
     from rich.console import Console
 
-    from mbsym_cli.extremes import _table
+    from mbsym_cli.extremes_run import _table
 
     for columns, rows in tables(whole):
         out = io.StringIO()

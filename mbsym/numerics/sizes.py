@@ -1,0 +1,96 @@
+"""What errors and drifts are relative to: the size that a quantity has in the whole motion.
+
+The largest |x_i| over samples close to each other; samples that are few may all stand where a quantity is zero.  A
+quantity that rests but for rounding (the cart under two pendulums that swing against each other) has no size of its
+own.  It is measured by what the scene would move it: the velocity that carries the largest kinetic energy T alone,
+
+    v_i = sqrt(2 T / M_ii),      q_i = v_i tau,      tau the shortest ratio of a coordinate's range to its speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.failures import Failure
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.methods.interface import Method, Setting
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.simulate import Trajectory, integrated
+
+#: Where there are fewer samples than this, sizes are taken from so many times more.
+MANY, GRID = 300, 501
+
+#: Operations that a run beside the one that was asked for may cost.
+AFFORDABLE = 400_000_000
+
+#: The tolerance at which sizes, and no more, are looked for.
+COARSE = 1e-6
+
+#: Below this part of what the scene would move it by, a quantity rests but for rounding.
+RESTS = 1e-6
+
+#: Systems with more coordinates than this are measured by the sizes of their quantities alone.
+MOST_SCALED = 40
+
+
+def scaled(own: Any, usual: Any) -> Any:
+    """What each quantity is measured by: its own size, or what the scene would move it by; 1 where there is neither."""
+    found = np.where(own >= RESTS * usual, own, usual)
+    return np.where(found > 0, found, 1.0)
+
+
+def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> Any:
+    """What the scene would move each coordinate and each velocity by, shape (2n,); 0 where that is not known."""
+    n = dynamics.size
+    if n > MOST_SCALED or not kinetic > 0 or not np.isfinite(kinetic):
+        return np.zeros(2 * n)
+    chosen = np.linspace(0, len(times) - 1, min(16, len(times))).astype(int)
+    states = np.asarray(states, dtype=float)
+    whole = dynamics.mass_matrix
+    diagonal = Code(whole.program, whole.inputs, whole.outputs[:: n + 1])
+    masses = np.max(np.abs(arrays.kernel(diagonal)(np.vstack([times, states])[:, chosen])), axis=1)
+    with np.errstate(all="ignore"):
+        speeds = np.where(masses > 0, np.sqrt(2 * kinetic / masses), 0.0)
+        own = np.max(np.abs(states[n:]), axis=1)
+        spans = np.ptp(states[:n], axis=1) / own
+    moving = (own > RESTS * speeds) & np.isfinite(spans)
+    shortest = float(np.min(spans[moving])) if np.any(moving) else 0.0
+    usual = np.concatenate([speeds * shortest, speeds])
+    return np.where(np.isfinite(usual), usual, 0.0)
+
+
+def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[Method], Method]) -> float:
+    """The largest kinetic energy of the motion where the samples are too few to show it, by a coarse run; else 0."""
+    if len(found.times) >= MANY or len(found.times) < 2:
+        return 0.0
+    return _seen(dynamics, float(found.times[-1]), completed(METHODS["dop853"]))[2]
+
+
+def motion_sizes(dynamics: Dynamics, end: float) -> Any | None:
+    """What each coordinate and velocity is measured by in the motion from 0 to ``end``, shape (2n,).
+
+    From a coarse run; None where it does not come far enough to tell.
+    """
+    times, states, kinetic = _seen(dynamics, end, METHODS["dop853"])
+    if times[-1] < end:
+        return None
+    try:
+        usual = usual_sizes(dynamics, times, states, kinetic)
+    except Failure:
+        usual = np.zeros(len(states))
+    return scaled(np.max(np.abs(states), axis=1), usual)
+
+
+def _seen(dynamics: Dynamics, end: float, method: Method) -> tuple[Any, Any, float]:
+    """Times, states and the largest kinetic energy of a coarse run."""
+    operations = max(1, dynamics.right_hand_side.operations)
+    setting = Setting(COARSE, None, max(1_000, AFFORDABLE // (140 * operations)))
+    run = integrated(dynamics, method, setting, np.linspace(0.0, end, GRID).tolist())
+    kinetic = compiled_kernel(dynamics, "relative_energy")(np.vstack([run.times, run.states]))[1]
+    return run.times, run.states, float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
