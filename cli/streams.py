@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import os
+import select
 import signal
 import sys
 import threading
@@ -47,14 +48,20 @@ class Outlet(io.RawIOBase):
         view = memoryview(data)
         if self.descriptor is not None:
             try:
-                return os.write(self.descriptor, view)
-            except BlockingIOError:
-                return 0
+                return self._written(self.descriptor, view)
             except BrokenPipeError:
                 self.descriptor = None
             except OSError as error:
                 self.descriptor, self.refusal = None, error
         return len(view)
+
+    @staticmethod
+    def _written(descriptor: int, view: memoryview) -> int:
+        while True:
+            try:
+                return os.write(descriptor, view)
+            except BlockingIOError:  # a pipe that does not wait is waited for
+                select.select([], [descriptor], [])
 
 
 class Streams:

@@ -16,10 +16,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from mbsym_cli import files
 from mbsym_cli.files import MANIFEST, deliver, delivered, folder_for, obstacle, safe_name
+from mbsym_cli.main import main
 
+PENDULUM = Path(__file__).parents[2] / "systems" / "simple-pendulum.yaml"
 NAMES = ("model.c", "model.h", "report.tex")
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="kills and limits")
@@ -350,3 +353,54 @@ def test_a_link_out_of_the_reports_is_an_obstacle(tmp_path: Path) -> None:
     assert obstacle(base / "loop", base)
     assert not obstacle(base / "a")
     assert not obstacle(base / "b", base)
+
+
+NAMES_OF_FILES = [
+    "...yaml",
+    "..yaml",
+    ".yaml",
+    "con.yaml",
+    "trail. .yaml",
+    "a\\..\\b.yaml",
+    "ok.yaml",
+    "OK.yml",
+    "ä.yaml",
+]
+
+
+def test_whatever_a_description_is_called_its_reports_stay_where_they_belong(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work = tmp_path / "a" / "b"
+    work.mkdir(parents=True)
+    monkeypatch.chdir(work)
+    for name in NAMES_OF_FILES:
+        (work / name).write_text(PENDULUM.read_text(encoding="utf-8"), encoding="utf-8")
+    for out in ([], ["--out", "elsewhere"]):
+        done = CliRunner().invoke(main, ["run", *NAMES_OF_FILES, "-f", "json", "-p", "1", "-q", *out])
+        assert done.exit_code == 0, done.output
+        base = work / (out[1] if out else "reports")
+        folders = [path for path in base.iterdir() if path.is_dir()]
+        assert len(folders) == len(NAMES_OF_FILES)
+        assert all((folder / "results.json").exists() for folder in folders)
+    for name in NAMES_OF_FILES[:3]:
+        done = CliRunner().invoke(
+            main, ["simulate", name, "-s", "theta=1", "-t", "0.1", "-f", "csv", "--no-estimate", "-q"]
+        )
+        assert done.exit_code == 0, done.output
+    written = {path for path in tmp_path.rglob("*") if path.suffix in (".json", ".csv")}
+    assert all(path.is_relative_to(work / "reports") or path.is_relative_to(work / "elsewhere") for path in written)
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+@pytest.mark.parametrize("command", [["run", "-f", "json"], ["simulate", "-s", "theta=1", "-t", "0.1"]])
+def test_a_planted_link_is_not_followed(command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    victim = tmp_path / "victim"
+    victim.mkdir()
+    (tmp_path / "reports").mkdir()
+    (tmp_path / "reports" / "simple-pendulum").symlink_to(victim)
+    done = CliRunner().invoke(main, [*command, str(PENDULUM)])
+    assert done.exit_code == 1
+    assert "is a link that leads out of reports" in done.stderr
+    assert not list(victim.iterdir())
