@@ -315,11 +315,10 @@ def _range(found: Extremes, kind: str, title: str) -> Iterator[str]:
     least = min(rows, key=lambda r: r.found.digits[FLOAT64])
     single = min(rows, key=lambda r: r.found.digits[FLOAT32])
     sizes = [r.size for r in rows]
-    yield (
-        f"{title} from {_short(min(sizes))} to {_short(max(sizes))}: "
-        f"float64 keeps at least {least.found.digits[FLOAT64]:.1f} digits (worst: {least.quantity} at {least.size:.0e}), float32 {single.found.digits[FLOAT32]:.1f} "
-        f"({single.quantity} at {single.size:.0e})."
-    )
+    worst = f"{least.found.digits[FLOAT64]:.1f} digits (worst: {least.quantity} at {least.size:.0e})"
+    coarse = f"{single.found.digits[FLOAT32]:.1f} ({single.quantity} at {single.size:.0e})"
+    places = f"{title} from {_short(min(sizes))} to {_short(max(sizes))}"
+    yield f"{places}: float64 keeps at least {worst}, float32 {coarse}."
 
 
 def _ratios(found: Extremes) -> Iterator[str]:
