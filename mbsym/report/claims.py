@@ -8,7 +8,7 @@ from itertools import groupby
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
-from mbsym.problems.claims import FACTOR, SCALED, UNDECIDED, ClaimResult, Part
+from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import Counterexample
 
 #: Differences longer than this are counted, not printed.
@@ -43,7 +43,7 @@ def claim_line(result: ClaimResult) -> ClaimLine:
         outcome += f" ({result.value})" if result.holds else f": claimed {claimed}, derived {result.value}"
     if result.digits is not None and result.digits != result.printed_digits:
         outcome += f", {result.digits} of {result.printed_digits} digits right"
-    if result.outcome == UNDECIDED or (result.remark and not result.parts):
+    if result.outcome == UNDECIDED or (result.remark and (not result.parts or result.outcome == DIFFERS)):
         outcome += f"{', ' if result.outcome == FACTOR else ': '}{result.remark}" if result.remark else ""
     return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)))
 

@@ -4,7 +4,8 @@ Three families whose stability is elementary, with random polynomials of the par
 
 * M = 1, potential energy (p x^2 + 2 q x y + r y^2)/2:  stable where p > 0 and p r - q^2 > 0, unstable where p, r or
   p r - q^2 is negative;
-* x'' + d x' + k x = 0:  asymptotically stable where d > 0 and k > 0, unstable where one of them is negative;
+* x'' + d x' + k x = 0:  asymptotically stable where d > 0 and k > 0, unstable where one of them is negative, and
+  without damping stable where k > 0;
 * a particle on a turntable, x'' - 2 w y' + (p - w^2) x = 0, y'' + 2 w x' + (r - w^2) y = 0: with K1 = p - w^2,
   K2 = r - w^2 and B = K1 + K2 + 4 w^2 the roots of mu^2 + B mu + K1 K2 are negative and simple where B, K1 K2 and
   B^2 - 4 K1 K2 are positive; a minimum where K1 and K2 are.
@@ -27,6 +28,7 @@ from mbsym.report.claims import claim_line
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 STABLE, LINEAR, UNSTABLE, BORDER = "stable", "stable in the first approximation", "unstable", "border"
+NEUTRAL = "stable, not asymptotically"
 RELATIONS: dict[str, Callable[[Fraction], bool]] = {
     ">": lambda x: x > 0,
     "<": lambda x: x < 0,
@@ -51,6 +53,8 @@ def potential(p: Fraction, q: Fraction, r: Fraction, _: Fraction) -> str:
 
 
 def damped(d: Fraction, k: Fraction, _: Fraction, __: Fraction) -> str:
+    if d == 0 and k > 0:
+        return NEUTRAL
     return STABLE if d > 0 and k > 0 else UNSTABLE if d < 0 or k < 0 else BORDER
 
 
@@ -182,17 +186,20 @@ def contradiction(
 
     result = one.result
     if result.holds and one.role == "sufficient":
-        return next((f"not sufficient at {p}" for p in points if holds(p) and truth(p) != STABLE), "")
+        return next((f"not sufficient at {p}" for p in points if holds(p) and truth(p) not in (STABLE, NEUTRAL)), "")
     if result.holds:
         if not one.role and any(same(one, other, points) for other in known):
             return ""
         if "without it the motion is unstable" in result.remark:
             return next((f"not unstable at {p}" for p in points if not alone(p) and truth(p) != UNSTABLE), "")
-        wrong = (p for p in points if not alone(p) and truth(p) in (STABLE, LINEAR))
+        stable = (STABLE, LINEAR)
+        if result.outcome == EXACT and "asymptotic" not in result.remark:
+            stable += (NEUTRAL,)
+        wrong = (p for p in points if not alone(p) and truth(p) in stable)
         return next((f"not necessary at {p}" for p in wrong), "")
     if result.refuted and result.counterexample is not None:
         point = {name: Fraction(number) for name, number in result.counterexample.at}
-        expected = (UNSTABLE,) if one.role == "sufficient" else (STABLE, LINEAR)
+        expected = (UNSTABLE,) if one.role == "sufficient" else (STABLE, LINEAR, NEUTRAL)
         contradicted = holds(point) if one.role == "sufficient" else not alone(point)
         return "" if contradicted and truth(point) in expected else f"no counterexample: {point}"
     if result.refuted:

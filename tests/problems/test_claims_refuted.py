@@ -19,6 +19,7 @@ import mbsym
 from mbsym.problems.claims import (
     BORDERS,
     DIFFERS,
+    EQUIVALENT,
     EXACT,
     FACTOR,
     FAILS,
@@ -446,3 +447,65 @@ def test_a_factor_that_may_be_infinite_is_told() -> None:
 def test_signs_under_roots_that_are_harder(ratio: str, outcome: str, where: str) -> None:
     result = judged(f"claim: coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*{ratio}", text=KEPLER)
     assert (result.outcome, result.where) == (outcome, where)
+
+
+@pytest.mark.parametrize(
+    ("claim", "outcome", "where"),
+    [
+        ("kinetic energy, equals: Io*theta_dot*sqrt(theta_dot**2)/2", EXACT, "theta_dot"),
+        ("potential energy, equals: -m*g*l*sqrt(cos(theta)**2)", EXACT, "cos(theta)"),
+        ("potential energy, equals: -m*g*l*sqrt(1 - sin(theta)**2)", EXACT, "cos(theta)"),
+        ("direction cosine, of: bob, entry: [1, 2], equals: sqrt(1 - cos(theta)**2)", NUMERICAL, "sin(theta)"),
+        ("direction cosine, of: bob, entry: [1, 2], equals: sin(atan(tan(theta)))", NUMERICAL, "cos(theta)"),
+        ("direction cosine, of: bob, entry: [1, 2], equals: sin(sqrt(theta**2))", NUMERICAL, "theta"),
+        ("angular velocity, of: bob, component: 3, equals: sqrt(theta_dot**2)", EXACT, "theta_dot"),
+        ("angular velocity, of: bob, component: 3, equals: -sqrt(theta_dot**2)", DIFFERS, ""),
+        ("equation of motion, of: theta, equals: theta_ddot + w2*sqrt(sin(theta)**2)", NUMERICAL, "sin(theta)"),
+        ("direction cosine, of: bob, entry: [1, 1], equals: sqrt(cos(theta)**2 + 1e-30)", DIFFERS, ""),
+    ],
+)
+def test_velocities_and_sines_have_signs_too(claim: str, outcome: str, where: str) -> None:
+    """True where the root is that of a positive quantity; a nutation angle may be meant, a velocity hardly."""
+    result = judged(f"claim: {claim}")
+    expected = f"for {where} > 0 (it does not for {where} < 0)" if where else ""
+    assert (result.outcome, result.where) == (outcome, expected)
+
+
+@pytest.mark.parametrize(
+    ("integral", "remark"),
+    [
+        ("sqrt(theta_dot**2)/theta_dot", "it is a constant, whatever the motion"),
+        ("sqrt(theta_dot**2) - theta_dot", "it is a constant for theta_dot > 0, whatever the motion"),
+        ("exp(theta_dot)*exp(-theta_dot) + m", "it contains no velocity"),
+    ],
+)
+def test_a_number_is_no_integral(integral: str, remark: str) -> None:
+    result = judged(f"claim: first integral, equals: {integral}")
+    assert (result.outcome, result.remark) == (FAILS, remark)
+
+
+@pytest.mark.parametrize(
+    ("claim", "outcome"),
+    [
+        ("kinetic energy, equals: T + 3*theta_dot", DIFFERS),
+        ("kinetic energy, equals: T + m", DIFFERS),
+        ("potential energy, equals: m - m*g*l*cos(theta)", EQUIVALENT),
+        ("potential energy, equals: t**2 - m*g*l*cos(theta)", EQUIVALENT),
+        ("potential energy, equals: theta_dot*theta - m*g*l*cos(theta)", DIFFERS),
+        ("force function, equals: m*g*l*cos(theta) + t*theta_dot + theta", DIFFERS),
+        ("lagrangian, equals: T + m*g*l*cos(theta) + t*theta_dot + theta", EQUIVALENT),
+    ],
+)
+def test_only_a_lagrangian_is_one_with_a_total_derivative_added(claim: str, outcome: str) -> None:
+    """dF(q, t)/dt is no kinetic energy and no potential, though the equations of motion are the same."""
+    result = judged(f"claim: {claim}")
+    assert result.outcome == outcome
+    word, said, _ = shown(f"claim: {claim}")
+    assert word == ("held" if outcome == EQUIVALENT else "refuted")
+    assert "the equations of motion are the same" in said or "by a constant" in said
+
+
+def test_a_factor_may_hold_velocities() -> None:
+    """An equation times theta' sin(theta) says the same wherever that is not zero."""
+    result = judged(EQUATION + "(theta_ddot + w2*sin(theta))*sin(theta)*theta_dot")
+    assert (result.outcome, result.remark) == (FACTOR, "where sin(theta) and theta_dot are not 0")

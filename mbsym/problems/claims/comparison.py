@@ -59,11 +59,25 @@ def examined_formula(
     if factor is not None:
         return replace(result, outcome=SCALED, factor=factor)
     if claim.kind in SUMS and _same_equations(derived, difference):
-        remark = (
-            "the equations of motion are the same" if is_moving(derived, difference) else "it differs by a constant"
-        )
-        return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
+        remark = "it differs by a constant"
+        if is_moving(derived, difference):
+            remark = "the equations of motion are the same"
+        if _allows(derived, claim, difference):
+            return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
+        remark = remark.replace("it differs by a constant", "by a constant")
+        return replace(differing(derived, result, symbols, min(difference, own, key=len)), remark=remark)
     return differing(derived, result, symbols, min(difference, own, key=len))
+
+
+def _allows(derived: Derived, claim: Claim, difference: Polynomial) -> bool:
+    """Whether the quantity is determined only up to such a difference dF(q, t)/dt.
+
+    The Lagrangian is; a force function up to a function of the time; the kinetic energy is a definite quantity.
+    """
+    if claim.kind == "kinetic energy":
+        return False
+    state = [*derived.system.coordinates, *derived.system.velocities]
+    return claim.kind == "lagrangian" or not derived.ring.dependencies(difference, state)
 
 
 def _up_to_multiple(

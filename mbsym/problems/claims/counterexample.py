@@ -292,11 +292,17 @@ def _solved(
 
 
 def rate_at_states(
-    system: System, ring: Ring, programs: Programs, rate: Polynomial, negative: Sequence[str] = ()
+    system: System,
+    ring: Ring,
+    programs: Programs,
+    rate: Polynomial,
+    negative: Sequence[str] = (),
+    positive: Sequence[str] | None = None,
 ) -> Iterator[tuple[dict[str, Fraction], Any]]:
     """(numbers by name, dI/dt as a ball) at states of t = 0; ``rate`` is dI/dt with q'' as it stands.
 
-    Coordinates are positive but for those in ``negative`` (which may hold parameters of undeclared sign, too).
+    Coordinates are positive but for those in ``negative`` (which may hold parameters of undeclared sign, too); where
+    ``positive`` ones are given, those that are neither have either sign, and angles all quadrants.
     """
     source = random.Random(SEED)
     with ctx.workprec(PRECISION):
@@ -305,6 +311,8 @@ def rate_at_states(
             for name in system.coordinates:
                 chosen[name] = Fraction(source.randint(1, 6), 4)
                 chosen[velocity_name(name)] = Fraction(source.choice((-1, 1)) * source.randint(1, 6), 2)
+                if positive is not None and name not in positive:
+                    chosen[name] *= 3 * source.choice((-1, 1))
             chosen |= {name: -abs(chosen[name]) for name in negative if name in chosen}
             try:
                 values = _state(system, chosen)
@@ -331,10 +339,11 @@ def against_constancy(
     system: System, ring: Ring, programs: Programs, rate: Polynomial, used: Container[str]
 ) -> Counterexample | None:
     """A state at which dI/dt is certainly not zero; only the numbers of ``used`` names are told."""
-    for chosen, value in rate_at_states(system, ring, programs, rate):
-        if not value.contains(0):
-            at = tuple((name, str(number)) for name, number in [*chosen.items(), ("t", 0)] if name in used)
-            return Counterexample(at, (("dI/dt", shown(value)),))
+    for positive in (None, ()):
+        for chosen, value in rate_at_states(system, ring, programs, rate, (), positive):
+            if not value.contains(0):
+                at = tuple((name, str(number)) for name, number in [*chosen.items(), ("t", 0)] if name in used)
+                return Counterexample(at, (("dI/dt", shown(value)),))
     return None
 
 

@@ -18,7 +18,16 @@ from mbsym.problems.claims.counterexample import (
     against_constancy,
     rate_at_states,
 )
-from mbsym.problems.claims.result import EXACT, FAILS, NUMERICAL, RELATIONS, ClaimResult, Derived
+from mbsym.problems.claims.result import (
+    DIFFERS,
+    EXACT,
+    FAILS,
+    NUMERICAL,
+    RELATIONS,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+)
 from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restriction, signs_under_roots
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
@@ -39,10 +48,15 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
             claimed = ring.substitute(claimed, images)
             equations = _substituted(ring, equations, images)
         if is_conserved(scene, equations, claimed):
+            constant = _constant_where(derived, claimed)
+            if constant is not None:
+                remark = f"it is a constant{constant}, whatever the motion"
+                return replace(result, outcome=FAILS, remark=remark)
             if is_proved(scene, equations, claimed):
                 return replace(result, outcome=outcome)
             found, where = _conserved_where(derived, equations, claimed)
-            return replace(result, outcome=outcome if found == EXACT else NUMERICAL, where=where)
+            if found != DIFFERS:
+                return replace(result, outcome=outcome if found == EXACT else found, where=where)
     rate = total_rate(scene, claimed)
     difference = _rate_of(derived, equations, claimed)
     if difference is None:
@@ -60,22 +74,38 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
 
 
 def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial) -> tuple[str, str]:
-    """What became of dI/dt = 0 for the signs that are not declared: EXACT or NUMERICAL, and where."""
+    """What became of dI/dt = 0 for the signs that are not declared: EXACT, NUMERICAL or DIFFERS, and where."""
     scene, ring = derived.scene, derived.ring
     found = rate_on_motion(scene, equations, claimed)
     if found is not None:
         outcome, where = decided(derived, found[0])
-        if outcome in (EXACT, NUMERICAL):
+        if outcome != UNDECIDED:
             return outcome, where
     rate = total_rate(scene, claimed)
     parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
-    _, unknown = signs_under_roots(derived, *parts, *(x.polynomial for x in equations.forcing))
+    _, under = signs_under_roots(derived, *parts, *(x.polynomial for x in equations.forcing))
+    unknown = [ring.generators[k].name for k in under if ring.generators[k].kind in ("coordinate", "parameter")]
     for pattern in combinations_of((1, -1), repeat=min(len(unknown), MOST_SIGNS)):
         negative = [name for name, sign in zip(unknown, pattern, strict=False) if sign < 0]
-        states = rate_at_states(derived.system, ring, derived.programs, rate, negative)
-        if negative and any(not value.contains(0) for _, value in states):
-            return NUMERICAL, restriction(unknown, len(unknown) == 1)
+        positive = [name for name in unknown if name not in negative]
+        states = rate_at_states(derived.system, ring, derived.programs, rate, negative, positive)
+        if any(not value.contains(0) for _, value in states):
+            return (NUMERICAL, restriction(unknown, len(unknown) == 1)) if negative else (DIFFERS, "")
     return NUMERICAL, "" if len(unknown) <= MOST_SIGNS else restriction(unknown, False)
+
+
+def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
+    """ "", or " for v > 0", where no derivative by a velocity is different from zero; None if one is.
+
+    sqrt(v**2)/v is 1 or -1, and sqrt(v**2) - v is 0 for v > 0.
+    """
+    ring = derived.ring
+    slopes = [ring.velocity_derivative(claimed, name) for name in derived.system.coordinates]
+    found = [decided(derived, slope) for slope in slopes]
+    if any(outcome not in (EXACT, NUMERICAL) for outcome, _ in found):
+        return None
+    where = next((where.partition(" (")[0] for _, where in found if where), "")
+    return f" {where}" if where else ""
 
 
 def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> Formula | None:

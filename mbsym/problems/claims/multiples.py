@@ -44,6 +44,10 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
     candidates = [(ring.one, ring.one), *((first[key], second[key]) for key in keys[:MOST_FACTORS])]
     if not claim.variable:
         candidates.append((above, below))
+        # Where the factor holds velocities, the coefficients of single products are no multiples.
+        for k in (k for k, g in enumerate(ring.generators) if g.kind == "acceleration" and below.degrees()[k] == 1):
+            if above.degrees()[k] == 1:
+                candidates.append((above.derivative(k), below.derivative(k)))
     for top, bottom in candidates:
         try:
             common = ring.common_factor(top, bottom)

@@ -80,8 +80,9 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
             return replace(result, outcome=DIFFERS)
         # Where the value itself cannot be told from zero, there is nothing that it could be compared with.
         size = 1 + abs(value) if last or claim.printed else value.abs_lower()
-        outcome = DIGITS if claim.printed else NUMERICAL
-        return replace(result, outcome=outcome) if error.rad() <= ROUNDING * size else None
+        if error.rad() > ROUNDING * size:
+            return None
+        return replace(result, printed_digits=1, digits=1) if claim.printed else replace(result, outcome=NUMERICAL)
     tolerance = arb(unit) / 2
     if _is_below(error, tolerance):
         return replace(result, printed_digits=digits, digits=digits)

@@ -5,19 +5,23 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from itertools import product as combinations_of
+from typing import Any
 
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.states import SEED
 from mbsym.problems.claims.counterexample import PRECISION
 from mbsym.problems.claims.result import DIFFERS, EXACT, NUMERICAL, UNDECIDED, Derived
 
 #: What is left of a number that is known so well, relatively, is rounding.
 ROUNDING = arb(2) ** -60
-#: Names of undeclared sign under roots for which both signs are tried, and points with each.
-MOST_SIGNS, POINTS = 3, 4
+#: Quantities of undeclared sign under roots for which both signs are tried, points with each, and attempts per point.
+MOST_SIGNS, POINTS, ATTEMPTS = 4, 8, 40
+#: What may stand under a root and have either sign.
+_SIGNED = ("coordinate", "velocity", "acceleration", "time", "prescribed", "parameter", "sine", "cosine")
 
 
 def decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
@@ -36,15 +40,25 @@ def decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
     known, unknown = signs_under_roots(derived, numerator)
     tried = unknown[:MOST_SIGNS]
     answers = {
-        pattern: _decided_for(ring, numerator, known | dict(zip(tried, pattern, strict=True)))
+        pattern: _decided_for(derived, numerator, known | dict(zip(tried, pattern, strict=True)))
         for pattern in combinations_of((1, -1), repeat=len(tried))
     }
-    found, *others = answers.values()
+    found = answers[(1,) * len(tried)] or UNDECIDED
     if found not in (EXACT, NUMERICAL):
         return found, ""
-    if all(other in (EXACT, NUMERICAL) for other in others) and tried == unknown:
+    if all(other in (EXACT, NUMERICAL, None) for other in answers.values()) and tried == unknown:
         return (NUMERICAL if NUMERICAL in answers.values() else EXACT), ""
-    return found, restriction(unknown, all(other == DIFFERS for other in others) and len(unknown) == 1)
+    matters = [k for k, _ in enumerate(tried) if any(answers[p] != answers[_flipped(p, k)] for p in answers)]
+    names = [_name(ring, tried[k]) for k in matters] + [_name(ring, k) for k in unknown[MOST_SIGNS:]]
+    return found, restriction(names, len(names) == 1 and DIFFERS in answers.values())
+
+
+def _flipped(pattern: tuple[int, ...], place: int) -> tuple[int, ...]:
+    return (*pattern[:place], -pattern[place], *pattern[place + 1 :])
+
+
+def _name(ring: Ring, index: int) -> str:
+    return str(Formula(ring, ring.context.gen(index)))
 
 
 def restriction(unknown: Sequence[str], refuted: bool) -> str:
@@ -54,10 +68,12 @@ def restriction(unknown: Sequence[str], refuted: bool) -> str:
     return f"for {positive} (it need not with other signs)"
 
 
-def signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[str, int], list[str]]:
-    """Declared negative names (with -1), and the names of undeclared sign, under the roots that occur."""
+def signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[int, int], list[int]]:
+    """Generators of declared sign (+1, -1), and those under the roots that occur whose sign is open.
+
+    Under a root the sine of an angle may hide in its cosine: sqrt(1 - cos(x)**2).
+    """
     ring, system = derived.ring, derived.system
-    signs = {parameter.name: parameter.sign for parameter in system.parameters}
     under: set[int] = set()
     pending = [(x, False) for x in values]
     seen: set[tuple[int, bool]] = set()
@@ -70,16 +86,26 @@ def signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[str, 
             seen.add((k, below))
             if k < ring.spare and g.argument is not None:
                 pending.append((g.argument, below or g.kind == "root"))
-            elif below and g.kind in ("coordinate", "parameter") and g.name != "pi":
+            if below and g.kind in _SIGNED and g.name != "pi":
                 under.add(k)
-    found = [ring.generators[k].name for k in sorted(under)]
-    known = {p.name: -1 for p in system.parameters if p.sign in ("negative", "nonpositive")}
-    unknown = [name for name in found if signs.get(name) not in ("positive", "nonnegative") and name not in known]
-    return known, unknown
+                if g.kind in ("sine", "cosine") and g.argument is None:
+                    under |= {ring.index(kind, g.name) for kind in ("sine", "cosine")}
+    known = {}
+    for parameter in system.parameters:
+        index = ring.index("parameter", parameter.name)
+        if parameter.sign in ("positive", "nonnegative"):
+            known[index] = 1
+        elif parameter.sign in ("negative", "nonpositive"):
+            known[index] = -1
+    return known, [k for k in sorted(under) if k not in known]
 
 
-def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
-    """Whether x vanishes where the named quantities have these signs, and the others are positive."""
+def _decided_for(derived: Derived, x: Polynomial, signs: Mapping[int, int]) -> str | None:
+    """Whether x vanishes where these generators have these signs; None where there is no such point.
+
+    All others take both signs, and angles all quadrants.
+    """
+    ring = derived.ring
     try:
         opened = _opened_roots(ring, x, signs)
         if ring.is_zero(opened):
@@ -87,10 +113,13 @@ def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
     except Failure:
         opened = x
     source = random.Random(SEED)
-    finite, narrow = 0, True
+    finite, narrow, found = 0, True, 0
     with ctx.workprec(PRECISION):
-        for _ in range(4 * POINTS):
-            values = {name: signs.get(name, 1) * fmpq(source.randint(1, 99), 64) for name in ring.names()}
+        for _ in range(POINTS * ATTEMPTS):
+            values = _point(ring, signs, source)
+            if not _has_signs(ring, signs, values):
+                continue
+            found += 1
             value = ring.evaluate(opened, values)
             if not value.is_finite():
                 continue
@@ -99,10 +128,26 @@ def _decided_for(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> str:
             finite, narrow = finite + 1, narrow and value.rad() < ROUNDING
             if finite == POINTS:
                 return NUMERICAL if narrow else UNDECIDED
-    return UNDECIDED
+    return UNDECIDED if found else None
 
 
-def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> Polynomial:
+def _point(ring: Ring, signs: Mapping[int, int], source: random.Random) -> dict[str, Any]:
+    """Numbers for all names: of the given signs, else of either; up to more than a full turn."""
+    values = {}
+    plain = {ring.generators[k].name: sign for k, sign in signs.items() if ring.generators[k].kind == "parameter"}
+    for name in ring.names():
+        number = fmpq(source.randint(1, 99), source.choice((64, 16)))
+        values[name] = number * plain.get(name, source.choice((1, -1)))
+    return values
+
+
+def _has_signs(ring: Ring, signs: Mapping[int, int], values: Mapping[str, Any]) -> bool:
+    """Whether the generators have these signs at the point."""
+    open_ = ((k, sign) for k, sign in signs.items() if ring.generators[k].kind != "parameter")
+    return all(ring.evaluate(ring.context.gen(k), values) * sign > 0 for k, sign in open_)
+
+
+def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[int, int]) -> Polynomial:
     """x with sqrt(r^2 p) = +-r sqrt(p) for every root, r of known sign."""
     images, degrees = {}, x.degrees()
     for k, g in enumerate(ring.generators[: ring.spare]):
@@ -111,9 +156,9 @@ def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> Polyno
         content, factors = ring.factored(g.argument)
         outside, inside = ring.one, ring.context.constant(content)
         for factor, exponent in factors:
-            name = _plain_name(ring, factor)
-            if name in signs:
-                outside = ring.times(outside, (factor * signs[name]) ** (exponent // 2))
+            index = _generator(factor)
+            if index in signs:
+                outside = ring.times(outside, (factor * signs[index]) ** (exponent // 2))
                 exponent %= 2
             inside = ring.times(inside, factor**exponent)
         if not outside.is_one():
@@ -121,9 +166,8 @@ def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[str, int]) -> Polyno
     return ring.substitute(x, images) if images else x
 
 
-def _plain_name(ring: Ring, x: Polynomial) -> str:
-    """The name of a coordinate or parameter that x is a multiple of, or ""."""
-    if len(x) != 1 or sum(map(int, x.monomial(0))) != 1:
-        return ""
-    g = ring.generators[[int(e) for e in x.monomial(0)].index(1)]
-    return g.name if g.kind in ("coordinate", "parameter") else ""
+def _generator(x: Polynomial) -> int:
+    """The generator that x is a positive multiple of, or -1."""
+    if len(x) != 1 or sum(map(int, x.monomial(0))) != 1 or not x.coefficient(0) > 0:
+        return -1
+    return [int(e) for e in x.monomial(0)].index(1)
