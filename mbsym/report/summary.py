@@ -123,7 +123,8 @@ def _is_zero(matrix: Matrix) -> bool:
 
 def _stability(found: Stability, presumed: str) -> Iterator[str]:
     for part in found.subsystems:
-        items = list(statements(part.ring, part.theory.requirements))
+        # Of a motion that is proved to be stable, conditions of something stronger would be misread.
+        items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word is Word.DEPENDS and items:
             necessary = part.theory.method is Method.EVEN and not part.theory.potential

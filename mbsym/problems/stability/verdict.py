@@ -145,6 +145,11 @@ class Verdict:
         return any(reason.code is code for reason in self.reasons)
 
     @property
+    def stable(self) -> bool:
+        """Whether stability of the motion itself is proved, be it asymptotic, or but for drift or rotation."""
+        return self.flawed <= _SOUND and not {Ground.DECAYS, Ground.ENERGY}.isdisjoint(self.laid)
+
+    @property
     def coordinates_singular(self) -> bool:
         """Whether nothing is claimed because the mass matrix is singular here."""
         return Flaw.SINGULAR in self.flawed
