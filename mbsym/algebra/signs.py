@@ -33,7 +33,7 @@ from typing import Any
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]
@@ -90,8 +90,10 @@ def _power(base: SignSet, exponent: int) -> SignSet:
     return frozenset(s**exponent for s in base)
 
 
-class ContradictionError(ValueError):
+class ContradictionError(Failure, ValueError):
     """The assumptions exclude every value of the parameters (or the evidence is in conflict)."""
+
+    code = "contradictory-assumptions"
 
 
 @dataclass(frozen=True)
@@ -229,7 +231,7 @@ class Signs:
             allowed = RELATIONS[relation]
             if polynomial.is_constant():
                 if _sign(polynomial.leading_coefficient() if polynomial != 0 else 0) not in allowed:
-                    raise ContradictionError(f"the assumption {polynomial} {relation} 0 is false")
+                    raise ContradictionError("an assumption about the parameters is false whatever their values")
                 continue
             unit, powers = _factored(polynomial)
             rest, direction = self.context.constant(1), _sign(unit)
@@ -477,7 +479,7 @@ class Signs:
         word = "positive"
         if lower is not None and upper is not None:
             if lower[0] > upper[0] or (lower[0] == upper[0] and (lower[1] or upper[1])):
-                raise ContradictionError(f"no value is left for {self.context.names()[generator]}")
+                raise ContradictionError("the assumptions leave no value for a parameter: they contradict each other")
             numerator, denominator = lower[0] + upper[0] * u, 1 + u
             ends = tuple(value for value, strict in (lower, upper) if not strict)
         elif lower is not None:

@@ -17,6 +17,8 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.expressions.tree import Expression, names
+from mbsym.expressions.tree import text as spelled
+from mbsym.model.assumptions import broken
 from mbsym.model.comparison import has_sign
 from mbsym.model.system import InitialValue, System, velocity_name
 
@@ -149,7 +151,7 @@ class _Numbers:
 
 
 def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _Numbers) -> None:
-    """Values given, and those that follow from relations; contradictions between the two, and to declared signs."""
+    """Values given, and those that follow from relations; contradictions between the two, to signs and assumptions."""
     given = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
     typed = {name for name, value in given.items() if value is not None}
     # A relation overrules the number in the file where what it is made of was overridden; else they must agree.
@@ -187,6 +189,21 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             hint = f"if its value alone says so, {parameter.name}: {{real: true, value: ...}} allows any sign"
             wrong = Contradiction("sign-contradiction", parameter.name, text, hint if inferred else None)
             numbers.contradictions.append(wrong)
+    for assumption, left, right in broken(system, numbers.known, AGREEMENT, _evaluated):
+        used = names(assumption.left) | names(assumption.right)
+        name = next((one for one in overrides if one in used), min(used, default=""))
+        written = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
+        told = f"the values break the assumption {written}: {float(left):.12g} against {float(right):.12g}"
+        numbers.contradictions.append(Contradiction("broken-assumption", name, told))
+
+
+def _evaluated(expression: Expression, known: Mapping[str, Fraction]) -> Fraction | None:
+    if not names(expression) <= known.keys() | {"pi"}:
+        return None
+    try:
+        return exact(expression, known)
+    except Failure:
+        return None
 
 
 def _initial(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:

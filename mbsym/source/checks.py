@@ -41,7 +41,7 @@ from mbsym.model.admissibility import (
     surely_negative,
     symbolic_violation,
 )
-from mbsym.model.comparison import holds
+from mbsym.model.assumptions import broken, contradictory
 from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
@@ -53,6 +53,9 @@ _FLOATS = Fraction(1, 10**12)
 
 #: Directions are the same to so much; angles such as 1.5708 are decimals.
 _PARALLEL = 1e-9
+
+#: Roots and sines of the given values are compared in floats: what differs by more is different.
+_ROUNDED_ROOTS = Fraction(1, 10**9)
 
 #: Values that differ by less than one part in so many are taken for rounded ones.
 _ROUNDED = 1_000
@@ -331,14 +334,24 @@ def _check_relation_values(system: System, reading: Reading) -> None:
 
 
 def _check_assumption_values(system: System, reading: Reading) -> None:
+    """The given values keep every assumption, and some values can keep them all."""
+    roots = {one.name: one.value for one in system.parameters if one.value is not None}
+
+    def about(expression: Expression, known: Mapping[str, Fraction]) -> Fraction | None:
+        value = in_floats(expression, roots | {name: number(value) for name, value in known.items()})
+        return None if value is None else Fraction(value)
+
     values = known_values(system)
-    for notation in system.notation:
-        value = number_of(notation.value, values)
-        if value is not None:
-            values[notation.name] = value
-    for assumption in system.assumptions:
-        left, right = number_of(assumption.left, values), number_of(assumption.right, values)
-        if left is None or right is None or holds(left - right, assumption.relation):
+    exactly = list(broken(system, values))
+    rounded = [found for found in broken(system, values, _ROUNDED_ROOTS, about) if found not in exactly]
+    seen = set()
+    for assumption, left, right in (*exactly, *rounded):
+        if assumption in seen:
             continue
+        seen.add(assumption)
         message = f"the given values break this assumption: {decimal(left)} {assumption.relation} {decimal(right)}"
-        reading.complaints.warning("broken-assumption", message, assumption.span)
+        reading.error("broken-assumption", message, assumption.span, "change the values, or leave the assumption out")
+    if (against := contradictory(system)) is not None:
+        message = "no values of the parameters keep this assumption and those before it"
+        hint = "declared signs and relations count as well"
+        reading.error("contradictory-assumptions", message, against.span, hint)

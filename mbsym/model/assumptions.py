@@ -1,0 +1,156 @@
+"""Assumptions about parameters against numbers, and against each other.
+
+An assumption that the given values break, or that no values can keep, makes every sentence that rests on it void.
+Linear ones (a > 1, a + b < 2 c) are decided completely, together with declared signs and linear relations, by
+Fourier-Motzkin elimination in exact numbers; what is not linear is left to those who know more about signs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import Expression
+from mbsym.model.admissibility import number_of
+from mbsym.model.comparison import RELATION_OF_SIGN, holds
+from mbsym.model.system import Assumption, System
+
+#: More inequalities than this are not eliminated: nothing is said then.
+MOST_INEQUALITIES = 400
+#: pi stands in assumptions as a number between these.
+_PI = (Fraction(314159, 100000), Fraction(314160, 100000))
+
+
+#: The value of an expression at known numbers, or None where it has none or is not known.
+Evaluate = Callable[[Expression, Mapping[str, Fraction]], Fraction | None]
+
+
+def broken(
+    system: System,
+    values: Mapping[str, Fraction],
+    tolerance: Fraction = Fraction(0),
+    evaluate: Evaluate = number_of,
+) -> Iterator[tuple[Assumption, Fraction, Fraction]]:
+    """(assumption, left, right) of every assumption that is false at the values; where one has none, nothing is said.
+
+    ``evaluate`` may round: sides that differ by less than ``tolerance``, relatively, are not told apart then.
+    """
+    known = dict(values)
+    for notation in system.notation:
+        value = evaluate(notation.value, known)
+        if value is not None:
+            known[notation.name] = value
+    for assumption in system.assumptions:
+        left, right = evaluate(assumption.left, known), evaluate(assumption.right, known)
+        if left is None or right is None or holds(left - right, assumption.relation):
+            continue
+        if not tolerance or abs(left - right) > tolerance * max(abs(left), abs(right)):
+            yield assumption, left, right
+
+
+def contradictory(system: System) -> Assumption | None:
+    """The first assumption that no values keep together with those before it, declared signs and relations.
+
+    None where there is none, or none is proved.
+    """
+    known = [*_declared(system), *_equations(system)]
+    for assumption in system.assumptions:
+        known += _inequalities(assumption.left, assumption.relation, assumption.right)
+        if _impossible(known):
+            return assumption
+    return None
+
+
+@dataclass(frozen=True)
+class _Inequality:
+    """sum coefficient * name + constant > 0, or >= 0 where it is not ``strict``."""
+
+    coefficients: tuple[tuple[str, Fraction], ...]
+    constant: Fraction
+    strict: bool
+
+    def of(self, name: str) -> Fraction:
+        return dict(self.coefficients).get(name, Fraction(0))
+
+    @property
+    def false(self) -> bool:
+        """Whether it is a false statement about numbers."""
+        return not self.coefficients and (self.constant < 0 or (self.strict and self.constant == 0))
+
+
+def _declared(system: System) -> list[_Inequality]:
+    found = [
+        _Inequality((("pi", Fraction(1)),), -_PI[0], True),
+        _Inequality((("pi", Fraction(-1)),), _PI[1], True),
+    ]
+    for parameter in system.parameters:
+        relation = RELATION_OF_SIGN.get(parameter.sign, "!=")
+        found += _of_form(LinearForm(((parameter.name, Fraction(1)),)), relation)
+    return found
+
+
+def _equations(system: System) -> list[_Inequality]:
+    """Relations and notation are equations: two inequalities each."""
+    found = []
+    definitions = [(one.name, one.value) for one in system.relations]
+    definitions += [(one.name, one.value) for one in system.notation]
+    for name, definition in definitions:
+        value = linear_form(definition)
+        if value is not None:
+            gap = LinearForm(((name, Fraction(1)),)) + value.scaled(Fraction(-1))
+            found += [*_of_form(gap, ">="), *_of_form(gap, "<=")]
+    return found
+
+
+def _inequalities(left: Expression, relation: str, right: Expression) -> list[_Inequality]:
+    first, second = linear_form(left), linear_form(right)
+    return [] if first is None or second is None else _of_form(first + second.scaled(Fraction(-1)), relation)
+
+
+def _of_form(gap: LinearForm, relation: str) -> list[_Inequality]:
+    """``gap relation 0``; != says nothing here unless the gap is a number."""
+    if relation == "!=":
+        return [_Inequality((), Fraction(0), True)] if gap == LinearForm() else []
+    if relation in ("<", "<="):
+        gap = gap.scaled(Fraction(-1))
+    coefficients = dict(gap.coefficients) | ({"pi": gap.turns} if gap.turns else {})
+    return [_Inequality(tuple(sorted(coefficients.items())), gap.constant, relation in ("<", ">"))]
+
+
+def _impossible(given: list[_Inequality]) -> bool:
+    """Whether no numbers fulfil all of them; False where it would take too long to know."""
+    known = set(given)
+    while True:
+        if any(one.false for one in known):
+            return True
+        present = {name for one in known for name, _ in one.coefficients}
+        if not present:
+            return False
+        name = min(present, key=lambda x: (_growth(known, x), x))
+        above = [one for one in known if one.of(name) > 0]
+        below = [one for one in known if one.of(name) < 0]
+        known = {one for one in known if one.of(name) == 0}
+        known |= {_without(name, one, other) for one in above for other in below}
+        if len(known) > MOST_INEQUALITIES:
+            return False
+
+
+def _growth(known: set[_Inequality], name: str) -> int:
+    positive = sum(one.of(name) > 0 for one in known)
+    negative = sum(one.of(name) < 0 for one in known)
+    return positive * negative - positive - negative
+
+
+def _without(name: str, lower: _Inequality, upper: _Inequality) -> _Inequality:
+    """The sum of the two in which a name drops out: positive in ``lower``, negative in ``upper``."""
+    first, second = -upper.of(name), lower.of(name)
+    total = {one: first * value for one, value in lower.coefficients}
+    for one, value in upper.coefficients:
+        total[one] = total.get(one, Fraction(0)) + second * value
+    kept = tuple(sorted((one, value) for one, value in total.items() if value))
+    constant = first * lower.constant + second * upper.constant
+    scale = abs(kept[0][1]) if kept else Fraction(1)
+    kept = tuple((one, value / scale) for one, value in kept)
+    return _Inequality(kept, constant / scale, lower.strict or upper.strict)
