@@ -3,9 +3,10 @@
 A polynomial in lambda (or in mu = lambda^2) is a tuple of coefficients from low to high powers; a coefficient is an
 ``fmpq_mpoly`` in the parameters, all of one context.  Matrices are tuples of rows.
 
-All determinants here are sums of products (minors of the first rows, each computed once), without division: with
-symbolic, mostly sparse entries that is faster than elimination, whose intermediate entries swell.  The work is
-counted beforehand, and ``TooLargeError`` is raised instead of running for minutes.
+Determinants are sums of products (minors of the first rows, each computed once), without division: with symbolic,
+mostly sparse entries that is faster than elimination, whose intermediate entries swell.  Large matrices of numbers, or
+in one generator, are eliminated without fractions.  The work is counted beforehand, and ``TooLargeError`` is raised
+instead of running for minutes.
 """
 
 from __future__ import annotations
@@ -23,27 +24,45 @@ Matrix = Sequence[Sequence[Polynomial]]
 #: Products of terms that one determinant may cost (about a second): what is larger nobody reads.
 BUDGET = 4_000_000
 
+#: What an operation costs besides its terms, in products of terms.
+OVERHEAD = 15
+#: Larger matrices of numbers, or in one generator, are eliminated; expansion looks at up to 2^n sets of columns.
+MOST_EXPANDED = 8
+
 #: Terms of a characteristic polynomial that is still factored and judged in symbols.
 LONGEST = 12_000
 
 
 def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ...]:
-    """The determinants of the upper left 1x1, 2x2, ..., n x n blocks.  Raises ValueError unless square, n >= 1."""
+    """The determinants of the upper left 1x1, 2x2, ..., n x n blocks.
+
+    Raises ValueError unless square, n >= 1; TooLargeError where it would take more than ``budget`` products of terms.
+    """
     n = len(matrix)
     if n == 0 or any(len(row) != n for row in matrix):
         raise ValueError("a square matrix with at least one row is needed")
-    zero = matrix[0][0] * 0
+    if n > MOST_EXPANDED and _generators(matrix) <= 1:
+        found = _eliminated(matrix, budget)
+        if found is not None:
+            return found
+    return _expanded(matrix, budget)
+
+
+def _expanded(matrix: Matrix, budget: int) -> tuple[Polynomial, ...]:
+    """By expansion along the rows: without division, and zeros cost nothing."""
+    n, zero = len(matrix), matrix[0][0] * 0
     # minors[columns] = minor of the rows so far with this set of columns (a bit mask); zeros are left out.
     minors: dict[int, Polynomial] = {0: zero + 1}
     result, spent = [], 0
     for size, row in enumerate(matrix, start=1):
         expanded: dict[int, Polynomial] = {}
         for columns, minor in minors.items():
+            words = _words(minor)
             for j, entry in enumerate(row):
                 bit = 1 << j
                 if columns & bit or entry == 0:
                     continue
-                spent += len(minor) * len(entry)
+                spent += OVERHEAD + len(minor) * len(entry) * words
                 if spent > budget:
                     raise TooLargeError(f"a determinant of order {n} with too many terms")
                 # Expansion along the last row: the sign counts the chosen columns to the right of j.
@@ -52,6 +71,39 @@ def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ..
         minors = {columns: minor for columns, minor in expanded.items() if minor != 0}
         result.append(minors.get((1 << size) - 1, zero))
     return tuple(result)
+
+
+def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
+    """By elimination without fractions (Bareiss): n^3/3 exact divisions; None where a leading minor vanishes."""
+    n = len(matrix)
+    rows = [list(row) for row in matrix]
+    previous, spent = matrix[0][0] * 0 + 1, 0
+    for k in range(n):
+        pivot = rows[k][k]
+        if pivot == 0:
+            return None
+        for i in range(k + 1, n):
+            for j in range(k + 1, n):
+                a, b, c = rows[i][j], rows[i][k], rows[k][j]
+                spent += OVERHEAD + (len(a) * len(pivot) + len(b) * len(c)) * _words(pivot)
+                if spent > budget:
+                    raise TooLargeError(f"a determinant of order {n} with too many terms")
+                rows[i][j] = (a * pivot - b * c) / previous
+        previous = pivot
+    return tuple(rows[k][k] for k in range(n))
+
+
+def _generators(matrix: Matrix) -> int:
+    """How many generators the entries contain."""
+    return len({k for row in matrix for x in row for k, degree in enumerate(x.degrees()) if degree > 0})
+
+
+def _words(x: Polynomial) -> int:
+    """The length of a coefficient, one of many, in units of some machine words."""
+    if x == 0:
+        return 1
+    number = x.leading_coefficient()
+    return 1 + (int(number.p).bit_length() + int(number.q).bit_length()) // 256
 
 
 def determinant(matrix: Matrix, budget: int = BUDGET) -> Polynomial:
