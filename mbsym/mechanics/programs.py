@@ -20,6 +20,7 @@ from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.coasting import coasting, forcing
 from mbsym.mechanics.composite import mass_matrix
@@ -27,7 +28,7 @@ from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.oracle import State
-from mbsym.mechanics.variables import program_environment
+from mbsym.mechanics.variables import expressions, program_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 
@@ -81,14 +82,24 @@ def momenta(found: Programs, system: System) -> tuple[Node, ...]:
     return _lagrangian_gradient(found, [velocity_name(name) for name in system.coordinates])
 
 
+def generalized_energy(found: Programs, system: System) -> Node:
+    """h = q'.dL/dq' - L = T2 - T0 - U, Jacobi's; ``found.energy`` itself where nothing moves as prescribed."""
+    timely = {item.name for item in system.prescribed} | {"t"}
+    if not any(timely & names(expression) for expression in expressions(system)):
+        return found.energy
+    velocities = (found.environment[velocity_name(name)] for name in system.coordinates)
+    products = (rate * momentum for rate, momentum in zip(velocities, momenta(found, system), strict=True))
+    return sum(products, start=found.program.zero) - found.kinetic_energy - found.force_function
+
+
 def momentum_rates(found: Programs, system: System) -> tuple[Node, ...]:
     """dL/dq_i: what the momenta's rates are where no force lacks a force function."""
     return _lagrangian_gradient(found, system.coordinates)
 
 
-def _lagrangian_gradient(found: Programs, names: Sequence[str]) -> tuple[Node, ...]:
+def _lagrangian_gradient(found: Programs, variables: Sequence[str]) -> tuple[Node, ...]:
     lagrangian = found.kinetic_energy + found.force_function
-    return gradient(found.program, lagrangian, [found.environment[name] for name in names])
+    return gradient(found.program, lagrangian, [found.environment[name] for name in variables])
 
 
 def accelerated(system: System, state: State, found: Programs) -> State:

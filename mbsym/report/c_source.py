@@ -1,7 +1,8 @@
 """``model.c`` and ``model.h``: the equations as portable C99, from the straight-line program.
 
-Mass matrix, forcing, accelerations by factorisation (never an inverse), right-hand side, energy, and the Jacobian of
-the right-hand side by differentiating the program.
+Mass matrix, forcing, accelerations by factorisation (never an inverse), right-hand side, energy, generalised energy,
+and the Jacobian of the right-hand side by differentiating the program.  What divides by pivots returns a status: not
+zero where a result is not a finite number, as where the mass matrix is singular.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect
 from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
+from mbsym.mechanics.programs import generalized_energy
 from mbsym.model.system import velocity_name
 from mbsym.numerics.scenario import exact
 from mbsym.report.environment import rendered
@@ -46,10 +48,12 @@ _WORDS = """
     j0 j1 jn y0 y1 yn main
     math_errhandling MATH_ERRNO MATH_ERREXCEPT FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FLT_EVAL_METHOD
     SNAN SNANF SNANL FP_LLOGB0 FP_LLOGBNAN X_TLOSS
-    t q qd qdd x xd p M f J MODEL_H
+    t q qd qdd x xd p M f J MODEL_H MODEL_OK MODEL_NOT_FINITE status slopes
 """
 RESERVED = frozenset(_WORDS.split())
 
+#: What has a body of its own; the generalised energy has none where it is the energy.
+FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian")
 #: A Jacobian that takes about more operations than this is left out.
 LARGEST_JACOBIAN = 100_000
 
@@ -93,12 +97,15 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         _KNOWN[analysis] = _solved(analysis) if code else _Solved(None, "", None, "")
     known = _KNOWN[analysis]
     solved, slopes = known.forward, known.slopes
-    functions: dict[str, Function | None] = dict.fromkeys(("mass", "forcing", "energy", "accelerations", "jacobian"))
+    functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []
     if bodies and code:
         functions["mass"] = writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper])
         functions["forcing"] = writer.function(code.program, code.forcing)
         functions["energy"] = writer.function(code.program, [code.energy])
+        generalized = generalized_energy(code, system)
+        if generalized is not code.energy:
+            functions["generalized"] = writer.function(code.program, [generalized])
     if bodies and solved:
         functions["accelerations"] = writer.function(solved.program, solved.accelerations)
     if slopes:

@@ -16,6 +16,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.program import Program
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 RESERVED = {
     *keyword.kwlist, *dir(builtins), "np", "Mapping", "q", "qd", "p", "t", "x", "M", "D", "G", "K", "N", "f", "n",
     "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
-    "forcing", "rhs", "energy", "linear_matrices",
+    "forcing", "rhs", "energy", "generalized_energy", "linear_matrices",
 }  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
@@ -68,9 +69,18 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
         forcing=code and writer.function(code.program, code.forcing),
         energy=code and writer.function(code.program, [code.energy]),
+        generalized=_generalized(writer, code, system),
         linear=matrices,
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
+
+
+def _generalized(writer: _Module, code: Programs | None, system: System) -> Function | None:
+    """The code of T2 - T0 - U, where that is another quantity than T - U."""
+    if code is None:
+        return None
+    node = generalized_energy(code, system)
+    return None if node is code.energy else writer.function(code.program, [node])
 
 
 def plain(words: str) -> str:
