@@ -58,11 +58,11 @@ LINE = [
     one("spring", SPRING, "stable", lambda t, x, v: -x),
     one("negative spring", potential("-x**2/2"), "unstable", lambda t, x, v: x),
     # a strict minimum of the potential (Lagrange-Dirichlet), whatever its order
-    one("quartic well", potential("x**4/4"), "stable", lambda t, x, v: -(x**3), decided=False),
-    one("sextic well", potential("x**6/6"), "stable", lambda t, x, v: -(x**5), decided=False),
+    one("quartic well", potential("x**4/4"), "stable", lambda t, x, v: -(x**3)),
+    one("sextic well", potential("x**6/6"), "stable", lambda t, x, v: -(x**5)),
     # one degree of freedom, no minimum: the energy integral solves it, the motion leaves
-    one("quartic hill", potential("-x**4/4"), "unstable, critical", lambda t, x, v: x**3, decided=False),
-    one("cubic slope", potential("x**3/3"), "unstable, critical", lambda t, x, v: -(x**2), decided=False),
+    one("quartic hill", potential("-x**4/4"), "unstable, critical", lambda t, x, v: x**3),
+    one("cubic slope", potential("x**3/3"), "unstable, critical", lambda t, x, v: -(x**2)),
     one("spring with a cubic force", potential("x**2/2 - x**4/4"), "stable", lambda t, x, v: x**3 - x),
     # energy falls, and nothing but rest keeps it
     one("damped spring", SPRING + rayleigh("x_dot**2/2"), "asymptotic", lambda t, x, v: -x - v),
@@ -73,7 +73,7 @@ LINE = [
     one("cubic push", SPRING + rayleigh("-x_dot**4/4"), "unstable, critical", lambda t, x, v: -x + v**3, decided=False),
     one("push alone", rayleigh("-x_dot**4/4"), "unstable, critical", lambda t, x, v: v**3, decided=False),
     # x' is reduced by friction alone, x stays where it comes to rest: stable, not asymptotically
-    one("friction alone", rayleigh("x_dot**2/2"), "asymptotic, displaced", lambda t, x, v: -v, decided=False),
+    one("friction alone", rayleigh("x_dot**2/2"), "asymptotic, displaced", lambda t, x, v: -v),
     one("van der Pol", SPRING + force("(1 - x**2)*x_dot"), "unstable", lambda t, x, v: -x + (1 - x**2) * v),
     one("van der Pol turned", SPRING + force("-(1 - x**2)*x_dot"), "asymptotic", lambda t, x, v: -x - (1 - x**2) * v),
     # E' = -x^2 x'^2: stable, and rest alone stays: asymptotic, beyond the first approximation
@@ -125,7 +125,7 @@ PENDULUMS = [
              lambda t, q, v: 0.5 - np.sin(q), rests=[[PI / 6], [5 * PI / 6]]),
     # torque 1: the two rests meet at pi/2, an inflexion of the potential
     pendulum("pendulum at its last torque", GRAVITY + '  - potential: "-q"\n', "pi/2", "unstable, critical",
-             lambda t, q, v: 1 - np.sin(q), decided=False),
+             lambda t, q, v: 1 - np.sin(q)),
     # upright on a torsional spring k: V = k q^2/2 + cos q
     pendulum("upright, strong spring", '  - uniform gravity: {vector: [0, 1, 0]}\n  - potential: "q**2"\n', "0",
              "stable", lambda t, q, v: np.sin(q) - 2 * q, rests=[[0.0]]),
@@ -134,7 +134,7 @@ PENDULUMS = [
              rests=[[0.0], [1.895494267033981], [-1.895494267033981]]),
     # k = 1: V = 1 + q^4/24 + ...: a strict minimum
     pendulum("upright, just held", '  - uniform gravity: {vector: [0, 1, 0]}\n  - potential: "q**2/2"\n', "0", "stable",
-             lambda t, q, v: np.sin(q) - q, decided=False, rests=[[0.0]]),
+             lambda t, q, v: np.sin(q) - q, rests=[[0.0]]),
 ]  # fmt: skip
 
 
@@ -165,7 +165,7 @@ HOOPS = [
     hoop("2", "0", "unstable", _ABOVE),
     hoop("2", "pi", "unstable", _ABOVE),
     # w = 1: the effective potential -cos q - sin^2 q/2 = const + q^4/8 + ...
-    hoop("1", "0", "stable", _BELOW, decided=False),
+    hoop("1", "0", "stable", _BELOW),
 ]
 
 
@@ -203,13 +203,13 @@ PLANES = [
           lambda t, q, v: -q - v + 2 * np.array([-q[1], q[0]])),
     # one direction is damped, the other not: energy falls, but y swings on
     plane("half damped", potential("(x**2 + y**2)/2") + rayleigh("x_dot**2/2"), "stable",
-          lambda t, q, v: -q - np.array([v[0], 0]), decided=False),
+          lambda t, q, v: -q - np.array([v[0], 0])),
     # the damped direction is coupled to the other one: nothing swings on
     plane("pervasively damped", potential("x**2 + y**2 + x*y") + rayleigh("x_dot**2/2"), "asymptotic",
           lambda t, q, v: -np.array([2 * q[0] + q[1], 2 * q[1] + q[0]]) - np.array([v[0], 0])),
     # both directions equal: the combination x = y swings without touching the damper between them
     plane("equal masses, damper between", potential("(x**2 + y**2)/2") + rayleigh("(x_dot - y_dot)**2/2"), "stable",
-          lambda t, q, v: -q - np.array([v[0] - v[1], v[1] - v[0]]), decided=False),
+          lambda t, q, v: -q - np.array([v[0] - v[1], v[1] - v[0]])),
     # internal friction of a shaft that turns faster (2) than its frequency (1), cubic: it pushes the whirl
     plane("cubic friction in a fast shaft",
           potential("(x**2 + y**2)/2") + rayleigh("((x_dot + 2*y)**2 + (y_dot - 2*x)**2)**2/4"), "unstable, critical",
@@ -222,7 +222,7 @@ PLANES = [
           lambda t, q, v: -q - np.array([v[0] + q[1] / 2, v[1] - q[0] / 2])),
     # a minimum at which K is singular in y
     plane("trough with a quartic floor", potential("x**2/2 + y**4/4"), "stable",
-          lambda t, q, v: -np.array([q[0], q[1]**3]), decided=False),
+          lambda t, q, v: -np.array([q[0], q[1]**3])),
     plane("trough with a quartic crest", potential("x**2/2 - y**4/4"), "unstable, critical", decided=False),
     # a monkey saddle: no minimum
     plane("monkey saddle", potential("x**3/3 - x*y**2"), "unstable, critical", decided=False),
@@ -239,7 +239,7 @@ def top(spin: str, nature: str, decided: bool = True) -> Known:
     return Known(f"sleeping top {spin}", text, nature, decided)
 
 
-def rigid(moments: str, nature: str, decided: bool = False) -> Known:
+def rigid(moments: str, nature: str, decided: bool = True) -> Known:
     """Euler's top turning about its third axis."""
     text = (
         "mbsym: 1\nname: Euler\nbodies:\n  - {name: body, attached to: 0, "
@@ -273,8 +273,8 @@ def double(loads: str, motion: str, nature: str) -> Known:
 
 
 BODIES = [
-    top("3", "drifts, gyroscopic", decided=False),
-    top("29/10", "drifts, gyroscopic", decided=False),
+    top("3", "drifts, gyroscopic"),
+    top("29/10", "drifts, gyroscopic"),
     top("28/10", "unstable"),
     top("1", "unstable"),
     top("2*sqrt(2)", "unknown"),

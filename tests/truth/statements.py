@@ -20,8 +20,8 @@ STABLE = "stable"
 CRITICAL = "stable in first approximation only, critical"
 GYROSCOPIC = "gyroscopically stabilised only"
 UNSTABLE = "unstable"
-DRIFTS = "stable with respect to the other variables; the cyclic coordinates drift"
-ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable with respect to the other variables; the cyclic coordinates drift"
+DRIFTS = "stable with respect to the other variables; the cyclic coordinates may drift"
+ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable with respect to the other variables; the cyclic coordinates may drift"
 TURNED = "asymptotically stable up to a rotation of space"
 NOTHING = ("undecided", "depends on the parameters")
 
@@ -29,7 +29,7 @@ TRUE_OF: Mapping[str, tuple[str, ...]] = {
     # nature of the motion: what is true of it
     "asymptotic": (ASYMPTOTIC, STABLE, CRITICAL),
     "stable": (STABLE, CRITICAL),
-    "stable, gyroscopic": (STABLE, CRITICAL, GYROSCOPIC),  # K is not positive definite, and nothing dissipates
+    "stable, gyroscopic": (STABLE, CRITICAL, GYROSCOPIC, DRIFTS),  # K is not positive definite, and nothing dissipates
     "open, gyroscopic": (GYROSCOPIC, CRITICAL),  # nobody knows; the first approximation is stable, K is not positive
     "open, critical": (CRITICAL,),  # the first approximation is stable, no theorem is known
     "unstable": (UNSTABLE,),

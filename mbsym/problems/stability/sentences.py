@@ -86,8 +86,8 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs."
     ),
     Because.DRIFT: (
-        "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities makes the "
-        "cyclic coordinates drift away."
+        "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "
+        "the cyclic coordinates drift away."
     ),
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),

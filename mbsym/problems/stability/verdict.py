@@ -33,7 +33,7 @@ from mbsym.problems.stability.word import Word
 class Flaw(Enum):
     """What keeps a verdict from being better."""
 
-    CYCLIC = auto()  # cyclic coordinates drift
+    CYCLIC = auto()  # cyclic coordinates may drift
     TURNED = auto()  # a turned spin does not come back
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
@@ -199,7 +199,7 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
 
 
 def drifting(verdict: Verdict) -> Verdict:
-    """The verdict on the other coordinates as one on the whole, whose cyclic coordinates drift."""
+    """The verdict on the other coordinates as one on the whole, whose cyclic coordinates may drift."""
     flaws = verdict.flawed | {Flaw.CYCLIC}
     grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
     row = row_of({*grounds}, flaws)

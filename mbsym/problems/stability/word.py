@@ -10,11 +10,13 @@ class Word(StrEnum):
 
     ASYMPTOTIC = "asymptotically stable"
     #: With cyclic coordinates nothing better can hold: they drift.
-    ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable with respect to the other variables; the cyclic coordinates drift"
+    ASYMPTOTIC_BUT_CYCLIC = (
+        "asymptotically stable with respect to the other variables; the cyclic coordinates may drift"
+    )
     #: A turned steady spin is a steady spin: it does not come back.
     ASYMPTOTIC_BUT_TURNED = "asymptotically stable up to a rotation of space"
     STABLE = "stable"
-    STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates drift"
+    STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates may drift"
     GYROSCOPIC = "gyroscopically stabilised only"
     CRITICAL = "stable in first approximation only, critical"
     #: No theorem applies.
