@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import traceback
@@ -11,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.failures import LOG
 from mbsym.source import load, render
 from mbsym.source.render import escaped
 
@@ -30,6 +32,43 @@ class Debugging:
     """Whether ``--debug`` was given: tracebacks are shown."""
 
     wanted = False
+
+
+class Defects(logging.Handler):
+    """Collects the exceptions that were contained somewhere, in the order in which they came."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.errors: list[BaseException] = []
+        self.told: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.exc_info and record.exc_info[1] is not None:
+            self.errors.append(record.exc_info[1])
+
+    def tell(self) -> bool:
+        """Tells of those of which nobody has told; whether there were any at all."""
+        for error in self.errors:
+            if described(error) not in self.told:
+                defect(error)
+        return bool(self.errors)
+
+
+#: Those of the command that runs.
+DEFECTS = Defects()
+
+
+@contextmanager
+def listening() -> Iterator[Defects]:
+    """Contained exceptions are collected instead of being shown with their tracebacks."""
+    DEFECTS.errors, DEFECTS.told = [], set()
+    propagated, LOG.propagate = LOG.propagate, False
+    LOG.addHandler(DEFECTS)
+    try:
+        yield DEFECTS
+    finally:
+        LOG.removeHandler(DEFECTS)
+        LOG.propagate = propagated
 
 
 @cache
@@ -76,11 +115,12 @@ def complain(path: Path | str, text: str) -> None:
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
     """Tells of an exception that nobody foresaw, or of too little memory; with ``--debug``, where it came from."""
+    DEFECTS.told.add(described(error))
     before = "" if where is None else f"{printable(where)}: "
     if isinstance(error, MemoryError):
         print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
     else:
-        print(f"{before}internal error, please report it: {escaped(_described(error))}", file=sys.stderr)
+        print(f"{before}internal error, please report it: {escaped(described(error))}", file=sys.stderr)
     trace(error)
 
 
@@ -90,7 +130,8 @@ def trace(error: BaseException) -> None:
         print("".join(traceback.format_exception(error)), end="", file=sys.stderr)
 
 
-def _described(error: BaseException) -> str:
+def described(error: BaseException) -> str:
+    """Its kind and what it says."""
     text = str(error)
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 

@@ -28,6 +28,8 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from mbsym.source.render import escaped
+
 MANIFEST = ".mbsym.json"
 
 #: Where files go that nobody gave a place.
@@ -283,12 +285,12 @@ def obstacle(folder: Path, inside: Path | None = None) -> str:
         inside = REPORTS
     try:
         if inside is not None and not folder.resolve().is_relative_to(inside.resolve()):
-            return f"{folder} is a link that leads out of {inside}"
+            return f"{escaped(str(folder))} is a link that leads out of {escaped(str(inside))}"
         for place in (folder, *folder.absolute().parents):
             if place.exists():
                 if not place.is_dir():
-                    return f"{place} is no folder"
-                return "" if os.access(place, os.W_OK) else f"{place} is not writable"
+                    return f"{escaped(str(place))} is no folder"
+                return "" if os.access(place, os.W_OK) else f"{escaped(str(place))} is not writable"
     except (OSError, ValueError, RuntimeError) as error:  # a name that is too long, a link that loops
         return str(error)
     return ""

@@ -80,11 +80,17 @@ class LazyGroup(click.Group):
 
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
-        from mbsym_cli.console import FAILED, INTERRUPTED, Debugging, defect, reason_of, trace
+        from mbsym_cli.console import FAILED, INTERRUPTED, OK, Debugging, defect, listening, reason_of, trace
 
         Debugging.wanted = False
         try:
-            return super().invoke(context)
+            with listening() as defects:
+                try:
+                    return super().invoke(context)
+                except SystemExit as ended:
+                    if defects.tell() and ended.code in (OK, None):
+                        ended.code = FAILED
+                    raise
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except OSError as error:

@@ -11,7 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, defect, read_description, reason_of, status, trace
+from mbsym_cli.console import (
+    BAD_INPUT,
+    FAILED,
+    OK,
+    complain,
+    defect,
+    described,
+    read_description,
+    reason_of,
+    status,
+    trace,
+)
 from mbsym_cli.files import deliver, obstacle
 
 if TYPE_CHECKING:
@@ -159,6 +170,6 @@ def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: 
     failed = [check for check in analysis.checks if check.failed]
     for check in failed:
         complain(path, f"SELF-CHECK FAILED: {check.name}: {check.detail}")
-    for error in {f"{type(error).__name__}: {error}": error for error in analysis.defects}.values():
+    for error in {described(error): error for error in analysis.defects}.values():
         defect(error, path)
     return bool(lost or open_claims or failed or analysis.defects)

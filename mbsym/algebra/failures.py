@@ -16,7 +16,10 @@ from a defect of ours.  Nobody has to read the sentence to know what happened.
 
 from __future__ import annotations
 
+import logging
 from enum import Enum
+
+LOG = logging.getLogger("mbsym")
 
 
 class Limit(Enum):
@@ -89,7 +92,8 @@ class SingularPoint(Failure, ZeroDivisionError):
 class Defect(Failure):
     """An exception that nobody foresaw: the program is at fault, and only what it was about is lost.
 
-    The exception itself is the ``__cause__``.
+    The exception itself is the ``__cause__``.  It is never lost: the logger ``mbsym`` gets it with its traceback, which
+    Python shows on standard error unless somebody listens.
     """
 
     code = "internal-error"
@@ -97,13 +101,14 @@ class Defect(Failure):
 
     @classmethod
     def of(cls, error: Exception) -> Defect:
-        """What to say of it; running out of memory is nobody's mistake."""
+        """What to say of it, once it is logged; running out of memory is nobody's mistake."""
         if isinstance(error, MemoryError):
             found = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
         else:
             said = str(error).strip()
             found = cls(f"internal error: {type(error).__name__}" + (f": {said}" if said else ""))
         found.__cause__ = error
+        LOG.error("%s", found, exc_info=error)
         return found
 
 

@@ -270,3 +270,23 @@ def test_in_the_reading_of_one_file(command: str, tmp_path: Path, monkeypatch: p
     assert done.exit_code == 1
     assert "first.yaml: internal error, please report it: OverflowError: planted" in done.stderr
     assert "Simple pendulum" in done.stdout
+
+
+def test_what_a_simulation_can_do_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The integrals are lost, the trajectory is not, and the exit code says that something is."""
+    monkeypatch.setattr("mbsym.problems.integrals.integrals", broken)
+    done = simulate("-o", tmp_path, "--invariants", "-f", "csv")
+    assert done.exit_code == 1
+    assert done.stderr.count("internal error, please report it: OverflowError: planted") == 1
+    assert names(tmp_path) == {"trajectory.csv", "simulation.json", MANIFEST}
+
+
+def test_in_python_the_log_has_the_traceback(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.problems.integrals.integrals", broken)
+    stage = mbsym.load(PENDULUM).stage(7)
+    assert stage.failure is not None
+    assert stage.failure.code == "internal-error"
+    (record,) = caplog.records
+    assert record.name == "mbsym"
+    assert record.exc_info is not None
+    assert isinstance(record.exc_info[1], OverflowError)
