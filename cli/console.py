@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import LOG
+from mbsym.expressions.safe import safe as escaped
 from mbsym.source import load, render
-from mbsym.source.render import escaped
 
 if TYPE_CHECKING:
     from rich.console import Console

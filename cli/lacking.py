@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from mbsym.source.render import escaped
+from mbsym.expressions.safe import safe as escaped
 
 
 def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:

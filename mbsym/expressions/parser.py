@@ -23,6 +23,7 @@ from math import ceil
 
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.safe import quoted
 from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
@@ -33,6 +34,9 @@ MAX_NESTING = 50
 
 #: A literal has at most so many digits before and after the point (``1e-60`` is the smallest).
 MAX_DIGITS = 60
+
+#: So many foreign characters of one expression are complained about.
+MAX_STRANGE = 10
 
 #: The size of an exponent, and the denominator of a fractional one.
 MAX_EXPONENT = 64
@@ -134,7 +138,7 @@ def parse_expression(text: str, complaints: Complaints, span_of: SpanOf, named: 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
     names a place allows is the reader's business; where it allows none (``named`` is false) no hint speaks of any.
     """
-    errors_before = len(complaints.errors)
+    errors_before = complaints.error_count
     try:
         if len(text) > MAX_LENGTH:
             complaints.error("too-long", f"an expression has at most {MAX_LENGTH} characters", span_of(0, 1))
@@ -144,7 +148,7 @@ def parse_expression(text: str, complaints: Complaints, span_of: SpanOf, named: 
         tree = parser.whole()
     except _Refused:
         return None
-    return tree if len(complaints.errors) == errors_before else None
+    return tree if complaints.error_count == errors_before else None
 
 
 def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> list[Name]:
@@ -186,17 +190,21 @@ def _inside(span: Span, other: Span) -> bool:
 def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
     """All tokens with an end mark; foreign characters are complained about, all of them."""
     tokens: list[_Token] = []
-    position, clean = 0, True
+    position, strange = 0, 0
     while position < len(text):
         match = _TOKEN.match(text, position)
         if match is None:
-            clean = False
+            strange += 1
+            if strange > MAX_STRANGE:
+                message = f"and more characters without a meaning: the first {MAX_STRANGE} are shown"
+                complaints.error("bad-character", message, span_of(position, len(text)))
+                break
             position = _complain_of_character(text, position, complaints, span_of)
             continue
         if match.lastgroup != "blank":
             tokens.append(_Token(match.lastgroup or "", match.group(), match.start(), match.end()))
         position = match.end()
-    if not clean:
+    if strange:
         raise _Refused
     return [*tokens, _Token("end", "", len(text), len(text))]
 
@@ -218,11 +226,8 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     return end
 
 
-def ascii_safe(text: str) -> str:
-    """A quoted piece of the file for a message, shortened, with unprintable characters escaped."""
-    short = text if len(text) <= 60 else text[:57] + "..."
-    quote = '"' if "'" in short else "'"
-    return quote + "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short) + quote
+#: A quoted piece of the file for a message.
+ascii_safe = quoted
 
 
 def in_latin(text: str) -> str:

@@ -36,9 +36,19 @@ class Complaint:
 
 @dataclass(slots=True)
 class Complaints:
-    """Collects complaints; readers append and go on."""
+    """Collects complaints, each once; readers append and go on.
+
+    ``error_count`` counts every error that was reported, those that are not kept included: what was read without a new
+    one is sound.
+    """
 
     items: list[Complaint] = field(default_factory=list)
+    error_count: int = 0
+    _known: set[Complaint] = field(default_factory=set, repr=False)
+
+    def __post_init__(self) -> None:
+        self._known = set(self.items)
+        self.error_count = len(self.errors)
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self._append(Complaint(code, message, span, hint))
@@ -47,8 +57,13 @@ class Complaints:
         self._append(Complaint(code, message, span, hint, "warning"))
 
     def _append(self, complaint: Complaint) -> None:
-        if complaint not in self.items:
-            self.items.append(complaint)
+        self.error_count += complaint.severity == "error"
+        if complaint not in self._known:
+            self._known.add(complaint)
+            self._keep(complaint)
+
+    def _keep(self, complaint: Complaint) -> None:
+        self.items.append(complaint)
 
     def extend(self, others: Iterable[Complaint]) -> None:
         for other in others:

@@ -11,7 +11,7 @@ from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, Negative, 
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, INERTIA, ROTATION
-from mbsym.source.placed import Mapping, Node, Scalar, Sequence
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence, TooManyComplaints
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
 
@@ -40,8 +40,9 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
         return []
     items = reading.items(node, "'bodies'")
     if len(items) > MAX_BODIES:
-        reading.error("too-large", f"a system has at most {MAX_BODIES} bodies", node.span)
-        return []
+        message = f"a system has at most {MAX_BODIES} bodies, not {len(items)}"
+        reading.error("too-large", message, node.span)
+        raise TooManyComplaints  # without them every name would be unknown
     if not items and isinstance(node, Sequence):
         reading.error("missing-value", "there are no bodies", node.span)
     drafts = [_draft(number, item, reading) for number, item in enumerate(items, start=1)]
@@ -144,7 +145,8 @@ def _assume_forgotten(draft: Draft, reading: Reading) -> None:
 
 def _coordinate_hint(name: Name, draft: Draft, close: str | None) -> str:
     together = ", ".join([*(scalar.text for scalar in draft.coordinates), name.name])
-    listed = f"add 'coordinates: [{together}]' to this body"
+    verb = "write" if draft.fields.get("coordinates") is not None else "add"
+    listed = f"{verb} 'coordinates: [{together}]' {'in' if verb == 'write' else 'to'} this body"
     if close:
         return f"{close} If it is a coordinate of its own, {listed}"
     return f"if it is a coordinate, {listed}; if it is a parameter, declare it under 'parameters'"
@@ -311,7 +313,7 @@ def _accepted(node: Node, fields: Fields, reading: Reading) -> tuple[Node, bool]
 def _tensor(node: Node, reading: Reading) -> Tensor:
     """Three principal moments, or three rows of a symmetric matrix."""
     allowed = Allowed("a tensor of inertia")
-    items = reading.triple(node, "an inertia (three principal moments or three rows)")
+    items = reading.triple(node, "an inertia (three principal moments or three rows)", alike=True)
     if items is None:
         return ZERO_VECTOR, ZERO_VECTOR, ZERO_VECTOR
     if not any(isinstance(item, Sequence) for item in items):

@@ -39,9 +39,9 @@ def build(node: Node, complaints: Complaints) -> System | None:
     relations = read_relations(fields.get("relations"), reading)
     bodies, sound = [], []
     for draft in drafts:
-        before = len(complaints.errors)
+        before = complaints.error_count
         bodies.append(read_body(draft, drafts, reading))
-        sound.append(draft.whole and len(complaints.errors) == before)
+        sound.append(draft.whole and complaints.error_count == before)
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
     notation = read_notation(fields.get("notation"), reading)
     system = System(
@@ -70,7 +70,7 @@ def build(node: Node, complaints: Complaints) -> System | None:
         hint = "a coordinate is an undeclared name used as an angle, or is listed in a body: 'coordinates: [x]'"
         reading.error("no-coordinates", "nothing moves: there are no coordinates", fields.key_span("bodies"), hint)
     check_system(system, reading)
-    return None if complaints.errors else system
+    return None if complaints.error_count else system
 
 
 def _check_version(fields: Fields, reading: Reading) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 
 from mbsym.expressions.place import Span
@@ -199,9 +199,12 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
         told = f"no body has exactly this inertia: {violation}"
         hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
         reading.complaints.warning("rounded-inertia", told, span, hint)
-    elif has_negative_energy(body, values):
+    elif has_negative_energy(body, values) and not _is_possible_elsewhere(body, values):
         message += "; its kinetic energy would be negative" if body.inertia.accepted else ""
         reading.error("bad-inertia", message, span, _values_hint(*entries))
+    elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(body, values)):
+        hint = "with inertia about: mass centre it would be possible"
+        reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
         written = _written(inertia_shape(body.inertia))
         given = "with the given values; " if any(names(entry) for entry in entries) else ""
@@ -210,6 +213,13 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
             "bad-inertia", message, span, _short(hint, "write {tensor: ..., accept: true} if it was identified")
         )
     return True
+
+
+def _is_possible_elsewhere(body: Body, values: Mapping[str, Fraction]) -> bool:
+    """Whether what is impossible about the joint would be possible about the mass centre."""
+    if body.inertia is None or body.inertia.about != "joint":
+        return False
+    return body_violation(replace(body, inertia=replace(body.inertia, about="mass centre")), values, ROUNDING) is None
 
 
 def _written(shape: object) -> str:
@@ -288,7 +298,7 @@ def check_system(system: System, reading: Reading) -> None:
     """Relations must agree with the values that are given for both sides; assumptions should hold for them."""
     _check_relation_values(system, reading)
     _check_assumption_values(system, reading)
-    if not reading.complaints.errors:  # else a misspelt use would be complained about twice
+    if not reading.errors:  # else a misspelt use would be complained about twice
         _check_use(system, reading)
 
 

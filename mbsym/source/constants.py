@@ -12,7 +12,7 @@ from mbsym.model.comparison import has_sign
 from mbsym.model.system import Parameter, Prescribed, rational
 from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGNS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
-from mbsym.source.reading import Fields, Reading
+from mbsym.source.reading import Fields, Reading, keys_of
 from mbsym.source.scope import NUMBER, Allowed, did_you_mean
 
 
@@ -110,7 +110,7 @@ def read_values(node: Node | None, parameters: list[Parameter], reading: Reading
         errors = reading.errors
         value = reading.expression(entry.value, NUMBER)
         sound = reading.errors == errors
-        known = reading.scope.check_name(entry.key.text, entry.key.span, allowed)
+        known = reading.scope.check_key(entry.key.span, entry.key.text, keys_of(node), allowed)
         if not known or not sound or entry.key.text not in by_name:
             continue
         parameter = by_name[entry.key.text]

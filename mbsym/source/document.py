@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 from mbsym.expressions.place import Complaint, Complaints
@@ -12,16 +14,36 @@ from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
 from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
 from mbsym.source.yaml_reader import has_key, has_yaml_marks, read_yaml
 
+#: So many complaints are shown, in all and of one kind; when so many were met, reading stops.
 MAX_COMPLAINTS = 200
+MAX_OF_A_KIND = 40
+MAX_MET = 500
 
 
 class _BoundedComplaints(Complaints):
-    """Stops the reading of a file in which everything is wrong."""
+    """Keeps the first complaints of each kind and counts the others; stops where everything is wrong."""
 
-    def _append(self, complaint: Complaint) -> None:
-        super()._append(complaint)
-        if len(self.items) >= MAX_COMPLAINTS:
+    def __init__(self) -> None:
+        super().__init__()
+        self.kept: Counter[tuple[str, str]] = Counter()
+        self.more: Counter[tuple[str, str]] = Counter()
+
+    def _keep(self, complaint: Complaint) -> None:
+        kind = complaint.severity, complaint.code
+        if self.kept[kind] < MAX_OF_A_KIND:
+            self.kept[kind] += 1
+            super()._keep(complaint)
+        else:
+            self.more[kind] += 1
+        if len(self.items) >= MAX_COMPLAINTS or self.more.total() + len(self.items) >= MAX_MET:
             raise TooManyComplaints
+
+    def rest(self, stopped: bool) -> Iterator[Complaint]:
+        """A complaint about the file for each kind that was cut off, and for what was not read any more."""
+        for (severity, code), count in sorted(self.more.items()):
+            yield Complaint("too-many", f"and {count} more of the kind {code}", severity=severity)
+        if stopped and len(self.items) + self.more.total() >= MAX_COMPLAINTS:
+            yield Complaint("too-many", f"with {len(self.items) + self.more.total()} complaints reading was given up")
 
 
 def read(text: str, filename: str = "<string>") -> tuple[System | None, Complaints]:
@@ -31,17 +53,14 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     """
     text = normalised(text)
     complaints = _BoundedComplaints()
-    system = None
+    system, stopped = None, False
     try:
         if check_characters(text, complaints):
             node = _placed_tree(text, filename, complaints)
             system = None if node is None else build(node, complaints)
     except TooManyComplaints:
-        system = None
-    found = Complaints(complaints.sorted())
-    if len(found.items) >= MAX_COMPLAINTS:
-        found.error("too-many", f"only the first {MAX_COMPLAINTS} complaints are shown")
-    return system, found
+        system, stopped = None, True
+    return system, Complaints([*complaints.sorted(), *complaints.rest(stopped)])
 
 
 def is_description(path: Path) -> bool:

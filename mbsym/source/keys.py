@@ -16,7 +16,8 @@ SYSTEM = {
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
     "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
     "assumptions": "inequalities between parameters and notation, such as alpha > -1",
-    "motion": "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest",
+    "motion": "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest, {} is "
+    "the rest of all at 0",
     "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
     "values": "numerical values of parameters: {l: 2}",
@@ -164,4 +165,14 @@ ALIASES = {
     "inertia at": "inertia about",
     "gyrostatic momentum": "gyrostatic moment",
     "dimensionless_time": "dimensionless time",
+}
+
+#: What other programs have and this one has not: no slip of the pen for something else.
+_OPEN_TREES = "not supported: bodies form open trees only, without closed loops or constraints between coordinates"
+_JOINTS = "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'; closed loops"
+UNSUPPORTED = {
+    **dict.fromkeys(("constraint", "constraints", "holonomic constraints", "nonholonomic constraints"), _OPEN_TREES),
+    **dict.fromkeys(("loop", "loops", "closed loop", "closed loops", "loop closure", "loop closures"), _OPEN_TREES),
+    **dict.fromkeys(("kinematic loop", "kinematic loops", "cut joint", "cut joints", "closure"), _OPEN_TREES),
+    **dict.fromkeys(("joint", "joints"), f"{_JOINTS} are not supported (open trees only)"),
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.safe import hides
 from mbsym.source.placed import MAX_TEXT
 
 
@@ -18,7 +19,7 @@ def check_characters(text: str, complaints: Complaints) -> bool:
         return False
     clean = True
     for number, line in enumerate(text.split("\n"), start=1):
-        column = next((place for place, character in enumerate(line, start=1) if _forbidden(character)), None)
+        column = next((place for place, character in enumerate(line, start=1) if hides(character)), None)
         if column is not None:
             clean = False
             complaints.error(
@@ -27,10 +28,3 @@ def check_characters(text: str, complaints: Complaints) -> bool:
                 Span(number, column),
             )
     return clean
-
-
-def _forbidden(character: str) -> bool:
-    """Characters that YAML refuses, breaks lines at, or that hide what a line says (direction overrides)."""
-    if character.isprintable() or character in "\t\xa0\u3000":
-        return False
-    return character.isascii() or not character.isspace() or character in "\x85\u2028\u2029"

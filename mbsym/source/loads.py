@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from mbsym.expressions.parser import ascii_safe
-from mbsym.expressions.place import Span
-from mbsym.expressions.tree import ZERO, multiply
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import ZERO, Name, Number, multiply
 from mbsym.model.system import (
     EXACT,
     GRAVITY_ORDERS,
@@ -31,8 +31,8 @@ from mbsym.model.system import (
     rational,
 )
 from mbsym.source.bodies import read_body_name
-from mbsym.source.keys import ALIASES, LOADS, POINT
-from mbsym.source.placed import Entry, Mapping, Node, Sequence
+from mbsym.source.keys import ALIASES, LOADS, POINT, UNSUPPORTED
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import MAX_SHOWN, ZERO_VECTOR, Fields, Reading
 from mbsym.source.scope import DISSIPATION, FORCE, POTENTIAL, Allowed, closest
 
@@ -115,11 +115,12 @@ def _read_load(item: Node, bodies: list[str], reading: Reading) -> Load | None:
     entry: Entry = item.entries[0]
     kind = ALIASES.get(entry.key.text, entry.key.text)
     if kind not in LOADS:
-        misspelt = closest(kind, LOADS, _MISSPELT)
+        unsupported = UNSUPPORTED.get(" ".join(kind.lower().split()))
+        misspelt = None if unsupported else closest(kind, LOADS, _MISSPELT)
         other = _MEANT.get(" ".join(kind.lower().split()))
         kinds = f"kinds of load are: {', '.join(LOADS)}"
         hint = f"did you mean {other}? The {kinds}" if other else f"the {kinds}"
-        hint = f"did you mean '{misspelt}'?" if misspelt else hint
+        hint = f"did you mean '{misspelt}'?" if misspelt else unsupported or hint
         reading.error("unknown-load", f"unknown kind of load {ascii_safe(entry.key.text)}", entry.key.span, hint)
         if misspelt is None:
             return None
@@ -181,7 +182,11 @@ def _vector_hint(value: Node) -> str:
     """How to write a gravity that was given as a bare list."""
     texts = [getattr(item, "text", "") for item in value.items] if isinstance(value, Sequence) else []
     vector = ", ".join(texts) if len(texts) == 3 and all(texts) else ""
-    return f"write {{vector: [{vector if 0 < len(vector) <= MAX_SHOWN else '0, -g, 0'}]}}"
+    if isinstance(value, Scalar):  # the acceleration alone
+        size, tree = value.text.strip(), parse_expression(value.text, Complaints(), value.place)
+        size = size if isinstance(tree, Name | Number) else f"({size})"
+        vector = "" if tree is None else f"0, -{size}, 0"
+    return f"write {{vector: [{vector if 0 < len(vector) <= MAX_SHOWN else '0, -9.81, 0'}]}}"
 
 
 def _coordinate(fields: Fields, reading: Reading) -> str:

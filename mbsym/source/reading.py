@@ -16,7 +16,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Vector
 from mbsym.source import placed
-from mbsym.source.keys import ALIASES
+from mbsym.source.keys import ALIASES, UNSUPPORTED
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.scope import Allowed, Scope, closest, did_you_mean
 
@@ -49,6 +49,23 @@ def _filled_hint(items: tuple[Node, ...]) -> str | None:
     return f"components along the axes 1, 2, 3: for example [{', '.join([*texts, *['0'] * (3 - len(texts))])}]"
 
 
+#: A list in other brackets, or as a function of other programs: (a, b, c), diag(a, b, c), vector(a, b, c).
+_BRACKETED = re.compile(r"(?:diag|diagonal|vec|vector|array|list|tuple|Matrix)?\s*[(\[{]+(.*?)[)\]}]+\Z", re.DOTALL)
+
+
+def _bare_list(node: Node, wanted: int) -> str | None:
+    """``a, b, c`` for a text that holds so many expressions between commas, whatever stands around them."""
+    text = node.text.strip() if isinstance(node, Scalar) else ""
+    for inner in (text, _BRACKETED.sub(r"\1", text)):
+        parts = [part.strip() for part in inner.split(",")]
+        scratch = Complaints()
+        if len(parts) == wanted and len(inner) <= 3 * MAX_SHOWN:
+            trees = [parse_expression(part, scratch, lambda _start, _end: Span(1, 1)) for part in parts]
+            if all(tree is not None for tree in trees):
+                return ", ".join(parts)
+    return None
+
+
 def _is_decimal_comma(whole: Node, decimals: Scalar) -> bool:
     """Whether nothing but a comma stands between two runs of digits."""
     if not isinstance(whole, Scalar) or not whole.literal or not re.fullmatch("[0-9]+", decimals.text):
@@ -58,6 +75,11 @@ def _is_decimal_comma(whole: Node, decimals: Scalar) -> bool:
         decimals.span.line,
         decimals.span.column,
     )
+
+
+def keys_of(node: Node | None) -> list[str]:
+    """The keys of a mapping."""
+    return [entry.key.text for entry in node.entries] if isinstance(node, placed.Mapping) else []
 
 
 def _is_empty(node: Node) -> bool:
@@ -77,7 +99,7 @@ class Reading:
     @property
     def errors(self) -> int:
         """How many errors there are so far: what was read without a new one is sound and may be judged."""
-        return len(self.complaints.errors)
+        return self.complaints.error_count
 
     def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
         self.error("wrong-shape", f"{what} must be {wanted}, not {placed.kind(node)}", node.span, hint)
@@ -136,12 +158,12 @@ class Reading:
             self.expression(items[2], allowed),
         )
 
-    def triple(self, node: Node, what: str) -> tuple[Node, ...] | None:
-        """The three items of a list of three."""
+    def triple(self, node: Node, what: str, alike: bool = False) -> tuple[Node, ...] | None:
+        """The three items of a list of three; ``alike``: a lone value is most likely meant for all three."""
         if not isinstance(node, Sequence):
-            written = node.text.strip() if isinstance(node, Scalar) else ""
-            bare = written.count(",") == 2 and len(written) <= 3 * MAX_SHOWN
-            self.shape_error(node, what, "a list of three", f"write [{written if bare else '0, 0, 0'}]")
+            bare, lone = _bare_list(node, 3), _bare_list(node, 1) if alike else None
+            bare = bare or (lone and ", ".join([lone] * 3))
+            self.shape_error(node, what, "a list of three", f"write [{bare or '0, 0, 0'}]")
             return None
         if len(node.items) != 3:
             message = f"{what} has three components, not {len(node.items)}"
@@ -153,13 +175,13 @@ class Reading:
         """The entries of a mapping, each key once; ``hint`` is for what is no mapping."""
         if not isinstance(node, placed.Mapping):
             if isinstance(node, Scalar) and not node.text.strip():
-                self.error("missing-value", f"{what} is empty", node.span, "leave the key out")
+                self.error("missing-value", f"{what} is empty", node.span, hint or "leave the key out")
             else:
                 self.shape_error(node, what, "a mapping (key: value)", hint)
             return
         if len(node.entries) > MAX_ENTRIES:
-            self.error("too-large", f"{what} has at most {MAX_ENTRIES} entries", node.span)
-            return
+            self.error("too-large", f"{what} has at most {MAX_ENTRIES} entries, not {len(node.entries)}", node.span)
+            raise placed.TooManyComplaints  # without them every name would be unknown
         seen: set[str] = set()
         for entry in self.with_decimals(node.entries):
             key = ALIASES.get(entry.key.text, entry.key.text)
@@ -191,9 +213,10 @@ class Reading:
     def lone_or_items(self, node: Node, what: str) -> tuple[Node, ...]:
         """The items of a list; a single value is complained about and taken for a list of one."""
         if isinstance(node, Scalar) and node.text.strip():
-            hint = f"write [{node.text}]" if len(node.text) <= MAX_SHOWN else None
-            self.shape_error(node, what, "a list", hint)
-            return (node,)
+            bare = _bare_list(node, node.text.count(",") + 1)
+            self.shape_error(node, what, "a list", f"write [{bare}]" if bare else None)
+            parts = [node.text] if bare is None else bare.split(", ")
+            return (node,) if len(parts) == 1 else tuple(Scalar(part, node.span, literal=False) for part in parts)
         return self.items(node, what)
 
     def items(self, node: Node, what: str) -> tuple[Node, ...]:
@@ -201,21 +224,24 @@ class Reading:
             self.shape_error(node, what, "a list")
             return ()
         if len(node.items) > MAX_ENTRIES:
-            self.error("too-large", f"{what} has at most {MAX_ENTRIES} items", node.span)
-            return ()
+            self.error("too-large", f"{what} has at most {MAX_ENTRIES} items, not {len(node.items)}", node.span)
+            raise placed.TooManyComplaints  # without them every name would be unknown
         return node.items
 
     def fields(self, node: Node, what: str, known: Mapping[str, str], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         found: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
+        given = keys_of(node)
+        left = [key for key in known if key not in given]
         for entry in self.entries(node, what, hint):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:
                 found[key] = entry
             else:
-                guess = closest(entry.key.text, known)
-                keys = f"did you mean '{guess}'?" if guess else f"the keys are: {', '.join(known)}"
+                unsupported = UNSUPPORTED.get(" ".join(entry.key.text.lower().replace("_", " ").split()))
+                guess = None if unsupported else closest(entry.key.text, left)
+                keys = f"did you mean '{guess}'?" if guess else unsupported or f"the keys are: {', '.join(known)}"
                 message = f"unknown key {ascii_safe(entry.key.text)} in {what}"
                 self.error("unknown-key", message, entry.key.span, keys)
                 if guess:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mbsym.expressions.place import Complaint, Span
+from mbsym.expressions.safe import safe
 from mbsym.source.lines import normalised
 
 _WIDTH = 120
@@ -14,25 +15,25 @@ def render(complaint: Complaint, text: str, filename: str) -> str:
 
     Control characters of the file are shown escaped, and of a long line only the piece around the complaint.
     """
-    head = f"{complaint.severity}[{complaint.code}]: {escaped(complaint.message)}"
+    head = f"{complaint.severity}[{complaint.code}]: {safe(complaint.message)}"
     if complaint.span is None:
-        parts = [f"{escaped(filename)}: {head}"]
+        parts = [f"{safe(filename)}: {head}"]
     else:
-        parts = [f"{escaped(filename)}:{complaint.span.line}:{complaint.span.column}: {head}"]
+        parts = [f"{safe(filename)}:{complaint.span.line}:{complaint.span.column}: {head}"]
         parts += _underlined(complaint.span, normalised(text).split("\n"))
     if complaint.hint:
-        parts.append(f"  hint: {escaped(complaint.hint)}")
+        parts.append(f"  hint: {safe(complaint.hint)}")
     return "\n".join(parts)
 
 
 def render_option(complaint: Complaint, text: str, option: str) -> str:
     """One complaint about a value on the command line, which stands in no file; ``text`` is that line."""
-    parts = [f"{escaped(option)}: {complaint.severity}[{complaint.code}]: {escaped(complaint.message)}"]
+    parts = [f"{safe(option)}: {complaint.severity}[{complaint.code}]: {safe(complaint.message)}"]
     if complaint.span is not None:
         before, piece, after = _window(normalised(text).split("\n")[0], complaint.span)
         parts += [f"  | {before}{piece}{after}".rstrip(), f"  | {' ' * len(before)}{'^' * max(1, len(piece))}"]
     if complaint.hint:
-        parts.append(f"  hint: {escaped(complaint.hint)}")
+        parts.append(f"  hint: {safe(complaint.hint)}")
     return "\n".join(parts)
 
 
@@ -49,9 +50,9 @@ def _window(line: str, span: Span) -> tuple[str, str, str]:
     """The text before, under and after the underlining, escaped, cut to a bearable width."""
     start = min(span.column - 1, len(line))
     before, piece, after = (
-        escaped(line[:start]),
-        escaped(line[start : start + span.length]),
-        escaped(line[start + span.length :]),
+        safe(line[:start]),
+        safe(line[start : start + span.length]),
+        safe(line[start + span.length :]),
     )
     if len(before) + len(piece) + len(after) <= _WIDTH:
         return before, piece, after
@@ -63,11 +64,3 @@ def _window(line: str, span: Span) -> tuple[str, str, str]:
     if len(after) > room:
         after = after[: room - len(_ELLIPSIS)] + _ELLIPSIS
     return before, piece, after
-
-
-def escaped(text: str) -> str:
-    """The text with everything that could move a cursor written as an escape; tabs become blanks."""
-    text = text.replace("\t", " ")
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape", "replace").decode("ascii") for c in text)

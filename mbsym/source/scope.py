@@ -67,7 +67,8 @@ class Scope:
     """All declared names with their kinds; complains about clashes and about unknown or misplaced names.
 
     ``later`` holds the names of notation (or abbreviations, as ``ordered`` says) that are still to come, ``assumed``
-    undeclared names that were complained about and are since taken for whatever their place allows.
+    undeclared names that were complained about and are since taken for whatever their place allows, ``beside`` the keys
+    that stand beside the one that is looked at.
     """
 
     complaints: Complaints
@@ -75,11 +76,12 @@ class Scope:
     later: set[str] = field(default_factory=set)
     ordered: str = "notation is"
     assumed: set[str] = field(default_factory=set)
+    beside: set[str] = field(default_factory=set)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
         if not self.is_name(name, span):
-            if not name.endswith(("_dot", "_ddot")):
+            if name and not name.endswith(("_dot", "_ddot")):
                 self.kinds.setdefault(name, kind)  # one complaint about it is enough
             return False
         if name in self.kinds:
@@ -114,6 +116,14 @@ class Scope:
             if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
                 self.check_name(node.name, node.span, allowed)
 
+    def check_key(self, key: Span, name: str, keys: Iterable[str], allowed: Allowed) -> bool:
+        """The same for a key beside others, none of which is what it was meant to be."""
+        self.beside = set(keys)
+        try:
+            return self.check_name(name, key, allowed)
+        finally:
+            self.beside = set()
+
     def check_name(self, name: str, span: Span, allowed: Allowed) -> bool:
         if name in self.assumed or name.removesuffix("_dot") in self.assumed:
             return True
@@ -137,7 +147,7 @@ class Scope:
         if name.endswith("_ddot") and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
             return f"accelerations are what the equations are solved for; {none}"
-        known = [one for one in self.kinds if self.kinds[one] in allowed.kinds]
+        known = [one for one in self.kinds if self.kinds[one] in allowed.kinds and one not in self.beside]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
@@ -196,6 +206,8 @@ def slip_of(name: str, known: Iterable[str]) -> str | None:
     best: tuple[float, str] | None = None
     for one in list(known)[:100]:
         short, long = sorted((name, one), key=len)
+        if not short:
+            continue
         if short.rstrip("0123456789") == long.rstrip("0123456789") or short[:-1] == long[:-1]:
             continue
         if long.startswith(short) and set(long[len(short) :]) != {short[-1]}:
@@ -209,6 +221,8 @@ def slip_of(name: str, known: Iterable[str]) -> str | None:
 
 def why_no_name(name: str) -> tuple[str, str | None] | None:
     """Why a word cannot be the name of a parameter or coordinate (with a hint), or None if it can."""
+    if not name.strip():
+        return "it is empty", "write one letter or more"
     if not _IDENTIFIER.match(name):
         latin = in_latin(name[:MAX_NAME])
         hint = f"write {latin}" if latin != name and _IDENTIFIER.match(latin) else None

@@ -10,7 +10,7 @@ from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.model.system import Assumption, InitialValue, MotionEntry, Notation, Relation
 from mbsym.source.keys import INITIAL, MOTION
 from mbsym.source.placed import Mapping, Node, Scalar
-from mbsym.source.reading import Reading
+from mbsym.source.reading import Reading, keys_of
 from mbsym.source.scope import ASSUMPTION, Allowed
 
 _COMPARISON = re.compile(r"<=|>=|!=|==|=|<|>|≤|≥|≠")
@@ -95,11 +95,14 @@ def read_comparisons(scalar: Scalar, reading: Reading, allowed: Allowed) -> list
 
 
 def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
-    """``theta: 0`` or ``phi: {value: 0, rate: Omega}``."""
+    """``theta: 0`` or ``phi: {value: 0, rate: Omega}``; an empty mapping is the rest of all coordinates at 0."""
     allowed = Allowed("an unperturbed motion")
+    if isinstance(node, Mapping) and not node.entries:
+        return tuple(MotionEntry(name, ZERO, ZERO, node.span) for name in reading.scope.of_kind("coordinate"))
     entries = []
-    for entry in () if node is None else reading.entries(node, "'motion'"):
-        known = _is_coordinate(entry.key, "the key of a motion", reading)
+    rest = "write {} for the rest of all at 0" if isinstance(node, Scalar) and not node.text.strip() else None
+    for entry in () if node is None else reading.entries(node, "'motion'", rest):
+        known = _is_coordinate(entry.key, "the key of a motion", node, reading)
         value: Expression = ZERO
         rate: Expression = ZERO
         if isinstance(entry.value, Mapping):
@@ -113,8 +116,8 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     return tuple(entries)
 
 
-def _is_coordinate(key: Scalar, what: str, reading: Reading) -> bool:
-    return reading.scope.check_name(key.text, key.span, Allowed(what, ("coordinate",)))
+def _is_coordinate(key: Scalar, what: str, node: Node | None, reading: Reading) -> bool:
+    return reading.scope.check_key(key.span, key.text, keys_of(node), Allowed(what, ("coordinate",)))
 
 
 def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
@@ -137,7 +140,7 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...
     allowed = Allowed("an initial value")
     entries = []
     for entry in () if node is None else reading.entries(node, "'initial'"):
-        known = _is_coordinate(entry.key, "the key of an initial value", reading)
+        known = _is_coordinate(entry.key, "the key of an initial value", node, reading)
         span: Span = entry.key.span
         if isinstance(entry.value, Mapping):
             fields = reading.fields(entry.value, f"the initial value of {ascii_safe(entry.key.text)}", INITIAL)

@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.safe import hides
 from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequence
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -177,7 +178,17 @@ class _Composer:
         raw = self.lines[line][start + quote : end - quote] if line == last_line else None
         if raw == event.value:
             return Scalar(event.value, Span(line + 1, start + 1 + quote, max(1, len(event.value))))
-        return Scalar(event.value, self.span(event), literal=False)
+        return Scalar(self.without_control(event), self.span(event), literal=False)
+
+    def without_control(self, event: Any) -> str:
+        """The text of a scalar, which escapes may have filled with what may not stand in the file itself."""
+        text = str(event.value)
+        hidden = [character for character in text if character != "\n" and hides(character)]
+        if hidden:
+            named = ", ".join([f"U+{ord(character):04X}" for character in dict.fromkeys(hidden)][:5])
+            message = f"this text holds control characters ({named}), which may not stand in a description"
+            self.complaints.error("control-character", message, self.span(event), "leave the escapes out")
+        return "".join(character for character in text if character not in hidden) if hidden else text
 
     def refuse_fineries(self, event: Any) -> None:
         if isinstance(event, yaml.AliasEvent):
