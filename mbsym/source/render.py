@@ -7,6 +7,10 @@ from mbsym.expressions.safe import safe
 from mbsym.source.lines import normalised
 
 _WIDTH = 120
+
+#: What the command line shows of file names and options.
+escaped = safe
+
 _ELLIPSIS = "..."
 
 
