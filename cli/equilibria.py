@@ -64,12 +64,17 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
     if asked.refused(None if system is None else file) or system is None or reach is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
+    from mbsym.analysis import Analysis
     from mbsym.problems.equilibria import equilibria
 
     started = time.perf_counter()
     try:
         with status(False, f"{file.name}: relative equilibria"):
             found = equilibria(system, values, reach)
+            withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
+        if withdrawn is not None:
+            complain(file, f"no equilibria listed: {withdrawn.reason}")
+            sys.exit(FAILED)
     except Failure as reason:
         complain(file, f"no equilibria listed: {reason}")
         sys.exit(FAILED)

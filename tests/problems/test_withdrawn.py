@@ -147,6 +147,12 @@ def test_equilibria_fall_with_the_check_of_their_equations(monkeypatch: pytest.M
     spring = TESTS.parent / "systems" / "spring-pendulum.yaml"
     with pytest.raises(Unavailable, match="withdrawn"):
         _ = mbsym.load(spring).equilibria
+    from mbsym_cli.main import main
+
+    done = CliRunner().invoke(main, ["equilibria", str(spring)])
+    assert done.exit_code == 1
+    assert "withdrawn" in done.output
+    assert "stable" not in done.output
 
 
 def test_without_a_mistake_nothing_is_withdrawn_and_few_checks_suffice() -> None:
