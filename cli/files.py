@@ -86,7 +86,7 @@ def deliver(
     made = not folder.exists()
     with alone(folder) as locked:
         _recover(folder, locked)
-        for name in files:
+        for name in (*files, MANIFEST):
             if (folder / name).is_dir() and not (folder / name).is_symlink():
                 raise IsADirectoryError(f"{folder / name} is a folder")
         stage = Path(tempfile.mkdtemp(prefix=_NEW, dir=folder))

@@ -12,6 +12,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterator
+from itertools import takewhile
 
 #: Larger powers are not computed.
 _MOST_EXPONENT = 10_000
@@ -213,12 +214,18 @@ def _latex(text: str) -> None:
             opening = {"\\]": "\\[", "\\)": "\\("}.get(token, token)
             if opened and opened[-1][1] == opening:
                 opened.pop()
-            elif token in ("\\]", "\\)") or any(item in ("$", "$$", "\\[", "\\(") for _, item in opened):
+            elif token in ("\\]", "\\)") or _in_mathematics(opened):
                 raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
             else:
                 opened.append((line, token))
     if opened:
         raise SyntaxError(f"{opened[-1][1]!r} is never closed", ("", opened[-1][0], 0, None))
+
+
+def _in_mathematics(opened: list[tuple[int, str]]) -> bool:
+    """Whether mathematics has begun since the last brace, in which there may be text with mathematics of its own."""
+    since = list(takewhile(lambda item: item[1] != "{", reversed(opened)))
+    return any(item in ("$", "$$", "\\[", "\\(") for _, item in since)
 
 
 def _opener(token: str) -> str:

@@ -16,6 +16,7 @@ GOOD = {
     "report.wl": ['(* a (* nested *) "one *) x = {1, f[2], "(*", "a\\"]"}; \\[Lambda] = (1)\n'],
     "report.tex": [
         r"\begin{align*} \left( \frac{a}{b} \right] \end{align*} 100\% \{ \\[2mm] $x$ \leftarrow \verb|{|" + "\n",
+        r"\[ x \text{ if $y > 0$, \(z\)} \] $a \mbox{$b$}$" + "\n",
         "% } nothing\n\\[ x \\]\n$$y$$\n",
     ],
     "results.json": ['{"a": [1, "x"]}'],
