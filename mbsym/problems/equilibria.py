@@ -14,7 +14,9 @@ where it can be guessed (zero, springs at rest).  The list is complete where the
 every coordinate; otherwise it **may be incomplete**, and the result says so.
 
 Angles that are singular somewhere (a gimbal) are replaced there by others, so that no orientation is lost, and
-coordinates that describe one configuration twice are counted once.
+coordinates that describe one configuration twice are counted once.  Where the equations do not know an angle (the whole
+may be turned about an axis) they are counted up to that angle, whose value is any.  Negative lengths of polar
+coordinates are the same places again, or no states of the system meant (``mechanics.reflections``).
 
 Each equilibrium is judged by the theorems of problem 6: at rational sines and cosines by exact counting, otherwise by
 enclosures of the roots.  Solutions that are not isolated are families.

@@ -1,8 +1,8 @@
 """Problem 6 where the first approximation leaves the verdict at the description's values open.
 
 The system is taken at its numbers, the unperturbed motion as one of its relative equilibria, and judged as
-``mbsym equilibria`` judges these: by terms of higher order of the potential energy (``stability.degenerate``) and by
-combinations of first integrals (``stability.bundle``).
+``mbsym equilibria`` judges these: by an energy that the equations have though L knows the time, by terms of higher
+order of the potential energy (``stability.degenerate``) and by combinations of first integrals (``stability.bundle``).
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ def decided(found: Stability, scene: Scene, equilibrium: Equilibrium) -> Stabili
         if not all(candidate.vanishes(x) for x in there.at_rest):
             return found
         place = candidate.place(there, exact_rates(there))
-        return replace(found, numerical=linear_at_rest(there).decided(verdict, place))
+        again = linear_at_rest(there).verdict(place)
+        return found if again.word in OPEN else replace(found, numerical=again)
     except NOT_THERE:
         return found
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import combinations
 
 from flint import ctx, fmpq, fmpq_mpoly_ctx
 
@@ -167,6 +168,7 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     except Failure:
         known = None
     balance = dissipation.balance(scene, known, knowledge.signs(scene), somewhere=True)
+    law = EnergyLaw.CONSERVED if not balance.law.bounded and has_energy(found) else balance.law
     cyclic = tuple(names.index(name) for name in balance.ignorable if name not in balance.driven)
     parts = (
         mass,
@@ -178,7 +180,34 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    return LinearAtRest(parts, balance.law, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic))
+    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic))
+
+
+def has_energy(found: Rest) -> bool:
+    """Whether q'.M q'/2 + V(q) is proved to be an integral, with V from f(q, 0), whatever L looks like.
+
+    So it is where a frame is accelerated evenly: L knows the time, the equations do not.  With f' = f(q, q') - f(q, 0)
+
+        d/dt (q'.M q'/2 + V) = q'.f' + sum q'_k q'.(dM/dq_k) q' / 2
+    """
+    ring, names = found.ring, found.system.coordinates
+    moving = [*(item.name for item in found.system.prescribed), "t"]
+    mass = found.mass_matrix()
+    if found.turning or any(ring.dependencies(x, moving) for x in (*found.forcing, *(x for row in mass for x in row))):
+        return False
+    try:
+        for i, j in combinations(range(len(names)), 2):
+            slope = ring.derivative(found.at_rest[i], names[j]) - ring.derivative(found.at_rest[j], names[i])
+            if ring.is_zero(slope) is not True:
+                return False
+        speeds = [ring.generator("velocity", name) for name in names]
+        power = ring.dot(speeds, [x - y for x, y in zip(found.forcing, found.at_rest, strict=True)])
+        for k, name in enumerate(names):
+            rate = ring.dot(speeds, [ring.dot(speeds, [ring.derivative(x, name) for x in row]) for row in mass])
+            power = power + ring.times(speeds[k], rate) * ring.number(Fraction(1, 2))
+        return ring.is_zero(ring.reduce(power)) is True
+    except Failure:
+        return False
 
 
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])

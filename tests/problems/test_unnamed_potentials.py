@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from conftest import TESTS
 
 import mbsym
 from mbsym.problems.stability.word import Word
+
+STATEMENTS = TESTS / "cases" / "statements"
 
 RODS = """
 mbsym: 1
@@ -108,3 +111,31 @@ loads:
 motion: {x: 0, y: 0}
 """
     assert word(text) is Word.CRITICAL
+
+
+def test_an_evenly_accelerated_frame_has_an_energy_though_the_lagrangian_knows_the_time() -> None:
+    """V = -m l (g + a) cos th in the lift; in the car th = -atan(a/g) is below: stable along the apparent vertical."""
+    lift = (STATEMENTS / "lift.yaml").read_text(encoding="utf-8")
+    for a, upright in (("-5", "unstable"), ("-20", "stable")):
+        found = mbsym.loads(lift.replace("a: -20", f"a: {a}")).equilibria
+        assert {one.values[0].text: str(one.verdict.word) for one in found.equilibria} == {
+            "0": "unstable" if upright == "stable" else "stable",
+            "pi": upright,
+        }
+    assert word(lift.replace("a: -20", "a: -5")) is Word.STABLE
+    assert word(lift) is Word.UNSTABLE
+    car = mbsym.load(STATEMENTS / "lean.yaml").equilibria
+    assert sorted(str(one.verdict.word) for one in car.equilibria) == ["stable", "unstable"]
+
+
+def test_a_shaken_pivot_has_none() -> None:
+    for name in ("kap_hang_resonant", "kap_up_stable"):
+        found = mbsym.load(STATEMENTS / f"{name}.yaml").equilibria
+        assert {one.verdict.word for one in found.equilibria} == {Word.UNDECIDED}
+
+
+def test_velocities_and_the_time_forbid_an_energy() -> None:
+    """x'' = -x + x'^3 has f(q, 0) with a potential, and no integral; y'' = -x' y' does work, too."""
+    assert word(PLANE.format(force="x: x_dot**3, y: 0")) is Word.CRITICAL
+    assert word(PLANE.format(force="x: 0, y: -x_dot*y_dot")) is Word.CRITICAL
+    assert word(PLANE.format(force="x: y_dot*x, y: -x_dot*x")) is Word.STABLE, "gyroscopic: no work"
