@@ -26,12 +26,11 @@ enclosures).  A theorem is named where all its hypotheses are shown:
 Verdicts of subsystems combine to the weakest that they share: all asymptotically stable, or all with K > 0 under one
 energy that does not grow (a damped part beside an undamped one: stable), or none of them dissipative; else critical.
 
-At the values, what the first approximation leaves open is looked at in the nonlinear system: terms of higher order where
-K has a null direction, and combinations of first integrals with a definite second variation (sleeping tops, free bodies,
-rotors; Chetaev).
+At the values, what the first approximation leaves open is looked at in the nonlinear system: terms of higher order
+where K has a null direction, and combinations of first integrals with a definite second variation (Chetaev; sleeping
+tops, free bodies, rotors).
 
-Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and
-Chetaev.
+Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
 
 Example:
 
