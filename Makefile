@@ -3,6 +3,7 @@
 # make test     sets up and runs the tests
 # make systems  every description that comes with it, in one line each
 # make gallery  draws systems/figures again
+# make robots   27 robots (UR5 to Tiago Dual) derived and held against Pinocchio; installs its URDF files, 400 MB
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
 
 PYTHON ?= python3
@@ -10,7 +11,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery bench clean
+.PHONY: all lint types test demo systems gallery robots robot-data bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -58,6 +59,13 @@ gallery: $(READY)
 	$(call figure,dumbbell,6000,motion,--set alpha=0.8 --set beta=0.4)
 	$(call figure,satellite,20,motion)
 	$(call figure,double-pendulum,6,motion)
+
+# Four of them are among the tests already where the data are there.
+robots: robot-data
+	MBSYM_ALL_ROBOTS=1 $(BIN)/python -m pytest --numprocesses auto tests/robots
+
+robot-data: $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'
 
 bench: $(READY)
 	$(BIN)/python tests/bench/run.py

@@ -29,6 +29,14 @@ def urdf_files() -> dict[str, Path]:
     }
 
 
+def has_urdf_files() -> bool:
+    """Whether that package is installed."""
+    try:
+        return bool(urdf_files())
+    except importlib.metadata.PackageNotFoundError:
+        return False
+
+
 def peer(text: str, floating: bool) -> Any:
     """Pinocchio's model; a floating base has three displacements and yaw, pitch, roll, as the description has.
 

@@ -32,3 +32,6 @@ ROBOTS = {
     "G1": ("g1_description/urdf/g1_29dof_rev_1_0", True),
     "Talos": ("talos_data/robots/talos_full_v2", True),
 }
+
+#: Tested in every run of the tests; ``make robots`` takes all.
+QUICK = ("UR5", "Kinova", "Allegro hand", "ANYmal B")

@@ -14,6 +14,7 @@ third axis, the joint's turn, and turned back.
 * ``mimic`` is a constraint and is not imposed: such a joint is a coordinate of its own.
 * A floating base has three displacements along the inertial axes and yaw, pitch, roll.
 * Inertia tensors are about the mass centre.  Where they are given in turned axes, a body fixed to the link has them.
+  Those that no body has (rounded, or made up) are accepted as they stand.
 
 Angles that are a multiple of pi/4 or pi/6 rounded to the digits that were printed are spelled so.
 """
@@ -338,10 +339,20 @@ def _matter(found: Inertial, centre: Texts) -> list[str]:
     lines.append(f"mass: {number(found.mass)}")
     if any(value != "0" for value in (xx, xy, xz, yy, yz, zz)):
         rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-        diagonal = (xy, xz, yz) == NOWHERE
+        tensor = _list([xx, yy, zz]) if (xy, xz, yz) == NOWHERE else _list([_list(row) for row in rows])
+        real = is_of_a_body(*map(Fraction, (xx, xy, xz, yy, yz, zz)))
         lines.append("inertia about: mass centre")
-        lines.append(f"inertia: {_list([xx, yy, zz]) if diagonal else _list([_list(row) for row in rows])}")
+        lines.append(f"inertia: {tensor if real else f'{{tensor: {tensor}, accept: true}}'}")
     return lines
+
+
+def is_of_a_body(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
+    """Whether the second moments tr(J)/2 1 - J are positive semidefinite: all principal minors are nonnegative."""
+    half = (xx + yy + zz) / 2
+    a, b, c, d, e, f = half - xx, half - yy, half - zz, -xy, -xz, -yz
+    pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
+    whole = a * b * c + 2 * d * e * f - a * f * f - b * e * e - c * d * d
+    return all(minor >= 0 for minor in (a, b, c, *pairs, whole))
 
 
 def _numbers(values: Texts) -> Texts:

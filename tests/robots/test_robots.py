@@ -1,0 +1,94 @@
+"""Robots from packaged URDF files: every report within a minute, and the numbers of Pinocchio.
+
+Needs the extra ``robots`` (``make robots`` installs it); without it these tests are skipped.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from robots import QUICK, ROBOTS
+from urdf import angle, convert, is_of_a_body, multiple_of_pi, number
+
+pytest.importorskip("pinocchio", reason="needs the extra 'robots'")
+agreement = pytest.importorskip("agreement", reason="needs the extra 'robots'")
+if not agreement.has_urdf_files():
+    pytest.skip("needs the extra 'robots'", allow_module_level=True)
+
+#: Relative, of the largest entry, at random states; Pinocchio works in double precision, as model.py does.
+CLOSE = 1e-12
+MBSYM = (sys.executable, "-c", "from mbsym_cli.main import main; main()")
+#: Seconds of ``mbsym run`` on two cores.
+MINUTE = 60
+REPORTS = {
+    "report.tex": 2_000_000,
+    "report.wl": 8_000_000,
+    "results.json": 8_000_000,
+    "model.py": None,
+    "model.c": None,
+}
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in ROBOTS]
+)
+def test_a_robot(name: str, tmp_path: Path) -> None:
+    if name not in QUICK and not os.environ.get("MBSYM_ALL_ROBOTS"):
+        pytest.skip("make robots runs them all")
+    file, floating = ROBOTS[name]
+    text = agreement.urdf_files()[file].read_text(encoding="utf-8")
+    converted = convert(text, floating)
+    (tmp_path / "robot.yaml").write_text(converted.yaml, encoding="utf-8")
+    started = time.monotonic()
+    command = [*MBSYM, "run", "robot.yaml", "--out", "reports", "--quiet"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=4 * MINUTE)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert time.monotonic() - started < MINUTE
+    for report, most in REPORTS.items():
+        size = (tmp_path / "reports" / report).stat().st_size
+        assert size > 1_000
+        assert most is None or size < most, report
+    checks = json.loads((tmp_path / "reports" / "results.json").read_text(encoding="utf-8"))["checks"]
+    outcomes = {check["name"]: check["outcome"] for check in checks}
+    assert set(outcomes.values()) <= {"exact", "verified numerically"}
+    assert outcomes["straight-line program"] in ("exact", "verified numerically")
+    module = agreement.loaded(tmp_path / "reports" / "model.py")
+    assert agreement.worst_difference(text, converted, module) < CLOSE
+
+
+def test_a_wrong_number_is_seen(tmp_path: Path) -> None:
+    """The comparison is no formality: a mass centre moved by a micrometre, a joint turned the other way."""
+    file, floating = ROBOTS["UR5"]
+    text = agreement.urdf_files()[file].read_text(encoding="utf-8")
+    yaml = convert(text, floating).yaml
+    for right, wrong in (("[0, 0, 0.28]", "[0, 0, 0.280001]"), ("angles: [q3]", "angles: [-q3]")):
+        assert right in yaml
+        folder = tmp_path / wrong.strip("[]").replace(" ", "")
+        folder.mkdir()
+        (folder / "robot.yaml").write_text(yaml.replace(right, wrong), encoding="utf-8")
+        command = [*MBSYM, "run", "robot.yaml", "-f", "python", "-o", ".", "-q"]
+        subprocess.run(command, cwd=folder, check=True, timeout=MINUTE)
+        difference = agreement.worst_difference(text, convert(text), agreement.loaded(folder / "model.py"))
+        assert difference > 1e-8
+
+
+def test_numbers_are_spelled_as_they_are_printed() -> None:
+    assert [number(x) for x in ("0.10", "-0.0", "1e-05", "3", "-5.42101e-20")] == [
+        "0.1", "0", "0.00001", "3", "-5.42101E-20",
+    ]  # fmt: skip
+    assert [angle(x) for x in ("1.5708", "-1.57079632679", "3.1415926535897931", "0.5236", "0.5", "1.571", "1.6")] == [
+        "pi/2", "-pi/2", "pi", "pi/6", "0.5", "pi/2", "1.6",
+    ]  # fmt: skip
+    assert multiple_of_pi(-3) == "-3*pi"
+
+
+def test_which_tensors_are_of_a_body() -> None:
+    assert is_of_a_body(1, 0, 0, 1, 0, 2)
+    assert not is_of_a_body(1, 0, 0, 1, 0, 3)
+    assert not is_of_a_body(1, 1, 1, 1, 1, 1)
