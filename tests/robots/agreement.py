@@ -9,13 +9,14 @@ import random
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pinocchio
-from urdf import GRAVITY, Converted, angle
+from urdf import GRAVITY, MOMENTS, Converted, angle, is_nonnegative
 
 
 def urdf_files() -> dict[str, Path]:
@@ -40,12 +41,16 @@ def has_urdf_files() -> bool:
 def peer(text: str, floating: bool) -> Any:
     """Pinocchio's model; a floating base has three displacements and yaw, pitch, roll, as the description has.
 
-    Angles that are rounded multiples of pi are made exact here, too: the question is the mechanics, not the rounding.
+    Angles that are rounded multiples of pi are made exact here, too, and tensors that are negative are taken for zero:
+    the question is the mechanics, not the rounding.
     """
     root = ElementTree.fromstring(text)
     for origin in root.iter("origin"):
         if "rpy" in origin.attrib:
             origin.set("rpy", " ".join(map(_radians, origin.attrib["rpy"].split())))
+    for inertia in root.iter("inertia"):
+        if not is_nonnegative(*(Fraction(inertia.attrib[part].strip()) for part in MOMENTS)):
+            inertia.attrib.update(dict.fromkeys(MOMENTS, "0"))
     exact = ElementTree.tostring(root, encoding="unicode")
     if floating:
         base = pinocchio.JointModelComposite(pinocchio.JointModelTranslation())

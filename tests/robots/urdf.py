@@ -14,7 +14,8 @@ third axis, the joint's turn, and turned back.
 * ``mimic`` is a constraint and is not imposed: such a joint is a coordinate of its own.
 * A floating base has three displacements along the inertial axes and yaw, pitch, roll.
 * Inertia tensors are about the mass centre.  Where they are given in turned axes, a body fixed to the link has them.
-  Those that no body has (rounded, or made up) are accepted as they stand.
+  Those that no body has (rounded, or made up) are accepted as they stand, but for those with which the kinetic energy
+  could be negative (some are -5e-20): no description may have them, and they are taken for zero.
 
 Angles that are a multiple of pi/4 or pi/6 rounded to the digits that were printed are spelled so.
 """
@@ -38,6 +39,8 @@ FEWEST_DIGITS = 4
 
 Texts = tuple[str, str, str]
 NOWHERE: Texts = ("0", "0", "0")
+#: The attributes of an inertia.
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 class UnsupportedError(ValueError):
@@ -134,8 +137,9 @@ def _joint(element: ElementTree.Element) -> Joint:
 def _inertial(element: ElementTree.Element) -> Inertial:
     mass, tensor = element.find("mass"), element.find("inertia")
     centre, turned = _origin(element)
-    parts = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    moments = tuple("0" if tensor is None else tensor.attrib[part].strip() for part in parts)
+    moments = ("0",) * 6 if tensor is None else tuple(tensor.attrib[part].strip() for part in MOMENTS)
+    if not is_nonnegative(*map(Fraction, moments)):
+        moments = ("0",) * 6
     return Inertial("0" if mass is None else mass.attrib["value"].strip(), centre, turned, moments)
 
 
@@ -347,12 +351,16 @@ def _matter(found: Inertial, centre: Texts) -> list[str]:
 
 
 def is_of_a_body(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
-    """Whether the second moments tr(J)/2 1 - J are positive semidefinite: all principal minors are nonnegative."""
+    """Whether the second moments tr(J)/2 1 - J are positive semidefinite."""
     half = (xx + yy + zz) / 2
-    a, b, c, d, e, f = half - xx, half - yy, half - zz, -xy, -xz, -yz
-    pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
-    whole = a * b * c + 2 * d * e * f - a * f * f - b * e * e - c * d * d
-    return all(minor >= 0 for minor in (a, b, c, *pairs, whole))
+    return is_nonnegative(half - xx, -xy, -xz, half - yy, -yz, half - zz)
+
+
+def is_nonnegative(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
+    """Whether a symmetric matrix is positive semidefinite: all its principal minors are nonnegative."""
+    pairs = (xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz)
+    whole = xx * yy * zz + 2 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
+    return all(minor >= 0 for minor in (xx, yy, zz, *pairs, whole))
 
 
 def _numbers(values: Texts) -> Texts:
