@@ -39,6 +39,11 @@ class Energy:
     force_function: Formula
     cyclic: tuple[str, ...]
 
+    @property
+    def terms(self) -> int:
+        """Terms of T and U."""
+        return self.kinetic_energy.terms + self.force_function.terms
+
 
 def energy(scene: Scene) -> Energy:
     """T, split by powers of the velocities, and U (scene over the ring).

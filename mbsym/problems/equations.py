@@ -35,6 +35,11 @@ class Equations:
     forcing: Column
     generalized_force: Column
 
+    @property
+    def terms(self) -> int:
+        """Terms of M and f."""
+        return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
+
 
 def equations(scene: Scene, energy: Energy) -> Equations:
     """Lagrange's equations as M q'' = f (scene over the ring)."""

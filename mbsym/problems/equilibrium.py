@@ -44,6 +44,11 @@ class Equilibrium:
     impossible: tuple[Formula, ...] = ()
     unsteady: tuple[str, ...] = ()
 
+    @property
+    def terms(self) -> int:
+        """Terms of the residuals."""
+        return sum(x.terms for x in self.residuals)
+
     def determined(self, scene: Scene) -> dict[int, Polynomial]:
         """Generator indices of all parameters that others determine where the motion exists, and their values."""
         return determined(scene, ((name, value.polynomial) for name, value in self.solved))

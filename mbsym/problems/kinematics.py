@@ -44,6 +44,15 @@ class BodyKinematics:
 class Kinematics:
     bodies: tuple[BodyKinematics, ...]
 
+    @property
+    def terms(self) -> int:
+        """Terms of all its formulas."""
+        return sum(
+            body.rotation.terms
+            + sum(x.terms for x in (*body.angular_velocity, *body.velocity_origin, *body.velocity_mass_centre))
+            for body in self.bodies
+        )
+
     def body(self, name: str) -> BodyKinematics:
         for body in self.bodies:
             if body.name == name:

@@ -100,6 +100,11 @@ class Linearisation:
         return self.M, self.D, self.G, self.K, self.N
 
     @property
+    def terms(self) -> int:
+        """Terms of the five matrices."""
+        return sum(matrix.terms for matrix in self.matrices)
+
+    @property
     def time_dependence(self) -> str:
         """Which coefficients vary with which quantity, in words; "" where all are constant."""
         if not self.varying:

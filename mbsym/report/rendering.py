@@ -52,7 +52,7 @@ def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Re
         whole = _no_result(error)
     withheld: dict[int, NoResult] = {}
     for number in problems:
-        if number in target.needs and analysis.stage(number).failure is None:
+        if number in target.shows and analysis.stage(number).failure is None:
             try:
                 target.render(analysis, (number,))
             except Exception as error:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Target:
-    """``needs``: the problems whose results the file can hold; of these it shows the ones that were asked for.
+    """``needs``: the problems whose results the file can hold (None: all); of these it shows those asked for.
 
     ``program``: it is made from the straight-line program, which is checked then.  ``companions`` are written beside
     it, as a header is.
@@ -24,15 +24,22 @@ class Target:
 
     name: str
     filename: str
-    needs: tuple[int, ...]
+    needs: tuple[int, ...] | None
     title: str
     text: Callable[[Analysis, Sequence[int]], str]
     companions: tuple[Target, ...] = ()
     program: bool = False
 
+    @property
+    def shows(self) -> tuple[int, ...]:
+        """The problems whose results the file can hold."""
+        from mbsym.analysis import ALL_PROBLEMS
+
+        return ALL_PROBLEMS if self.needs is None else self.needs
+
     def render(self, analysis: Analysis, problems: Sequence[int]) -> str:
         """The file's whole text: the same bytes for the same description, whenever and wherever it is made."""
-        return self.text(analysis, tuple(number for number in sorted(set(problems)) if number in self.needs))
+        return self.text(analysis, tuple(number for number in sorted(set(problems)) if number in self.shows))
 
 
 # The writers are imported when they are used: each brings its own share of Jinja templates and printers.
@@ -74,14 +81,13 @@ def _json(analysis: Analysis, problems: Sequence[int]) -> str:
     return render(analysis, problems)
 
 
-_ALL = (1, 2, 3, 4, 5, 6, 7)
 _HEADER = Target("header", "model.h", (), "declarations of the C source", _c_header)
 
 TARGETS = {
     target.name: target
     for target in (
-        Target("latex", "report.tex", _ALL, "an appendix for pdflatex", _latex),
-        Target("wolfram", "report.wl", _ALL, "definitions in the Wolfram Language", _wolfram),
+        Target("latex", "report.tex", None, "an appendix for pdflatex", _latex),
+        Target("wolfram", "report.wl", None, "definitions in the Wolfram Language", _wolfram),
         Target(
             "python",
             "model.py",
@@ -91,11 +97,11 @@ TARGETS = {
             program=True,
         ),
         Target("c", "model.c", (), "C99 source of the equations, with model.h", _c, (_HEADER,), program=True),
-        Target("json", "results.json", _ALL, "every result as text in Python syntax", _json),
+        Target("json", "results.json", None, "every result as text in Python syntax", _json),
     )
 }
 
 
 def shown_by(formats: Iterable[str]) -> tuple[int, ...]:
     """The problems that the files of some formats can show."""
-    return tuple(sorted({number for name in formats for number in TARGETS[name].needs}))
+    return tuple(sorted({number for name in formats for number in TARGETS[name].shows}))

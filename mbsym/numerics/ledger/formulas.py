@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.characteristic import BUDGET as DETERMINANT
 from mbsym.algebra.characteristic import characteristic_polynomial
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, Limit
 from mbsym.analysis import PROBLEMS
 from mbsym.formulas.formula import Matrix
 from mbsym.numerics.ledger.entry import COUNT, PROVED, Measure, Saving
 from mbsym.numerics.ledger.work import Counted, Work
 from mbsym.problems.linearisation import Linearisation, components
+
+#: Bounds that end a derivation because its result is too large, not because there is none.
+TOO_LARGE = (Limit.TERMS, Limit.WORK, Limit.MEMORY)
 
 
 def problems_not_asked(work: Work) -> Iterator[Saving]:
@@ -24,8 +27,8 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
         work.require(0.0)
         problem, stage = PROBLEMS[number], work.bounded.stage(number)
         if stage.failure is None:
-            found = Counted(_TERMS[number](stage.value), 0, stage.seconds)
-        elif _unfinished(stage.failure.reason):
+            found = Counted(_terms(stage.value), 0, stage.seconds)
+        elif stage.failure.limit in TOO_LARGE:
             found = _given_up(work, number)
         else:
             continue  # there is no such result, so nothing was saved
@@ -45,30 +48,13 @@ def _given_up(work: Work, number: int) -> Counted:
     return Counted(None, alone.ring.work, time.perf_counter() - started)
 
 
-def _unfinished(reason: str) -> bool:
-    """Whether a result was given up because it is too large, and not because there is none."""
-    return any(word in reason for word in ("budget", "steps of polynomial", "beyond the"))
-
-
 def _total(formulas: Iterable[Any]) -> int:
     return sum(x.terms for x in formulas)
 
 
-def _kinematics(found: Any) -> int:
-    parts = ((*(x for row in b.rotation for x in row), *b.angular_velocity, *b.velocity_origin, *b.velocity_mass_centre)
-             for b in found.bodies)  # fmt: skip
-    return sum(_total(part) for part in parts)
-
-
-_TERMS: dict[int, Callable[[Any], int]] = {
-    1: _kinematics,
-    2: lambda found: found.kinetic_energy.terms + found.force_function.terms,
-    3: lambda found: found.mass_matrix.terms + _total(found.forcing),
-    4: lambda found: _total(found.residuals),
-    5: lambda found: _total(found.matrices),
-    6: lambda found: sum(_total(part.characteristic) for part in found.subsystems),
-    7: lambda found: _total(item.formula for item in found),
-}
+def _terms(found: Any) -> int:
+    """Terms of a problem's result, or of all of them where there are several."""
+    return sum(item.formula.terms for item in found) if isinstance(found, tuple) else int(found.terms)
 
 
 def vanishing_entries(work: Work) -> Iterator[Saving]:

@@ -121,6 +121,11 @@ class Stability:
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
 
+    @property
+    def terms(self) -> int:
+        """Terms of the characteristic polynomials."""
+        return sum(x.terms for part in self.subsystems for x in part.characteristic)
+
 
 def stability(
     scene: Scene,
