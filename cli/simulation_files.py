@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 #: More samples than this are not drawn.
 MOST_DRAWN = 20_001
 
-#: Paths are drawn with so many points from one sample to the next, to be smooth.
-SMOOTHER = 8
+#: Paths are drawn with so many points from one sample to the next, to be smooth, and with so many numbers in all.
+SMOOTHER, MOST_PLACES = 8, 2_000_000
 
 
 def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
@@ -70,9 +70,10 @@ def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, byte
     from mbsym.report.motion_figure import motion_figures
 
     found = run.trajectory
-    every = -(-len(found.times) // MOST_DRAWN)  # a picture of a million samples would only be slow
-    times, states = found.times[::every], found.states[:, ::every]
-    pieces = min(MOST_DRAWN // len(times), SMOOTHER)
+    most = min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies)))
+    every = -(-len(found.times) // most)  # a picture of a million samples would only be slow
+    times, states, rates = found.times[::every], found.states[:, ::every], rates[:, ::every]
+    pieces = min(most // len(times), SMOOTHER)
     if pieces > 1:
         times, states = between(times, states, rates, [pieces] * (len(times) - 1))
     try:

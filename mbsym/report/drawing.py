@@ -86,10 +86,13 @@ def styled() -> Iterator[None]:
 
 def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
     """Every figure in every format, by file name; equal figures give equal bytes (with one version of matplotlib)."""
+    found: dict[str, bytes] = {}
     with styled():
-        return {
-            name: content for stem, draw in drawings.items() for name, content in saved(stem, draw(), formats).items()
-        }
+        for stem, draw in drawings.items():
+            figure = draw()
+            found |= saved(stem, figure, formats)
+            figure.clear()  # a figure and its axes hold each other
+    return found
 
 
 def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]:

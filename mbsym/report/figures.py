@@ -7,6 +7,7 @@ Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -48,8 +49,12 @@ def figures(
     if len(found.times) < 2:
         return {}
     with styled():
-        pages = [*_histories(found, note), *_planes(found, note, rates), ("drift", _drift(found, note, conserved))]
-        return {name: content for stem, figure in pages for name, content in saved(stem, figure, formats).items()}
+        images: dict[str, bytes] = {}
+        # One page after the other: a hundred coordinates have fifty of them, and a page in memory is some 20 MB.
+        for stem, figure in chain(_histories(found, note), _planes(found, note, rates)):
+            images |= saved(stem, figure, formats)
+            figure.clear()  # a figure and its axes hold each other
+        return images | saved("drift", _drift(found, note, conserved), formats)
 
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:

@@ -24,6 +24,7 @@ from conftest import SHIPPED, parsed
 from matplotlib.figure import Figure
 from PIL import Image
 
+import mbsym as library
 from mbsym.numerics.between import accelerations, between
 from mbsym.numerics.choice import choose, rates
 from mbsym.numerics.columns import columns
@@ -672,3 +673,53 @@ def test_thinning_keeps_both_ends() -> None:
     times = np.linspace(0, 1, 100_000)
     shown, _ = thinned(times, np.sin(40_000 * times))
     assert (shown[0], shown[-1]) == (0, 1)
+
+
+# --- what is somebody else's ---
+
+
+def test_files_that_it_did_not_write_survive(tmp_path: Path) -> None:
+    """Names like its own, and its own names with other contents: only what it wrote itself goes."""
+    (tmp_path / "trajectory-x.csv").write_text("mine")
+    (tmp_path / "histories-7.png").write_text("mine")
+    assert mbsym(DOUBLE, "--time", 1, "--samples", 9, "-f", "csv,svg", "-o", tmp_path).exit_code == 0
+    (tmp_path / "drift.svg").write_text("redrawn by hand")
+    assert mbsym(DOUBLE, "--time", 1, "--samples", 9, "-f", "csv", "-o", tmp_path).exit_code == 0
+    kept = {"trajectory-x.csv": "mine", "histories-7.png": "mine", "drift.svg": "redrawn by hand"}
+    assert {name: (tmp_path / name).read_text() for name in kept} == kept
+    assert written(tmp_path) == {"trajectory.csv", "simulation.json", *kept}
+
+
+def test_pages_are_let_go_once_they_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fifty pages of a chain of a hundred at once are a gigabyte."""
+    from mbsym.report import figures as drawn
+
+    seen: list[Figure] = []
+    most = 0
+
+    def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]:
+        nonlocal most
+        seen.append(figure)
+        most = max(most, sum(bool(page.axes) for page in seen))
+        return {f"{stem}.svg": b""}
+
+    monkeypatch.setattr(drawn, "saved", saved)
+    dynamics = dynamics_of(described(tmp_path, chain(12)))
+    found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), np.linspace(0, 0.1, 5))
+    assert len(figures(found, ["svg"])) == 6
+    assert most == 1
+
+
+def test_two_energies_are_two_columns(tmp_path: Path) -> None:
+    """In an orbit T - U and T2 - T0 - U are different numbers; the drift is that of the one that is conserved."""
+    path = SHIPPED / "satellite.yaml"
+    assert mbsym(path, "--time", 1, "--samples", 5, "-f", "csv", "-o", tmp_path).exit_code == 0
+    found, content = table(tmp_path / "trajectory.csv"), summary(tmp_path)
+    run = library.simulate(path, 1, samples=5)
+    assert np.array_equal(found["energy"], run.energy)
+    assert np.array_equal(found["generalized_energy"], run.generalized_energy)
+    assert np.ptp(found["energy"]) > 1e-3
+    assert np.max(np.abs(found["relative_drift"])) < 1e-9
+    assert (content["energy"]["is"], content["energy"]["conserved"]) == ("T - U", False)
+    generalized = content["generalized_energy"]
+    assert (generalized["is"], generalized["conserved"], generalized["how"]) == ("T2 - T0 - U", True, "proved")
