@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import json
 import os
 import signal
@@ -719,6 +720,16 @@ def test_two_energies_are_two_columns(tmp_path: Path) -> None:
     assert np.array_equal(found["energy"], run.energy)
     assert np.array_equal(found["generalized_energy"], run.generalized_energy)
     assert np.ptp(found["energy"]) > 1e-3
+    assert CliRunner().invoke(main, ["run", str(path), "-f", "python", "-o", str(tmp_path / "run")]).exit_code == 0
+    spec = importlib.util.spec_from_file_location("model_beside", tmp_path / "run" / "model.py")
+    assert spec is not None
+    assert spec.loader is not None
+    model = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(model)
+    for k, t in enumerate(run.times):
+        state = run.coordinates[:, k], run.velocities[:, k], model.DEFAULTS, t
+        assert model.energy(*state) == pytest.approx(found["energy"][k], rel=1e-12)
+        assert model.generalized_energy(*state) == pytest.approx(found["generalized_energy"][k], rel=1e-12)
     assert np.max(np.abs(found["relative_drift"])) < 1e-9
     assert (content["energy"]["is"], content["energy"]["conserved"]) == ("T - U", False)
     generalized = content["generalized_energy"]

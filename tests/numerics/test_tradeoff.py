@@ -17,11 +17,12 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.fidelity import measured
+from mbsym.numerics.fidelity import measured, model_advice
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.reduction import PROVED, resting
 from mbsym.numerics.reference import Reference, reference
 from mbsym.numerics.scenario import scenario
+from mbsym.numerics.trade_study import studied
 from mbsym.numerics.tradeoff import Tradeoff, advice, tradeoff
 from mbsym_cli.main import main
 
@@ -315,3 +316,61 @@ loads:
 values: {mu: 1e6}
 initial: {x: 100, y: {position: 0, velocity: 90}}
 """
+
+
+# --- what is said of the trade ---
+
+CASES = Path(__file__).parents[1] / "cases" / "statements"
+
+
+def test_what_rests_by_symmetry_spoils_no_error() -> None:
+    """The cart under two opposite pendulums stays where it is; its rounding, relative to itself, would be 1."""
+    dynamics = Dynamics(scenario(mbsym.load(CASES / "symmetric_cart.yaml").system))
+    found = studied(dynamics.scenario, [METHODS["dop853"]], 6.0, 2.0, False).trade
+    assert found.reference.error < 1e-15
+    assert min(row.error for row in found.rows) < 1e-11
+    assert "reaches 1e-09 at the least cost" in advice(found, 1e-9)
+
+
+def test_errors_at_whole_periods_are_parts_of_the_motion() -> None:
+    """x = cos t at multiples of 2 pi: the velocity is 0 there, which is no size of it."""
+    dynamics = Dynamics(scenario(mbsym.load(CASES / "osc.yaml").system))
+    found = studied(dynamics.scenario, [METHODS["rk4"]], 64 * 2 * np.pi, 1.0, False).trade
+    assert found.reference.scale == pytest.approx([1, 1], rel=1e-3)
+    for row in found.rows:
+        step = row.candidate.setting.step
+        if (
+            row.candidate.scalar == "float64" and step is not None and step < 0.05
+        ):  # |error| = t h^4 / 120 + ..., of the phase
+            assert row.error == pytest.approx(64 * 2 * np.pi * step**4 / 120, rel=0.01, abs=1e-12)
+
+
+def test_a_target_is_reached_with_the_error_of_the_reference(trade: Tradeoff) -> None:
+    """A row of 0.999 of the target, against a reference that is wrong by a hundredth of it, has not reached it."""
+    row = replace(trade.rows[0], error=0.999e-6, trouble="", seconds=1e-9)
+    planted = replace(trade, rows=(row,), reference=replace(trade.reference, error=1e-8))
+    assert planted.cheapest(1e-6) is None
+    assert "Nothing tried reaches 1e-06" in advice(planted, 1e-6)
+    assert planted.cheapest(1.1e-6) is row
+
+
+def test_errors_below_the_rounding_of_what_is_compared_are_none(trade: Tradeoff) -> None:
+    """Reference and solutions are compared as float64: 1e-19 is no error that could be seen."""
+    assert trade.smallest_judged >= 2**-52
+    assert "cannot be judged" in advice(trade, 1e-17)
+
+
+def test_nothing_that_came_to_the_end_is_said_to_be_accurate(trade: Tradeoff) -> None:
+    rows = tuple(replace(row, error=inf, trouble="step limit") for row in trade.rows[:2])
+    assert advice(replace(trade, rows=rows), 1e-6) == "Nothing tried reaches 1e-06: no run came to the end."
+
+
+def test_the_models_own_error_is_part_of_the_advice() -> None:
+    """A dumbbell of 2000 km in a field of order 2 is off by more than any solution of its equations."""
+    text = (SYSTEMS / "dumbbell.yaml").read_text().replace("l: 30}", "l: 2000000}")
+    study = studied(scenario(mbsym.loads(text).system), [METHODS["dop853"]], 1000.0, 0.3, True)
+    assert "an error of 1e-09 is one of its equations, not of the motion" in model_advice(study.models, 1e-9)
+    assert "which adds to the error" in model_advice(study.models, 0.5)
+    exact = text.replace("order: 2", "order: exact")
+    study = studied(scenario(mbsym.loads(exact).system), [METHODS["dop853"]], 1000.0, 0.3, True)
+    assert model_advice(study.models, 1e-9) == ""
