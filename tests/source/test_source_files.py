@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from fractions import Fraction
 from pathlib import Path
 
@@ -14,9 +15,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mbsym.expressions.place import Complaint, Span
+from mbsym.expressions.safe import safe
 from mbsym.expressions.tree import text as written
 from mbsym.model.system import CoordinateSpring, Inertia, PointForce, System, UniformGravity, rational
 from mbsym.source import json_schema, load, read, render, to_text, to_yaml
+from mbsym.source.document import MAX_COMPLAINTS, MAX_OF_A_KIND
 from mbsym.source.placed import MAX_TEXT
 from mbsym.source.scope import slip_of
 
@@ -346,3 +349,47 @@ def test_reading_is_light() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_complaints_of_a_kind_are_counted() -> None:
+    bodies = "".join(f"- {{name: b{k}, attached to: 0, mass: nobody{k}}}\n" for k in range(100))
+    _, complaints = read("mbsym: 1\nname: x\nbodies:\n" + bodies, "x.yaml")
+    kinds = [item.code for item in complaints.items]
+    assert kinds.count("unknown-name") == MAX_OF_A_KIND
+    assert complaints.items[-1].message == f"and {100 - MAX_OF_A_KIND} more of the kind unknown-name"
+
+
+def test_too_many_bodies_are_one_complaint() -> None:
+    """What follows from it, 400 unknown bodies and coordinates, is not said."""
+    bodies = "".join(
+        f"- {{name: b{k}, attached to: {f'b{k - 1}' if k else 0}, mass: 1, rotation: {{axes: [3], angles: [q{k}]}}}}\n"
+        for k in range(400)
+    )
+    _, complaints = read("mbsym: 1\nname: x\nbodies:\n" + bodies + "motion: {q1: 0, q399: 0}\n", "x.yaml")
+    (only,) = complaints.items
+    assert only.code == "too-large"
+    assert "not 400" in only.message
+    assert only.span is not None
+
+
+@pytest.mark.parametrize(
+    "value", ["'" + "@;" * 9_990 + "'", "'" + "é " * 9_000 + "'", "(" * 9_000, "'" + "a b " * 4_000 + "'", "1/" * 9_000]
+)
+def test_hostile_values_are_refused_in_a_moment(value: str) -> None:
+    began = time.perf_counter()
+    system, complaints = read(
+        f"mbsym: 1\nname: x\nparameters:\n  p0: {value}\n  p1: 1\nvalues: {{p1: {value}}}\n", "x.yaml"
+    )
+    assert system is None
+    assert len(complaints.items) <= MAX_COMPLAINTS
+    assert time.perf_counter() - began < 2
+
+
+def test_what_is_shown_moves_no_cursor() -> None:
+    assert safe("a\x1b]0;t\x07\u202eb\u200b\x9b\ud800é") == "a\\x1b]0;t\\x07\\u202eb\\u200b\\x9b\\ud800é"
+    assert safe("a\tb\nc") == "a b c"
+    for name in ("\x1b[31m.yaml", "a\nb.yaml", "x\u2066.yaml"):
+        complaint = Complaint("code", "\x1b message", Span(1, 1), "\u202e hint")
+        shown = render(complaint, "\x1b line", name)
+        assert all(line.isprintable() for line in shown.split("\n"))
+        assert shown.count("\n") == 3
