@@ -82,17 +82,22 @@ def _alternative(ring: Ring, requirement: Requirement) -> Statement:
 
 @dataclass(frozen=True)
 class CaseStatement:
-    """If ``all_of`` and one of ``any_of`` hold: the verdict.  Requirements that always hold are left out."""
+    """If ``all_of`` and one of ``any_of`` hold: the verdict.  Requirements that always hold are left out.
+
+    ``otherwise``: nothing is required, but that the cases before do not apply.
+    """
 
     all_of: tuple[Statement, ...]
     any_of: tuple[Statement, ...]
     word: str
     theorem: str
     explanation: str
+    otherwise: bool = False
 
 
 def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
-    """The cases that can occur."""
+    """The cases that can occur: none after one that always holds."""
+    certain = next((k for k, case in enumerate(found) if case.always), len(found))
     return [
         CaseStatement(
             tuple(statements(ring, case.all_of)),
@@ -102,8 +107,9 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
             case.verdict.word,
             case.verdict.theorem,
             case.verdict.explanation,
+            case.always and any(not other.never for other in found[:k]),
         )
-        for case in found
+        for k, case in enumerate(found[: certain + 1])
         if not case.never
     ]
 

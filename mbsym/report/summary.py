@@ -19,6 +19,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.requirements import Method
 from mbsym.problems.stability.sentences import short, with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
+from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.claims import ClaimLine, claim_line
@@ -127,8 +128,7 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word is Word.DEPENDS and items:
-            necessary = part.theory.method is Method.EVEN and not part.theory.potential
-            verdict += "; necessary conditions, but for the case of equality:" if necessary else "; conditions:"
+            verdict += f"; {_heading(part.theory)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         for item in items:
             yield f"  {_condition(item)}"
@@ -141,6 +141,16 @@ def _stability(found: Stability, presumed: str) -> Iterator[str]:
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _heading(theory: Theory) -> str:
+    """What the listed conditions are."""
+    if theory.method is Method.EVEN and not theory.potential:
+        return "necessary conditions, but for the case of equality"
+    always = next((case.verdict for case in theory.cases if case.always), None)
+    if always is not None and always.stable:
+        return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
+    return "conditions"
 
 
 def _roots(spectrum: Spectrum) -> str:

@@ -5,6 +5,7 @@ What stays undamped are modes v with K v = w^2 M v and D v = 0 (G = 0), by hand 
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ from mbsym.problems.stability.theorems import Fact, Ground, applying
 from mbsym.problems.stability.verdict import concluded
 from mbsym.problems.stability.word import Word
 from mbsym.report.summary import summary
+from mbsym.report.targets import TARGETS
 
 NONE = fmpq_mpoly_ctx.get(["unused"])
 
@@ -155,3 +157,37 @@ def test_damping_of_unknown_or_wrong_sign_is_no_energy() -> None:
     assert verdict("rayleigh: -b*y_dot**4/4") == "stable in first approximation only, critical"
     assert verdict("rayleigh: b*(y_dot**2/2 - y_dot**4/4)") == "stable"  # near the motion it takes energy
     assert verdict("rayleigh: b*(y_dot**2/2 - x_dot**4/4)") != "stable"  # but not from x
+
+
+SERIES = """
+mbsym: 1
+name: Three masses in a row, the middle one damped
+parameters: {m1: positive, m2: positive, m3: positive, k1: positive, k2: positive, k3: positive, b: positive}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: m1, coordinates: [x]}
+  - {name: two, attached to: 0, connection point: [0, y, 0], mass: m2, coordinates: [y]}
+  - {name: three, attached to: 0, connection point: [0, 0, z], mass: m3, coordinates: [z]}
+loads:
+  - potential: k1*x**2/2 + k2*(x-y)**2/2 + k3*(y-z)**2/2
+  - damper: {coordinate: y, coefficient: b}
+motion: {x: 0, y: 0, z: 0}
+"""
+
+
+def test_asymptotic_or_merely_stable_depends_but_stable_it_is() -> None:
+    """With y at rest x and z swing at (k1 + k2)/m1 and k3/m3: only if these are equal does a mode have a node at y."""
+    a = mbsym.loads(SERIES)
+    (line,) = summary(a, (6,), []).problems
+    heading, condition = line.lines
+    assert heading == (
+        "x, y, z: depends on the parameters; stable (Lagrange-Dirichlet) in any case, asymptotically stable under "
+        "these conditions:"
+    )
+    assert condition.endswith("m3*(k1 + k2) - m1*k3 != 0")
+    text = TARGETS["latex"].render(a, (6,))
+    assert "Otherwise \\textbf{stable} (Lagrange-Dirichlet):\nK " in text
+    cases = json.loads(TARGETS["json"].render(a, (6,)))["stability"]["cases"][0]
+    assert [(case["verdict"], bool(case["all_of"])) for case in cases] == [
+        ("asymptotically stable", True),
+        ("stable", False),
+    ]
