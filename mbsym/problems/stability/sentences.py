@@ -65,11 +65,11 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order {} decide.".format,
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
-        "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and the nonlinear "
-        "system is open."
+        "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and leaves the "
+        "nonlinear system open."
     ),
     Because.GYROSCOPIC_ENCLOSED: (
-        "The first approximation is stable by gyroscopic forces alone; the nonlinear system is open."
+        "The first approximation is stable by gyroscopic forces alone, and leaves the nonlinear system open."
     ),
     Because.COINCIDENCE: (
         "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
