@@ -41,6 +41,9 @@ TERM_BUDGET = 60_000
 
 #: A product that may need more bytes than this is not begun: a library that runs out of memory ends the process.
 MEMORY_BUDGET = 1_500_000_000
+#: One formula may take so many bytes at the usual term budget: a term holds the exponents of all generators, and a ring
+#: of 200 coordinates has a thousand of them.
+FORMULA_BUDGET = 24_000_000
 #: Candidate terms (and what costs as much) of everything that is done in one ring together, at the usual term budget.
 WORK_BUDGET = 300_000_000
 #: Below so many candidate terms a product, reduction or substitution is not looked at more closely.
@@ -107,7 +110,6 @@ class Ring(Algebra):
         spare: int = 8,
         terms: int = TERM_BUDGET,
     ) -> None:
-        self.term_budget = terms
         self.work, self.work_budget = 0, WORK_BUDGET * max(1, terms // TERM_BUDGET)
         self.spare = spare
         layout: list[Generator] = [Generator("spare", f"#{spare - 1 - k}") for k in range(spare)]
@@ -126,6 +128,7 @@ class Ring(Algebra):
         self._free = spare - 1
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
+        self.most_terms = min(terms, FORMULA_BUDGET * max(terms, TERM_BUDGET) // TERM_BUDGET // term_bytes(len(layout)))
         self._overhead = 20 + len(layout) // 3  # what an operation costs before it looks at the second term
         self._positive = {self._index["parameter", name] for name in positive if ("parameter", name) in self._index}
         self._nonnegative = self._positive | {
@@ -202,8 +205,8 @@ class Ring(Algebra):
         return a * b
 
     def _check(self, x: Polynomial) -> None:
-        if len(x) > self.term_budget:
-            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.term_budget}", limit=Limit.TERMS)
+        if len(x) > self.most_terms:
+            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.most_terms}", limit=Limit.TERMS)
 
     def factored(self, x: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
         """The content of x and its irreducible factors with their exponents, if x is not too long to be factored."""
@@ -826,7 +829,7 @@ class ParameterRing(Ring):
         if any(whole.generators[k].kind != "parameter" for k in indices):
             raise ValueError("only parameters can be split off")
         self.whole = whole
-        self.term_budget = whole.term_budget
+        self.most_terms = whole.most_terms
         self.work, self.work_budget, self._overhead = whole.work, whole.work_budget, 20
         self.spare, self._free = 0, -1
         self.indices = tuple(indices)
@@ -937,9 +940,13 @@ def _check_number(value: fmpq) -> None:
 
 
 def _bytes(x: Polynomial, degree: int) -> int:
+    return term_bytes(x.context().nvars(), degree)
+
+
+def term_bytes(generators: int, degree: int = 1) -> int:
     """The bytes of one term: exponents are packed into words, at least eight bits each."""
     bits = max(8, degree.bit_length() + 1)
-    return 16 + 8 * -(-x.context().nvars() // max(1, 64 // bits))
+    return 16 + 8 * -(-generators // max(1, 64 // bits))
 
 
 def _words(x: Polynomial) -> int:
