@@ -377,7 +377,8 @@ class _ChartSearch:
             seen.add(k)
             g = ring.generators[k]
             if g.kind == "function" or (g.kind in ("sine", "cosine") and g.argument is not None):
-                return f"{'sine and cosine' if g.kind != 'function' else g.name} of something that is no angle"
+                what = "a number" if ring.constant_value(g.argument) is not None else "something that is no angle"
+                return f"{'sine and cosine' if g.kind != 'function' else g.name} of {what}"
             if g.argument is not None:
                 pending += [i for i, degree in enumerate(g.argument.degrees()) if degree > 0]
             elif g.kind in ("sine", "cosine", "coordinate"):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, Negative, is_number, subtract, walk
-from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector
+from mbsym.model.admissibility import ROUNDING
+from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector, rational
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, INERTIA, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence, TooManyComplaints
@@ -329,5 +330,23 @@ def _tensor(node: Node, reading: Reading) -> Tensor:
                 assert isinstance(below, Sequence)
                 entries = f"{row + 1},{column + 1} and {column + 1},{row + 1}"
                 message = f"a tensor of inertia is symmetric: entries {entries} differ"
-                reading.error("asymmetric-inertia", message, below.items[column].span)
+                if _is_rounding(difference, rows[column][row]):
+                    hint = (
+                        f"taken for rounding, as it is less than a millionth; {column + 1},{row + 1} is used for both"
+                    )
+                    reading.complaints.warning("rounded-inertia", message, below.items[column].span, hint)
+                    rows[row] = _with(rows[row], column, rows[column][row])
+                else:
+                    reading.error("asymmetric-inertia", message, below.items[column].span)
     return rows[0], rows[1], rows[2]
+
+
+def _is_rounding(difference: Expression, entry: Expression) -> bool:
+    """Whether two numbers differ by less than the rounding of decimals."""
+    between, size = rational(difference), rational(entry)
+    return between is not None and size is not None and abs(between) <= ROUNDING * abs(size)
+
+
+def _with(vector: Vector, index: int, component: Expression) -> Vector:
+    first, second, third = (component if k == index else old for k, old in enumerate(vector))
+    return first, second, third

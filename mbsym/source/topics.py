@@ -10,7 +10,7 @@ from textwrap import wrap
 
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
-from mbsym.source.keys import BODY, CLAIM, LOAD_MEANINGS, LOADS, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
+from mbsym.source.keys import BODY, CLAIM, INERTIA, LOAD_MEANINGS, LOADS, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
 
 WIDTH = 110
 
@@ -23,6 +23,7 @@ def description() -> str:
         ("A prescribed quantity", PRESCRIBED),
         ("A body", BODY),
         ("Its rotation", ROTATION),
+        ("Its inertia, where identified values are to be taken as given", INERTIA),
     ]
     return "\n\n".join(f"{title}\n\n{_listed(table)}" for title, table in parts) + "\n\n" + _SEE
 
