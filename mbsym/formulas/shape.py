@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import gcd, lcm
+from math import gcd, lcm, prod
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary, proxy
 
@@ -27,6 +27,13 @@ from mbsym.formulas.numerals import writable
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
 FACTOR_WHOLE = 60
+
+#: Candidate terms of products (some tenths of a second) that bringing a formula to one denominator may take.
+FRACTION_WORK = 500_000
+
+#: The terms of a product that such a denominator may be: with more, no numerator is short.
+FRACTION_TERMS = 20_000
+
 FACTOR_MIXED = 24
 #: In polynomials longer than this the coefficients of the monomials are not factored either.
 FACTOR_COEFFICIENTS = 3000
@@ -139,11 +146,21 @@ class _Presenter:
 
     def _as_fraction(self, polynomial: Polynomial) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
-        if len(polynomial) <= FACTOR_WHOLE and any(self._long_reciprocal(k) for k in _used(polynomial)):
-            numerator, denominators = self.ring.fraction(polynomial)
+        long = [k for k in _used(polynomial) if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
+        if long and self._terms_of_denominator(polynomial, long) <= FRACTION_TERMS:
+            try:
+                with self.ring.budget(FRACTION_WORK):
+                    numerator, denominators = self.ring.fraction(polynomial)
+            except NoClosedForm:  # nothing that gets shorter: term by term it is written all the same
+                return polynomial, []
             if len(numerator) < len(polynomial):
                 return numerator, [Factor(self(p), exponent) for p, exponent in denominators]
         return polynomial, []
+
+    def _terms_of_denominator(self, polynomial: Polynomial, reciprocals: Sequence[int]) -> int:
+        """How many terms the common denominator has at most before they are collected."""
+        degrees = polynomial.degrees()
+        return prod(len(self._inverse_of(k)) ** int(degrees[k]) for k in reciprocals)  # type: ignore[arg-type]
 
     def _long_reciprocal(self, index: int) -> bool:
         inner = self._inverse_of(index)

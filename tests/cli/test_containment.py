@@ -290,3 +290,16 @@ def test_in_python_the_log_has_the_traceback(caplog: pytest.LogCaptureFixture, m
     assert record.name == "mbsym"
     assert record.exc_info is not None
     assert isinstance(record.exc_info[1], OverflowError)
+
+
+def test_a_denominator_beyond_the_budget_costs_no_report(tmp_path: Path) -> None:
+    """Seven stars, one distance of 21 not like the others: term by term the force function is short."""
+    text = (ROOT / "tests" / "systems" / "pleiades.yaml").read_text()
+    changed = text.replace("(x1 - x5)**2 + (y1 - y5)**2", "(x1 - x5)**2 + (1/3 - y5)**2")
+    assert changed != text
+    (tmp_path / "stars.yaml").write_text(changed)
+    done = run(tmp_path / "stars.yaml", "-o", tmp_path / "out")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert names(tmp_path / "out") == FILES | {MANIFEST}
+    force = json.loads((tmp_path / "out" / "results.json").read_text())["energy"]["force_function"]
+    assert force.count("sqrt(") == 21
