@@ -55,6 +55,18 @@ def free_spin(system: System) -> Spin | None:
     return Spin(first, (second, third), motion[first][1])
 
 
+def is_free_about_the_origin(system: System) -> bool:
+    """Whether the whole may be turned about the inertial origin in any way: its angular momentum there is constant.
+
+    (Noether: three rotations that leave L unchanged, and no load without a force function has a moment from outside.)
+    """
+    roots = [body for body in system.bodies if body.attached_to == INERTIAL]
+    angles = _attitude(roots[0]) if len(roots) == 1 else None
+    if angles is None or any(x != ZERO for x in roots[0].connection_point):
+        return False
+    return roots[0].relative_velocity is None and _same_in_every_direction(system, roots[0], angles)
+
+
 def _attitude(body: Body) -> tuple[str, str, str] | None:
     """The three coordinates that turn a body in space, if its joint is made of them."""
     axes = body.rotation.axes

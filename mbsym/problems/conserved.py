@@ -16,6 +16,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import programs
+from mbsym.mechanics.symmetry import is_free_about_the_origin
 from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
 from mbsym.problems.energy import Energy
@@ -104,7 +105,8 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
     """The same from the integrals of problem 7."""
     ring, system = scene.ring, scene.system
     hidden = [*left_out, *(item.name for item in system.prescribed), "t"]
-    proved = [item for item in known if item.status == PROVED]
+    free = is_free_about_the_origin(system)
+    proved = [item for item in known if item.status == PROVED or (free and item.kind == "angular momentum")]
     found = [(item.name, item.formula.polynomial) for item in proved]
     for kind in ("linear momentum", "angular momentum"):
         parts = [item for item in proved if item.kind == kind and ring.dependencies(item.formula.polynomial, hidden)]

@@ -168,8 +168,11 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     except Failure:
         known = None
     balance = dissipation.balance(scene, known, knowledge.signs(scene), somewhere=True)
-    law = EnergyLaw.CONSERVED if not balance.law.bounded and has_energy(found) else balance.law
     cyclic = tuple(names.index(name) for name in balance.ignorable if name not in balance.driven)
+    # Momenta of cyclic coordinates have to be those of the equations, too, not of an L that knows the time.
+    law = balance.law
+    if not law.bounded and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
+        law = EnergyLaw.CONSERVED
     parts = (
         mass,
         [[ring.reduce(half * (velocity[i][j] + velocity[j][i])) for j in n] for i in n],

@@ -195,3 +195,57 @@ def test_hanging_is_stable_in_whatever_frame(rate: str) -> None:
     turning = mbsym.loads(HANGING.format(W=rate, spring="  - potential: sin(x)**2/20\n")).stability.numerical
     assert turning is not None
     assert turning.word is (Word.STABLE if Fraction(rate) ** 2 < 10 else Word.GYROSCOPIC)
+
+
+DUAL_SPIN = """
+mbsym: 1
+name: Platform with a rotor
+parameters: {{A: {A}, B: {B}, C: {C}, W: {W}, s: {s}}}
+bodies:
+  - name: platform
+    rotation: {{axes: [3, 1, 2], angles: [c, a, b]}}
+    mass: 1
+    inertia about: mass centre
+    inertia: [A, B, C]
+  - name: rotor
+    attached to: platform
+    rotation: {{axes: [3], angles: [r]}}
+    mass: 1
+    inertia about: mass centre
+    inertia: [1, 1, 1/2]
+motion: {{c: {{value: 0, rate: W}}, a: 0, b: 0, r: {{value: 0, rate: s}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("moments", "rate", "rotor"),
+    [
+        ((4, 3, 2), "0", "5"),
+        ((4, 3, 2), "1", "0"),
+        ((4, 2, 3), "1", "-8"),
+        ((4, 2, 3), "1/10", "8"),
+        ((4, 2, 3), "1", "1"),
+    ],
+)
+def test_a_platform_may_be_despun(moments: tuple[int, int, int], rate: str, rotor: str) -> None:
+    """As above with A + 1, B + 1, C + 1/2 and h = s/2: a rotor as a body of its own, whose angle is cyclic."""
+    A, B, C = moments
+    W, s = Fraction(rate), Fraction(rotor)
+    product = ((C - B - Fraction(1, 2)) * W + s / 2) * ((C - A - Fraction(1, 2)) * W + s / 2)
+    text = DUAL_SPIN.format(A=A, B=B, C=C, W=W, s=s)
+    verdict = mbsym.loads(text if W else text.replace("c: {value: 0, rate: W}, ", "")).stability.numerical
+    assert verdict is not None
+    assert verdict.word is (Word.STABLE_BUT_CYCLIC if product > 0 else Word.UNSTABLE)
+
+
+def test_a_spring_to_the_outside_takes_the_angular_momentum_away() -> None:
+    """The same despun platform, tied weakly to space: no integral but the energy and the rotor's momentum is left."""
+    text = DUAL_SPIN.format(A=4, B=2, C=3, W=1, s=-8).replace("c: {value: 0, rate: W}, ", "")
+    held = mbsym.loads(
+        text + "loads:\n  - potential: -sin(a)**2/100 - sin(b)**2/100 - sin(c)**2/100\n"
+    ).stability.numerical
+    assert held is not None
+    assert held.word is Word.UNSTABLE
+    loose = mbsym.loads(text + "loads:\n  - potential: -sin(a)**2/100 - sin(b)**2/100\n").stability.numerical
+    assert loose is not None
+    assert loose.word in (Word.GYROSCOPIC, Word.UNDECIDED)
