@@ -243,7 +243,7 @@ def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimR
         remark = f"{subject} not sufficient for stability"
     else:
         shows = dict(found.shows)
-        in_first = shows["the motion"].startswith(Word.GYROSCOPIC)
+        in_first = found.word is Word.GYROSCOPIC
         remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
         if claim.relation in ("<", ">") and next(iter(shows.values())) == "0":
             remark += ": with equality, too, the motion is stable"

@@ -38,6 +38,7 @@ from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40
@@ -53,10 +54,14 @@ PRECISION, DIGITS_SHOWN = 256, 12
 
 @dataclass(frozen=True)
 class Counterexample:
-    """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value)."""
+    """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value).
+
+    ``word`` is the verdict of problem 6 there, where it is asked for.
+    """
 
     at: tuple[tuple[str, str], ...]
     shows: tuple[tuple[str, str], ...]
+    word: Word | None = None
 
 
 # --- parameters ---
@@ -215,7 +220,7 @@ class Trials:
             word = verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
             at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
             shows = tuple((text, str(gap)) for text, gap, _ in gaps)
-            best = Counterexample(at, (*shows, ("the motion", word)))
+            best = Counterexample(at, (*shows, ("the motion", word)), verdict.word)
             if verdict.word != words[-1] or len(words) == 1:
                 break
         return best

@@ -49,7 +49,7 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
             verdict = _judge_turned(a, [_number(x, point) for x in system.turned], verdict)
         return PointVerdict(verdict, characteristic, roots)
     if roots.left + len(system.cyclic) == 2 * system.size:
-        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT})), characteristic, roots)
+        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=False), characteristic, roots)
     there = _with_numbers(system, (m, d, g, k, n))  # a damper of coefficient 0 changes no momentum
     if only_momenta(there):
         return PointVerdict(coasting(), characteristic, roots)

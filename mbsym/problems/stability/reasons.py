@@ -39,6 +39,7 @@ class Because(Enum):
     # of cyclic coordinates
     COASTING = auto()
     DRIFT = auto()
+    DRIFT_AT_GIVEN_MOMENTA = auto()
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open

@@ -389,7 +389,7 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), drifting(_all_left(False))), *unstable), None
+        return (Case(found.requirements, (), drifting(_all_left(False), constant_momenta=False)), *unstable), None
     return unstable, None
 
 

@@ -198,13 +198,18 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
 
 
-def drifting(verdict: Verdict) -> Verdict:
-    """The verdict on the other coordinates as one on the whole, whose cyclic coordinates may drift."""
+def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
+    """The verdict on the other coordinates as one on the whole, whose cyclic coordinates may drift.
+
+    ``constant_momenta``: it was reached after Routh, and a disturbed momentum stays disturbed.
+    """
     flaws = verdict.flawed | {Flaw.CYCLIC}
     grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
+    decays = constant_momenta and Ground.DECAYS in verdict.laid
+    drift = Because.DRIFT_AT_GIVEN_MOMENTA if decays else Because.DRIFT
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
-    return Verdict(row.word, names, (*verdict.reasons, Reason(Because.DRIFT)), tuple(grounds.items()), flaws)
+    return Verdict(row.word, names, (*verdict.reasons, Reason(drift)), tuple(grounds.items()), flaws)
 
 
 def _at_constant_momenta(theorems: Iterable[str]) -> tuple[str, ...]:

@@ -344,3 +344,17 @@ def test_without_a_known_energy_nothing_covers_both() -> None:
     """The force x_dot^3 drives what friction would brake: dE/dt = x_dot^4 - b y_dot^2."""
     found = mbsym.loads(MASSES.format(more="  - generalized force: {x: x_dot**3}"))
     assert found.stability.verdict.word is Word.CRITICAL
+
+
+def test_asymptotic_at_given_momenta_only() -> None:
+    """A damped pendulum that turns: theta'' + theta' - phi' + 2 theta = 0 and phi' + theta = p, which stays as it is.
+
+    With another p, theta tends to another value: the sentence may not say that all velocities come back.
+    """
+    given = Block([[1, 0], [0, 1]], [[1, 0], [0, 0]], [[0, -1], [1, 0]], [[2, 0], [0, 0]], [[0, 0], [0, 0]], (1,))
+    found = verdict_at(given.system(True), {}).verdict
+    assert (found.word, found.theorem) == (Word.ASYMPTOTIC_BUT_CYCLIC, "Kelvin-Chetaev")
+    assert "at the given momenta" in found.explanation
+    assert "all velocities" not in found.explanation
+    braked = Block([[1]], [[1]], [[0]], [[0]], [[0]], (0,))  # phi'' + phi' = 0: this velocity does come back
+    assert "all velocities" in verdict_at(braked.system(True), {}).verdict.explanation
