@@ -164,8 +164,10 @@ def test_kills_at_random_moments_never_mix_two_sets(tmp_path: Path) -> None:
 
 def test_two_writers_at_once_never_mix_their_sets(tmp_path: Path) -> None:
     children = [writer(tmp_path, "a"), writer(tmp_path, "b")]
-    seen = set()
-    for _ in range(40):
+    seen: set[str] = set()
+    deadline = time.monotonic() + 30
+    while len(seen) < 20 or len({mark[0] for mark in seen}) < 2:
+        assert time.monotonic() < deadline
         with files.alone(tmp_path):
             found = marks(tmp_path)
             assert len(found) == 1

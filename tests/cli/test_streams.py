@@ -147,29 +147,33 @@ def test_names_of_files_reach_no_terminal_as_they_are(tmp_path: Path) -> None:
     assert [path.name for path in (tmp_path / "reports").iterdir()] == ["a_]0;title_[red]_"]
 
 
+TELLING = """
+import sys
+from mbsym.numerics import simulate
+honest = simulate.simulate
+def told(dynamics, method, setting, times, arithmetic="float64", watch=None):
+    def first(t):
+        nonlocal watch
+        print("under way", file=sys.stderr, flush=True)
+        watch = lambda t: None
+    watch = first
+    return honest(dynamics, method, setting, times, arithmetic, lambda t: watch(t))
+simulate.simulate = told
+from mbsym_cli.main import main
+main()
+"""
+LONG = "-s theta=1 -t 1e6 --method rk4 --step 1e-3 --step-limit 1000000000 --samples 10000 -f csv -o out --no-estimate"
+
+
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)])
 def test_signals_keep_what_was_computed(number: int, code: int, tmp_path: Path) -> None:
-    arguments = ["simulate", str(PENDULUM), "-s", "theta=1", "-t", "1e6", "--method", "rk4", "--step", "1e-3"]
-    arguments += [
-        "--step-limit",
-        "1000000000",
-        "--samples",
-        "10000",
-        "-f",
-        "csv",
-        "-o",
-        str(tmp_path / "out"),
-        "--no-estimate",
-    ]
-    child = subprocess.Popen(
-        [sys.executable, "-c", "from mbsym_cli.main import main; main()", *arguments],
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    time.sleep(3)
+    """The signal comes when the first samples are there."""
+    command = [sys.executable, "-c", TELLING, "simulate", str(PENDULUM), *LONG.split()]
+    child = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    assert child.stderr is not None
+    assert child.stderr.readline() == "under way\n"
     child.send_signal(number)
-    _, said = child.communicate(timeout=30)
+    _, said = child.communicate(timeout=60)
     assert child.returncode == code, said
     assert "kept up to t =" in said
     assert (tmp_path / "out" / "trajectory-partial.csv").exists()
