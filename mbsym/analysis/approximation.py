@@ -15,10 +15,18 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
+#: A hint lists so many coordinates; of more it shows one.
+MOST_LISTED = 12
+
+
 def expanded(analysis: Analysis) -> Scene:
     """The system over second-order jets about the unperturbed motion.  Raises Unavailable where none is given."""
     if not analysis.system.motion:
-        hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in analysis.system.coordinates) + "}"
+        names = analysis.system.coordinates
+        listed = names if len(names) <= MOST_LISTED else names[:1]
+        hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in listed) + "}"
+        if listed != names:
+            hint += "; what is left out is 0 at rest"
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
     return linearisation.quadratised(analysis.parameters_scene)

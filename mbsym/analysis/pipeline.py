@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, judging, second_routes
+from mbsym.analysis import approximation, conserved, judging, second_routes
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, column
@@ -176,7 +176,7 @@ class Analysis(Stages):
         7,
         "first integrals",
         integrals,
-        lambda a: integrals.integrals(a.scene, a.energy, a.equations, a.programs),
+        conserved.first_integrals,
         ("equations of motion", "first integrals"),
         says=True,
     )

@@ -10,6 +10,9 @@ Found are
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
   mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted.
 
+Where a formula outgrows its budget, the energy and cyclic momenta that follow from the structure of the equations alone
+are named without one.
+
 ``status`` is "proved" (an identity of the ring) or "verified numerically" (at random states: exactly
 where they are rational, else by narrow balls around zero).
 
@@ -34,12 +37,15 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import ball_states, rational_states
+from mbsym.mechanics.variables import expressions
 from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
@@ -70,6 +76,27 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
     found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind != "energy"])
+    return tuple(found)
+
+
+def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
+    """What is conserved for reasons that need no closed formula, in words; all loads must have force functions.
+
+    The energy T - U, if nothing depends on the time, and the momentum dL/dq' of every coordinate that the straight-line
+    program of L = T + U does not read.  Sufficient: a coordinate may drop out only when formulas are simplified.
+    """
+    if any(KINDS[type(load)].force_function is None for load in system.loads):
+        return ()
+    given = {name for expression in expressions(system) for name in names(expression)}
+    rates = {*system.velocities, *(acceleration_name(name) for name in system.coordinates)}
+    found = []
+    if not system.prescribed and "t" not in given and not given & rates:
+        found.append("the energy T - U")
+    program = programs.program
+    live = program.live([programs.kinetic_energy, programs.force_function])
+    read = {str(x.payload) for x in map(program.instructions.__getitem__, live) if x.operation == "input"}
+    if not given & rates:
+        found += [f"the momentum of {name}" for name in system.coordinates if name not in read]
     return tuple(found)
 
 
