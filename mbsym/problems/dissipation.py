@@ -106,7 +106,16 @@ class Balance:
             for name, value in values.items()
             if isinstance(value, Fraction) and ring.has("parameter", name)
         }
-        return replace(self, fixed=exact)
+        there = replace(self, fixed=exact)
+        # What holds for all parameters holds there: no need to find it once more at every point.
+        kept: dict[str, Any] = {"ignorable": self.ignorable}
+        if not self.driven:
+            kept["driven"] = ()
+        if self.law.bounded:
+            kept["law"] = self.law
+        kept |= {key: value for key, value in vars(self).items() if key in ("_forces", "_here")}
+        vars(there).update(kept)
+        return there
 
     @cached_property
     def law(self) -> EnergyLaw:

@@ -30,10 +30,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 from mbsym.algebra.elimination import Definition, combination
 from mbsym.algebra.jet import Jet, Jets
+from mbsym.algebra.matrices import components as connected
+from mbsym.algebra.matrices import skew_part, symmetric_part
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.energy import kinetic_energy
@@ -196,10 +197,10 @@ def _assemble(
     result = Linearisation(
         coordinates=scene.system.coordinates,
         M=Matrix.of(ring, parts[0]),
-        D=Matrix.of(ring, _symmetric(ring, parts[1])),
-        G=Matrix.of(ring, _skew(ring, parts[1])),
-        K=Matrix.of(ring, _symmetric(ring, parts[2])),
-        N=Matrix.of(ring, _skew(ring, parts[2])),
+        D=Matrix.of(ring, symmetric_part(ring, parts[1])),
+        G=Matrix.of(ring, skew_part(ring, parts[1])),
+        K=Matrix.of(ring, symmetric_part(ring, parts[2])),
+        N=Matrix.of(ring, skew_part(ring, parts[2])),
         time_scale=scale,
         subsystems=(),
         route=route,
@@ -218,29 +219,16 @@ def _varying(scene: Scene, whole: Linearisation) -> tuple[Varying, ...]:
     )
 
 
-def _symmetric(ring: Ring, rows: Rows) -> Rows:
-    half = ring.number(Fraction(1, 2))
-    return [[half * (rows[i][j] + rows[j][i]) for j in range(len(rows))] for i in range(len(rows))]
-
-
-def _skew(ring: Ring, rows: Rows) -> Rows:
-    half = ring.number(Fraction(1, 2))
-    return [[half * (rows[i][j] - rows[j][i]) for j in range(len(rows))] for i in range(len(rows))]
-
-
 # --- subsystems ---
 
 
 def components(matrices: Sequence[Matrix]) -> list[list[int]]:
     """Connected components of the indices, coupled where any matrix has an entry that is not zero."""
-    n = matrices[0].shape[0]
-    label = list(range(n))
-    for i in range(n):
-        for j in range(n):
-            if any(not matrix[i, j].is_zero for matrix in matrices):
-                old, new = max(label[i], label[j]), min(label[i], label[j])
-                label = [new if x == old else x for x in label]
-    return [[i for i in range(n) if label[i] == first] for first in sorted(set(label))]
+
+    def coupled(i: int, j: int) -> bool:
+        return any(not matrix[i, j].is_zero or not matrix[j, i].is_zero for matrix in matrices)
+
+    return connected(matrices[0].shape[0], coupled)
 
 
 def _subsystems(scene: Scene, whole: Linearisation) -> tuple[Subsystem, ...]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
 
 from flint import ctx, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.failures import Failure, NotRational
+from mbsym.algebra.matrices import skew_part, symmetric_part
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
@@ -152,8 +152,6 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     """M = mass matrix, D + G = -df/dq', K + N = -df/dq, on the steady motions."""
     ring, names = found.ring, found.system.coordinates
     rates = dict(found.rates)
-    half = ring.number(Fraction(1, 2))
-    n = range(len(names))
     mass = found.mass_matrix()
     velocity = [
         [-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing
@@ -175,10 +173,10 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
         law = EnergyLaw.CONSERVED
     parts = (
         mass,
-        [[ring.reduce(half * (velocity[i][j] + velocity[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (velocity[i][j] - velocity[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (position[i][j] + position[j][i])) for j in n] for i in n],
-        [[ring.reduce(half * (position[i][j] - position[j][i])) for j in n] for i in n],
+        symmetric_part(ring, velocity),
+        skew_part(ring, velocity),
+        symmetric_part(ring, position),
+        skew_part(ring, position),
     )
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)

@@ -765,8 +765,8 @@ BLIND = [
     Mistake(
         "symmetric and skew parts exchanged in both routes",
         "problems.linearisation:_assemble",
-        "_symmetric(ring, parts[1])),\n        G=Matrix.of(ring, _skew(ring, parts[1]))",
-        "_skew(ring, parts[1])),\n        G=Matrix.of(ring, _symmetric(ring, parts[1]))",
+        "symmetric_part(ring, parts[1])),\n        G=Matrix.of(ring, skew_part(ring, parts[1]))",
+        "skew_part(ring, parts[1])),\n        G=Matrix.of(ring, symmetric_part(ring, parts[1]))",
         "spinning",
         (PERTURBED,),
     ),

@@ -10,11 +10,11 @@ lambda^2 are real, so the signs of K's leading minors decide.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 from typing import Any
 
 from flint import acb_mat, arb, arb_mat, ctx
 
+from mbsym.algebra.matrices import components
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, drifting, undecided
@@ -162,10 +162,8 @@ def _sum(a: Rows, b: Rows) -> list[list[Any]]:
 
 def blocks(*matrices: Rows) -> list[list[int]]:
     """Sets of indices between which every matrix has exact zeros only."""
-    size = len(matrices[0])
-    label = list(range(size))
-    for i, j in combinations(range(size), 2):
-        if not all(bool(rows[i][j] == 0) and bool(rows[j][i] == 0) for rows in matrices):
-            old, new = max(label[i], label[j]), min(label[i], label[j])
-            label = [new if x == old else x for x in label]
-    return [[i for i in range(size) if label[i] == first] for first in sorted(set(label))]
+
+    def coupled(i: int, j: int) -> bool:
+        return not all(bool(rows[i][j] == 0) and bool(rows[j][i] == 0) for rows in matrices)
+
+    return components(len(matrices[0]), coupled)
