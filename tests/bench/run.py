@@ -35,7 +35,7 @@ import peer_arm  # noqa: E402  (imports sympy only where it derives)
 import peer_satellite  # noqa: E402
 
 SATELLITE = "systems/satellite.yaml"
-ALL = ("satellite", "arm", "forward", "simulation", "growth")
+ALL = ("satellite", "arm", "robots", "chains", "forward", "simulation", "growth")
 KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",
@@ -498,6 +498,10 @@ def main() -> None:
         "satellite": (satellite, show_satellite),
         "arm": (arm, show_arm),
     }
+    import large_bench
+
+    for name, (work, show) in large_bench.SECTIONS.items():
+        sections[name] = (work, partial(show, table=table))
     if set(options.sections.split(",")) - set(sections):
         import numbers_bench  # NumPy and compilers: not in a process whose children's memory is measured
 

@@ -1,12 +1,21 @@
-"""How far a generated ``model.py`` is from Pinocchio's recursions for the same URDF, at random states."""
+"""How far a generated ``model.py`` is from Pinocchio's recursions for the same URDF, at random states.
+
+As a program, for the benchmark (each prints a record):
+
+    python tests/robots/agreement.py write UR5 FOLDER      # FOLDER/robot.yaml
+    python tests/robots/agreement.py peer UR5              # Pinocchio's parse, CRBA and RNEA
+    python tests/robots/agreement.py compare UR5 FOLDER    # FOLDER/reports/model.py beside it
+"""
 
 from __future__ import annotations
 
 import importlib.metadata
 import importlib.util
+import json
 import math
 import random
 import sys
+import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from fractions import Fraction
@@ -16,7 +25,8 @@ from typing import Any
 
 import numpy as np
 import pinocchio
-from urdf import GRAVITY, MOMENTS, Converted, angle, is_nonnegative
+from robots import ROBOTS
+from urdf import GRAVITY, MOMENTS, Converted, angle, convert, is_nonnegative
 
 
 def urdf_files() -> dict[str, Path]:
@@ -136,3 +146,29 @@ def _place(model: Any, there: Any, names: Sequence[str], values: Sequence[float]
             there[joint.idx_q : joint.idx_q + 2] = math.cos(values[0]), math.sin(values[0])
         else:
             there[joint.idx_q : joint.idx_q + joint.nq] = values
+
+
+def main() -> None:
+    what, name, *rest = sys.argv[1:]
+    file, floating = ROBOTS[name]
+    text = urdf_files()[file].read_text(encoding="utf-8")
+    record: dict[str, Any] = {}
+    if what == "write":
+        converted = convert(text, floating)
+        (Path(rest[0]) / "robot.yaml").write_text(converted.yaml, encoding="utf-8")
+        record = {"coordinates": converted.coordinates}
+    elif what == "peer":
+        started = time.perf_counter()
+        model = peer(text, floating)
+        data, at_rest, zero = model.createData(), pinocchio.neutral(model), np.zeros(model.nv)
+        pinocchio.crba(model, data, at_rest)
+        pinocchio.rnea(model, data, at_rest, zero, zero)
+        record = {"inside": time.perf_counter() - started}
+    elif what == "compare":
+        module = loaded(Path(rest[0]) / "reports" / "model.py")
+        record = {"difference": worst_difference(text, convert(text, floating), module)}
+    print(json.dumps(record))
+
+
+if __name__ == "__main__":
+    main()
