@@ -136,8 +136,9 @@ class LinearAtRest:
             )
             if rational:
                 parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
+                names = tuple(self.found.system.coordinates[i] for i in indices)
                 rate = self._rate(place) if {*self.tilts} <= {*indices} else None
-                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate))
+                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names))
             else:
                 parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
                 verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
@@ -216,10 +217,14 @@ _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 
 def _rational_verdict(
-    parts: Sequence[Sequence[Sequence[fmpq]]], conservative: bool, cyclic: tuple[int, ...], spin: fmpq | None
+    parts: Sequence[Sequence[Sequence[fmpq]]],
+    conservative: bool,
+    cyclic: tuple[int, ...],
+    spin: fmpq | None,
+    names: tuple[str, ...],
 ) -> Verdict:
     """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space."""
     turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
-    system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned)
+    system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned, names=names)
     return verdict_at(system, {}).verdict

@@ -106,7 +106,11 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) ->
     if all(root.real < 0 for root in roots):
         return concluded(facts | {Fact.ROOTS_LEFT})
     if undamped and simple and not any(root.contains(0) for root in roots) and _mirrored(roots):
-        return concluded(facts | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ENCLOSED))
+        if Fact.NOT_GYROSCOPIC in facts:  # then lambda^2 are the eigenvalues of -M^-1 K
+            facts |= {Fact.STIFFNESS_POSITIVE}
+            return concluded(facts) if conservative else concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY))
+        if _not_positive(k):
+            return concluded(facts | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ENCLOSED))
     return concluded(facts, why_not=Because.NEAR_BORDER)
 
 
@@ -150,6 +154,12 @@ def _mirrored(roots: Sequence[Any]) -> bool:
 def _positive(rows: Rows) -> bool:
     size = len(rows)
     return all(arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
+
+
+def _not_positive(rows: Rows) -> bool:
+    """Whether a symmetric matrix is certainly not positive definite."""
+    size = len(rows)
+    return any(arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() < 0 for s in range(1, size + 1))
 
 
 def _no(rows: Rows) -> bool:
