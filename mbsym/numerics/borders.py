@@ -10,14 +10,13 @@ which near a border, where eigenvalues coincide and are known to half the digits
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 from flint import acb, ctx, fmpq_mat
 
 from mbsym.algebra.evaluate import Carrier
@@ -33,7 +32,7 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
-from mbsym.numerics.scenario import Incomplete, Scenario
+from mbsym.numerics.scenario import Incomplete, Scenario, changed
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
@@ -51,6 +50,9 @@ BESIDE = Fraction(1, 10**15)
 
 #: Eigenvalues nearer to the imaginary axis than this part of the largest are taken to lie on it.
 ON_THE_AXIS = 1e-10
+
+#: Parameters are moved by this part of themselves, to see how eigenvalues follow.
+NUDGE = Fraction(1, 2**60)
 
 NO_GROWTH = "no growth seen"
 
@@ -202,23 +204,30 @@ class LinearModel:
         for scalar, full in FULL.items():
             values = self.eigenvalues(given, scalar)
             kept[scalar] = 0.0 if values is None else _matched(values, exact, size, full)
-        condition = self._eigenvalue_condition(given)
+        condition = self._eigenvalue_condition(given, exact, size)
         return Digits(kept, kept, kept[FLOAT64], condition, 256, float(size))
 
-    def _eigenvalue_condition(self, given: Scenario) -> float:
-        """max ||A|| / (|y.x| max |lambda|) over the unit left and right eigenvectors y, x."""
-        n, inputs = self.size, self._floats(given)
-        m, d, g, k, c = (self._values(x, FLOAT64, inputs).reshape(n, n) for x in "MDGKN")
-        first = self._first_order(m, d + g, k + c, float)
-        if first is None or not np.all(np.isfinite(first)):
+    def _eigenvalue_condition(self, given: Scenario, exact: Sequence[Any], size: Any) -> float:
+        """max_i sum_j |d lambda_i/dp_j p_j| / max |lambda|, over the parameters: no unit and no formula enters.
+
+        By differences in many bits; where eigenvalues coincide it is of the order of one over the square root of the
+        difference, which is what no formula could avoid.
+        """
+        largest = float(size)
+        if not largest > 0:
             return inf
-        values, left, right = scipy.linalg.eig(first, left=True, right=True)
-        largest = np.max(np.abs(values))
-        moving = np.abs(values) > 1e-6 * largest  # the zeros of cyclic coordinates are structural
-        cosines = np.abs(np.sum(left.conj() * right, axis=0))[moving]
-        if not largest > 0 or not np.min(cosines) > 0:
-            return inf
-        return float(np.linalg.norm(first, 2) / (np.min(cosines) * largest))
+        sums = [0.0] * len(exact)
+        for name, value in given.parameters.items():
+            if not value:
+                continue
+            moved = self.exact_eigenvalues(changed(given, **{name: value * (1 + NUDGE)}))
+            if moved is None:
+                return inf
+            left = list(moved)
+            for i, root in enumerate(exact):
+                nearest = min(range(len(left)), key=lambda j: float(abs(left[j] - root).mid()))
+                sums[i] += float(abs(left.pop(nearest) - root).upper()) / float(NUDGE)
+        return max(sums) / largest
 
     # --- verdicts ---
 
