@@ -171,7 +171,8 @@ class _Rungs:
     def _linear(self, ladder: Ladder, probe: Probe, linear: LinearModel) -> None:
         place = (ladder.kind, ladder.subject, probe.size)
         self.rows += [Row(*place, name, digits) for name, digits in linear.digits(probe.scenario).items()]
-        self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
+        if probe.assumed:
+            self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
 
 
 def _all(

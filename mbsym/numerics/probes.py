@@ -29,11 +29,15 @@ FACTORS = (1e-12, 1e-6, 1e6, 1e12)
 
 @dataclass(frozen=True)
 class Probe:
-    """One scenario in one exact state (q, q'); ``size`` is the distance, rate or factor."""
+    """One scenario in one exact state (q, q'); ``size`` is the distance, rate or factor.
+
+    ``assumed``: it keeps the assumptions of the description, on which verdicts may rest.
+    """
 
     size: float
     scenario: Scenario
     state: tuple[Fraction, ...]
+    assumed: bool = True
 
 
 @dataclass(frozen=True)
@@ -146,9 +150,15 @@ def near_equilibrium(given: Scenario) -> Iterator[Ladder]:
 # --- parameters ---
 
 
-def scaled(given: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction) -> Scenario:
-    """The scenario with one parameter times a factor, and all that follows from it by relations."""
-    changed = scenario(given.system, {**overrides, name: Number(given.parameters[name] * factor)}, state=False)
+def scaled(
+    given: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction, assumed: bool = True
+) -> Scenario:
+    """The scenario with one parameter times a factor, and all that follows from it by relations.
+
+    Raises Incomplete where that contradicts something; unless ``assumed`` is false, an assumption, too.
+    """
+    value = Number(given.parameters[name] * factor)
+    changed = scenario(given.system, {**overrides, name: value}, state=False, assumed=assumed)
     return replace(changed, positions=given.positions, velocities=given.velocities)
 
 
@@ -160,6 +170,15 @@ def free_parameters(given: Scenario) -> tuple[str, ...]:
         for p in given.system.parameters
         if p.name not in bound and p.sign in ("positive", "nonnegative") and given.parameters[p.name] > 0
     )
+
+
+def _assumed(given: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction) -> bool:
+    """Whether the assumptions still hold with a parameter times a factor."""
+    try:
+        scaled(given, overrides, name, factor)
+    except Incomplete:
+        return False
+    return True
 
 
 def ratios(given: Scenario, overrides: dict[str, Expression], found: Sequence[Quantity]) -> Iterator[Ladder]:
@@ -176,9 +195,10 @@ def ratios(given: Scenario, overrides: dict[str, Expression], found: Sequence[Qu
             probes = []
             for factor in FACTORS:
                 try:
-                    there = scaled(given, overrides, name, _decimal(factor))
+                    there = scaled(given, overrides, name, _decimal(factor), assumed=False)
                 except Incomplete:  # a value that contradicts another one
                     continue
-                probes.append(Probe(factor, there, (*given.positions, *_velocities(given))))
+                state = (*given.positions, *_velocities(given))
+                probes.append(Probe(factor, there, state, _assumed(given, overrides, name, _decimal(factor))))
             if probes:
                 yield Ladder(RATIO, name, tuple(probes))

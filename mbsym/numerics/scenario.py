@@ -82,16 +82,19 @@ class Scenario:
         return (*self.positions, *self.velocities)
 
 
-def scenario(system: System, overrides: Mapping[str, Expression] | None = None, state: bool = True) -> Scenario:
+def scenario(
+    system: System, overrides: Mapping[str, Expression] | None = None, state: bool = True, assumed: bool = True
+) -> Scenario:
     """The numbers of a description, some of them replaced.
 
     ``overrides`` maps names of parameters, coordinates (initial position) and ``<name>_dot`` (initial velocity) to
     expressions without coordinates.  Parameters without a value take it from ``relations``.  With ``state`` false the
-    initial state may be missing (it is then zero).  Raises Incomplete, naming everything that is missing.
+    initial state may be missing (it is then zero).  With ``assumed`` false values may break assumptions, on which no
+    number depends.  Raises Incomplete, naming everything that is missing.
     """
     overrides = dict(overrides or {})
     numbers = _Numbers()
-    _parameters(system, overrides, numbers)
+    _parameters(system, overrides, numbers, assumed)
     parameters = numbers.known
     missing = [name for name in system.parameter_names if name not in parameters and name not in numbers.refused]
     given = _initial(system, overrides)
@@ -150,7 +153,7 @@ class _Numbers:
         return self.known.keys() | self.refused
 
 
-def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _Numbers) -> None:
+def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _Numbers, assumed: bool) -> None:
     """Values given, and those that follow from relations; contradictions between the two, to signs and assumptions."""
     given = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
     typed = {name for name, value in given.items() if value is not None}
@@ -189,7 +192,7 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             hint = f"if its value alone says so, {parameter.name}: {{real: true, value: ...}} allows any sign"
             wrong = Contradiction("sign-contradiction", parameter.name, text, hint if inferred else None)
             numbers.contradictions.append(wrong)
-    for assumption, left, right in broken(system, numbers.known, AGREEMENT, _evaluated):
+    for assumption, left, right in broken(system, numbers.known, AGREEMENT, _evaluated) if assumed else ():
         used = names(assumption.left) | names(assumption.right)
         name = next((one for one in overrides if one in used), min(used, default=""))
         written = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import re
+from dataclasses import replace
 from fractions import Fraction as F
 from math import cos, isfinite, log10, sqrt
 from pathlib import Path
@@ -26,10 +27,10 @@ from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
 from mbsym.numerics.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
-from mbsym.numerics.extremes import LISTED, extremes, sentences
+from mbsym.numerics.extremes import LISTED, _onward, extremes, sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
-from mbsym.numerics.probes import RATIO, SINGULAR, ladders, scaled, singular
-from mbsym.numerics.scenario import scenario
+from mbsym.numerics.probes import RATIO, SINGULAR, ladders, ratios, scaled, singular
+from mbsym.numerics.scenario import changed, scenario
 from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
@@ -472,3 +473,49 @@ def test_late_ladders_beyond_a_line_are_counted() -> None:
     number = len(list(ladders(given, {}, Truth(given.system, every), every)))
     assert number > LISTED + 1 == len(late)
     assert late[-1] == f"and {number - LISTED} more"
+
+
+# --- conditions without units ---
+
+
+def test_the_condition_of_eigenvalues_has_no_unit() -> None:
+    """m = 1, K = diag(k, 3 k), M = [[1, 1], [1, 1 + e^2]]: lambda^2 = -k/m times a function of e, of degree -2 near 0.
+
+    So an eigenvalue moves by at most (1/2 + 1/2 + 1) of the parts by which m, k and e do; what float64 loses where it
+    forms 1 + e^2 is the formula's.  And other units of length and mass change nothing.
+    """
+    path = Path(__file__).parents[1] / "cases" / "statements" / "nearsing.yaml"
+    given = scenario(mbsym.load(path).system)
+    model = LinearModel(Analysis(given.system))
+    found = model.digits(given)["eigenvalues"]
+    assert found.condition == pytest.approx(2, rel=1e-3)
+    assert found.digits[FLOAT64] < 6
+    assert found.verdict == "formula"
+    grams = model.digits(changed(given, m=given.parameters["m"] * 1000, k=given.parameters["k"] * 1000))["eigenvalues"]
+    assert grams.condition == pytest.approx(found.condition, rel=1e-9)
+
+
+def test_values_beyond_assumptions_have_digits_and_no_verdict() -> None:
+    """A times 1e12 breaks B + C > A: numbers do not care, and a verdict might stand on the assumption."""
+    given = scenario(system("gravity-gradient"))
+    probes = list(ratios(given, {}, quantities(given.system, ring_of(given.system))))
+    own = {probe.size: probe.assumed for ladder in probes if ladder.subject == "A" for probe in ladder.probes}
+    assert own == {1e-12: False, 1e-6: False, 1e6: False, 1e12: False}
+    assert all(probe.assumed for ladder in probes if ladder.subject == "R" for probe in ladder.probes)
+
+
+def test_places_where_something_is_lost() -> None:
+    assert _onward([1e-2, 1e-4, 1e-6], [1e-4, 1e-6]) == "from 1e-04 on"
+    assert _onward([1e-2, 1e-4, 1e-6], [1e-4]) == "at 1e-04"
+    assert _onward([1e-2, 1e-4, 1e-6], [1e-2, 1e-6]) == "at 1e-02, 1e-06"
+
+
+def test_a_ladder_that_was_cut_short_is_not_said_to_be_whole(whole: Any) -> None:
+    """Two rungs of four: the sentence names the two, and a border is as near as it was looked at on both sides."""
+    kept = [row for row in whole.rows if not (row.kind == RATIO and row.size < 1)]
+    said = "\n".join(sentences(replace(whole, rows=tuple(kept))))
+    assert "times 1e+06, 1e+12: float64 keeps" in said
+    assert "1e-12" not in "\n".join(line for line in said.splitlines() if "of everything" in line)
+    borders = [row for row in whole.verdicts if not (row.subject == "A -> 9 from above" and row.size < 1e-6)]
+    said = "\n".join(sentences(replace(whole, verdicts=tuple(borders))))
+    assert "A -> 9: a border, unstable below and stable above, decided exactly down to a distance of 1e-06" in said
