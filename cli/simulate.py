@@ -31,7 +31,7 @@ from mbsym_cli.simulation_run import run
 @click.option(
     "--estimate/--no-estimate",
     default=None,
-    help="Repeat the run more finely to estimate its error.  [default: if the run was short]",
+    help="Estimate the error by a better run.  [default: if the run was short]",
 )
 @click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
 @click.option("--format", "-f", "formats", default="csv,svg,png", show_default=True)
@@ -59,8 +59,9 @@ def command(
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
     name meaning its initial position and NAME_dot its initial velocity.  Written are trajectory.csv (t, coordinates,
-    velocities, energy, relative drift), time histories, phase planes, drift, the moving system itself and the paths of
-    its mass centres, and simulation.json.
+    velocities, energy T - U, generalized_energy T2 - T0 - U where something is prescribed, relative drift), time
+    histories, phase planes, drift, the moving system itself and the paths of its mass centres, and simulation.json.
+    Whether an energy is conserved is proved, or seen along the run; the error is the difference from a better run.
 
     Coordinates that provably rest (a spatial system that moves in a plane) are not integrated but put back into every
     state, as the summary says; --whole integrates everything.

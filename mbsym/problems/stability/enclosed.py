@@ -29,11 +29,8 @@ def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 2
     ``conservative``: the nonlinear system has its energy integral.  What the balls leave open is ``undecided``.
     """
     m, d, g, k, n = matrices
-    keep, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         return _verdict(m, d, g, k, n, conservative)
-    finally:
-        ctx.prec = keep
 
 
 def enclosed_verdict_with_cyclic(
@@ -43,11 +40,8 @@ def enclosed_verdict_with_cyclic(
     plain = enclosed_verdict(parts, conservative, bits)
     if not cyclic or plain.word is Word.UNSTABLE or plain.coordinates_singular:
         return plain
-    keep, ctx.prec = ctx.prec, bits
-    try:
+    with ctx.workprec(bits):
         reduced = _ignoring_cyclic(parts, cyclic)
-    finally:
-        ctx.prec = keep
     if reduced is None:
         return undecided(Because.CYCLIC_ZERO_ROOTS)
     return drifting(enclosed_verdict(reduced, conservative, bits))

@@ -179,11 +179,8 @@ def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[s
     """Formulas in the parameters as enclosures."""
     ring = scene.ring
     numbers = dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         return [[ring.evaluate(x, numbers) for x in row] for row in rows]
-    finally:
-        ctx.prec = keep
 
 
 def _enclosed(
@@ -404,11 +401,8 @@ def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] |
 
     Rational numbers exactly, irrational ones as enclosures.  None unless all are known.
     """
-    keep, ctx.prec = ctx.prec, PRECISION
-    try:
+    with ctx.workprec(PRECISION):
         return _parameter_values(scene, equilibrium)
-    finally:
-        ctx.prec = keep
 
 
 def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] | None:
