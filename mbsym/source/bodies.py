@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -19,6 +20,9 @@ from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_yo
 MAX_BODIES = 250
 MAX_COORDINATES = 6
 MAX_BODY_NAME = 80
+
+#: To 40 digits, enough for any decimal that somebody writes.
+_PI = Fraction(31415926535897932384626433832795028841972, 10**40)
 
 _BODY_NAME = re.compile(r"[^\W\d_][\w ./-]*\Z")
 
@@ -260,8 +264,29 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):
             reading.error("bad-axis", "axis 0 means no rotation, so its angle is 0", item.span)
+    for angle, item in zip(angles, angle_items, strict=True):
+        _check_rounded(angle, item, reading)
     turns = [(axis, angle) for axis, angle in zip(axes, angles, strict=True) if axis and not is_number(angle, 0)]
     return Rotation(tuple(axis for axis, _ in turns), tuple(angle for _, angle in turns))
+
+
+def _check_rounded(angle: Expression, item: Node, reading: Reading) -> None:
+    """A decimal number such as 1.5708 is an angle of its own, with formulas of its own: pi/2 was meant, most likely."""
+    value = rational(angle)
+    if value is None or not isinstance(item, Scalar):
+        return
+    digits = next((n for n in range(3, 31) if (value * 10**n).denominator == 1), None)
+    twelfths = round(abs(value) * 12 / _PI)
+    if digits is None or not 0 < twelfths <= 24 or (digits == 3 and twelfths % 6) or (twelfths % 2 and twelfths % 3):
+        return
+    exact = twelfths * _PI / 12 * 10**digits
+    if abs(value) * 10**digits in (round(exact), int(exact)):
+        share = Fraction(twelfths, 12)
+        written = ("" if share.numerator == 1 else f"{share.numerator}*") + "pi"
+        written += "" if share.denominator == 1 else f"/{share.denominator}"
+        message = f"this angle is {'-' if value < 0 else ''}{written} rounded, and is taken as it stands"
+        hint = f"write {'-' if value < 0 else ''}{written}: the formulas become much shorter"
+        reading.complaints.warning("rounded-angle", message, item.span, hint)
 
 
 def _axis(node: Node, reading: Reading) -> int | None:

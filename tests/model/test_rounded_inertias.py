@@ -134,4 +134,4 @@ def test_no_acceptance_makes_a_kinetic_energy_negative():
 def test_a_single_moment_is_enough_about_the_only_axis_of_turning(inertia: str, twist: str, enough: bool) -> None:
     system, complaints = read(LINK.format(inertia=inertia, twist=twist))
     assert system is not None
-    assert [one.code for one in complaints.items] == ([] if enough else ["single-moment"])
+    assert ("single-moment" in [one.code for one in complaints.items]) is not enough

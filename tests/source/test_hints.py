@@ -240,6 +240,22 @@ def test_the_hint_to_the_mass_centre_is_followed():
     assert read(followed(text, refused))[0] is not None
 
 
+@pytest.mark.parametrize(("written", "meant"), [("1.5708", "pi/2"), ("-2.35619", "-3*pi/4"), ("1.047197551", "pi/3")])
+def test_a_rounded_angle_becomes_exact(written: str, meant: str) -> None:
+    text = described("rotation", f"    rotation: {{axes: [3, 1, 2], angles: [theta, psi, {written}]}}")
+    system, complaints = read(text)
+    (told,) = complaints.items
+    assert system is not None
+    assert told.code == "rounded-angle"
+    assert f"write {meant}:" in (told.hint or "")
+    assert told.span is not None
+    lines = text.split("\n")
+    line = lines[told.span.line - 1]
+    assert line[told.span.column - 1 :][: told.span.length] == written
+    lines[told.span.line - 1] = line.replace(written, meant)
+    assert not read("\n".join(lines))[1].items
+
+
 @pytest.mark.parametrize(("key", "wrong"), WRONG, ids=[f"{key}: {wrong.strip()[:60]}" for key, wrong in WRONG])
 def test_following_the_hints_leads_to_a_valid_description(key: str, wrong: str) -> None:
     """The first hint is followed, the file is read again, and so on: each step takes an error away and adds none."""
