@@ -12,7 +12,7 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
 necessary for stability.  That p is not 0 either is necessary for asymptotic stability (second kind), but of the first
 kind it is only this method that needs it, as it needs roots that do not coincide: there the motion may be stable.
-K > 0 is sufficient.
+K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
 gyroscopically stabilised only; stable in first approximation only, critical; unstable; depends on the parameters (the
