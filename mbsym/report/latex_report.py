@@ -16,6 +16,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
+from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
@@ -101,11 +102,20 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         DEPENDS=Word.DEPENDS,
+        decided=decided,
         claims=analysis.claims,
         repair=repair,
         checks=analysis.checks,
     )
     return "\n".join(map(broken, text.split("\n")))
+
+
+def decided(found: Stability) -> str:
+    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
+    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
+        return ""
+    enclosed = any(part.theory.at_point is None for part in found.subsystems)
+    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
 
 
 _RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq"}

@@ -579,6 +579,38 @@ def test_a_call_of_ndsolve_is_suggested_only_with_initial_conditions():
     assert "NDSolve" not in text
 
 
+def test_cases_read_as_an_alternative():
+    """A motion with K > 0 is stable and not gyroscopically stabilised "only": the second case is for the rest."""
+    text = TARGETS["latex"].render(analysis_of("orbital-gyrostat.yaml"), (6,))
+    order = [
+        text.index(words)
+        for words in (
+            r"\textbf{stable} (Routh), if all of these hold:",
+            r"Otherwise \textbf{gyroscopically stabilised only}, if all of these hold:",
+            r"Otherwise \textbf{unstable} (Kelvin-Chetaev), if:",
+        )
+    ]
+    assert order == sorted(order)
+    assert "only} if" not in text
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ("theta0: 0, Omega: 1", r"provided: decided exactly: \textbf{stable}"),
+        ("theta0: 0, Omega: sqrt(2)", r"decided by rigorous enclosures: \textbf{stable}"),
+        (
+            "theta0: 1/4, Omega: 1",
+            r"At the given values of the parameters: \textbf{undecided}. The motion does not exist",
+        ),
+    ],
+)
+def test_what_is_undecided_is_not_decided_exactly(numbers, words):
+    """The bead rests at the lowest point for Omega^2 < g/R; at any other angle only for one Omega."""
+    text = TARGETS["latex"].render(mbsym.loads(HOOP + f"values: {{m: 1, g: 10, R: 1, {numbers}}}\n"), (6,))
+    assert words.removeprefix("provided: ") in " ".join(text.split())
+
+
 def test_the_power_of_a_fraction_is_not_that_of_its_denominator():
     names = LatexNames(["a", "b"])
     ratio = Operation("/", Name("a"), Name("b"))

@@ -107,7 +107,9 @@ class Region:
 
     def _triangles(self) -> Iterator[Inequality]:
         for body in self.derived.system.bodies:
-            if body.inertia is None or any(is_number(body.inertia.tensor[k][k], 0) for k in range(3)):
+            if body.inertia is None or body.inertia.accepted:
+                continue
+            if any(is_number(body.inertia.tensor[k][k], 0) for k in range(3)):
                 continue  # moments that are left out as zero are no body's
             try:
                 moments = [self.derived.parameters_scene.lower(body.inertia.tensor[k][k]) for k in range(3)]

@@ -249,7 +249,8 @@ def _requirements(
     elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
         remarks.append(
             "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: "
-            "K > 0 is necessary and sufficient, a vanishing discriminant (equal frequencies) does no harm."
+            "K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant "
+            "(equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
 
