@@ -174,11 +174,12 @@ def _angles(system: System) -> Iterator[Expression]:
 def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set[tuple[Fraction, Fraction]]:
     """The different constants (turns, radians), turns*pi + radians, that the angles of a system contain.
 
-    Those that an unperturbed motion brings are among them.
+    Those that an unperturbed motion brings are among them; multiples of pi/2, whose sines are whole numbers, are not.
     """
     values = (entry.value for entry in system.motion)
     forms = (linear_form(x) for x in (*_angles(system), *arguments, *values))
-    return {(form.turns % 2, form.constant) for form in forms if form is not None and (form.turns or form.constant)}
+    found = {(form.turns % 2, form.constant) for form in forms if form is not None}
+    return {(turns, radians) for turns, radians in found if radians or turns.denominator > 2}
 
 
 def has_linear_angles(system: System) -> bool:

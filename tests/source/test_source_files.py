@@ -393,3 +393,28 @@ def test_what_is_shown_moves_no_cursor() -> None:
         shown = render(complaint, "\x1b line", name)
         assert all(line.isprintable() for line in shown.split("\n"))
         assert shown.count("\n") == 3
+
+
+def test_the_schema_knows_what_is_new() -> None:
+    text = EVERYTHING.read_text(encoding="utf-8")
+    described = yaml.safe_load(text)
+    described["bodies"][-1] |= {"inertia": {"tensor": [1, 1, 1], "accept": True}, "inertia about": "joint"}
+    ends = [{"body": "0", "point": [0, 0, 0]}, {"body": described["bodies"][-1]["name"], "point": [1, 0, 0]}]
+    described["loads"] = [{"isotropic damper": {"between": ends, "coefficient": 1}}]
+    described["motion"] = {}
+    jsonschema.validate(described, json_schema())
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**described, "loads": [{"isotropic damper": {"coefficient": 1}}]}, json_schema())
+
+
+def test_an_empty_motion_is_the_rest_of_all_at_zero() -> None:
+    text = (
+        "mbsym: 1\nname: x\nbodies:\n- {name: a, attached to: 0, mass: 1, rotation: {axes: [3, 1], angles: [p, q]}}\n"
+    )
+    assert good(text).motion == ()
+    rest = good(text + "motion: {}\n")
+    assert [(entry.coordinate, rational(entry.value), rational(entry.rate)) for entry in rest.motion] == [
+        ("p", 0, 0),
+        ("q", 0, 0),
+    ]
+    assert good(to_text(rest), "x.txt") == rest == good(to_yaml(rest))
