@@ -166,33 +166,51 @@ def differentiate(expression: Expression, name: str) -> Expression:
     """The partial derivative with respect to a name; all other names are constants.
 
     d(u**n) = n u**(n-1) du for a constant exponent n; the other rules are the elementary ones.  A tree shared by
-    many parents is differentiated once, and the result is simplified only by dropping zeros and ones.
+    many parents is differentiated once, and the result is simplified only by dropping zeros and ones.  Raises TypeError
+    for what is not an expression.
     """
-    if name not in names(expression):
-        return ZERO
+    return _derivative(expression, name, {})
+
+
+def _derivative(expression: Expression, name: str, known: dict[int, Expression]) -> Expression:
+    """The derivative; ``known`` holds those of the trees met before, by identity (the whole keeps them alive)."""
+    found = known.get(id(expression))
+    if found is None:
+        found = known[id(expression)] = _differentiated(expression, name, known)
+    return found
+
+
+def _differentiated(expression: Expression, name: str, known: dict[int, Expression]) -> Expression:
     match expression:
-        case Name():
-            return ONE
+        case Number():
+            return ZERO
+        case Name(other):
+            return ONE if other == name else ZERO
         case Negative(operand):
-            return negative(differentiate(operand, name))
+            return negative(_derivative(operand, name, known))
         case Operation("+", left, right):
-            return add(differentiate(left, name), differentiate(right, name))
+            return add(_derivative(left, name, known), _derivative(right, name, known))
         case Operation("-", left, right):
-            return subtract(differentiate(left, name), differentiate(right, name))
+            return subtract(_derivative(left, name, known), _derivative(right, name, known))
         case Operation("*", left, right):
-            return add(multiply(differentiate(left, name), right), multiply(left, differentiate(right, name)))
+            first, second = _derivative(left, name, known), _derivative(right, name, known)
+            return add(multiply(first, right), multiply(left, second))
         case Operation("/", left, right):
-            first = divide(differentiate(left, name), right)
-            second = divide(multiply(left, differentiate(right, name)), power(right, number(2)))
+            first = divide(_derivative(left, name, known), right)
+            second = divide(multiply(left, _derivative(right, name, known)), power(right, number(2)))
             return subtract(first, second)
         case Operation("**", base, exponent):
+            inner = _derivative(base, name, known)
+            if is_number(inner, 0):
+                return ZERO
             if isinstance(exponent, Number):
                 lowered: Expression = Number(exponent.value - 1)
             else:
                 lowered = subtract(exponent, ONE)
-            return multiply(multiply(exponent, power(base, lowered)), differentiate(base, name))
+            return multiply(multiply(exponent, power(base, lowered)), inner)
         case Call(function, argument):
-            return multiply(_derivative_of_function(function, argument), differentiate(argument, name))
+            inner = _derivative(argument, name, known)
+            return ZERO if is_number(inner, 0) else multiply(_derivative_of_function(function, argument), inner)
     raise TypeError(f"not an expression: {expression!r}")
 
 

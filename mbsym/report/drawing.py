@@ -1,4 +1,7 @@
-"""What all figures share: the style, colours, and drawing without a display and without global state."""
+"""What all figures share: the style, colours, and drawing without a display.
+
+Matplotlib's settings and list of fonts are global: ``styled`` changes them while figures are drawn and puts them back.
+"""
 
 from __future__ import annotations
 

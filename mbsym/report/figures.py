@@ -1,6 +1,7 @@
 """Figures of a trajectory: time histories, phase planes, drift of the energy, as SVG or PNG.
 
-Drawn without a display and without global state; equal trajectories give equal bytes (with one version of matplotlib).
+Drawn without a display, in settings of its own that are put back; equal trajectories give equal bytes (with one
+version of matplotlib).
 Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, ...
 """
 

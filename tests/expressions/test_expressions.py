@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation, text
+from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation, differentiate, text
 
 
 def parse(written: str) -> tuple[Expression | None, Complaints]:
@@ -152,3 +152,27 @@ def test_hints_name_what_was_meant(written: str, hint: str) -> None:
 def test_long_sums_may_be_grouped() -> None:
     group = "(" + " + ".join(["x"] * 100) + ")"
     assert good(" + ".join([group] * 10))
+
+
+def test_a_shared_tree_is_differentiated_once() -> None:
+    """x_0 = x, x_(k+1) = x_k x_k: 60 nodes that stand for 2^60 factors; the derivative of x^(2^60) at 1 is 2^60."""
+    tree: Expression = Name("x")
+    for _ in range(60):
+        tree = Operation("*", tree, tree)
+    known: dict[int, Fraction] = {}
+
+    def value(node: Expression) -> Fraction:
+        if id(node) not in known:
+            match node:
+                case Number(number):
+                    known[id(node)] = number
+                case Name("x"):
+                    known[id(node)] = Fraction(1)
+                case Operation("*", left, right):
+                    known[id(node)] = value(left) * value(right)
+                case Operation("+", left, right):
+                    known[id(node)] = value(left) + value(right)
+        return known[id(node)]
+
+    assert value(differentiate(tree, "x")) == 2**60
+    assert differentiate(tree, "y") == Number(Fraction(0))
