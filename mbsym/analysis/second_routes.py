@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
 from mbsym.formulas.formula import Column
+from mbsym.mechanics import motion
 from mbsym.problems import checks as comparison
 from mbsym.problems import equilibrium, knowledge, linearisation, perturbation
 from mbsym.problems.checks import Check
@@ -125,8 +126,8 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
 
 def dependent(analysis: Analysis) -> perturbation.Dependent:
     """What the matrices of problem 5 have already been freed of, and what their notation stands for."""
-    scene, ring = analysis.parameters_scene, analysis.ring
-    values = {ring.generators[k].name: value for k, value in analysis.equilibrium.determined(scene).items()}
+    scene = analysis.parameters_scene
+    values = motion.dependent(scene, analysis.equilibrium.determined(scene))
     names = [item.name for item in analysis.system.notation]
     return perturbation.Dependent(values, {name: knowledge.definition_in_parameters(scene, name) for name in names})
 

@@ -7,7 +7,7 @@ not steady).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, divide, number
@@ -68,15 +68,32 @@ def rate_on_motion(scene: Scene, x: Polynomial) -> Polynomial:
 
 
 def relations(scene: Scene) -> dict[int, Polynomial]:
-    """Generator indices of dependent parameters and their values in independent ones."""
+    """Generator indices of dependent parameters, their sines and cosines, and the values in independent ones."""
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
     for relation in scene.system.relations:
-        value = ring.substitute(scene.lower(relation.value), images)
-        index = ring.index("parameter", relation.name)
-        images = {k: ring.substitute(image, {index: value}) for k, image in images.items()}
-        images[index] = value
+        step = {ring.index("parameter", relation.name): scene.lower(relation.value)}
+        if relation.name in ring.angles:
+            sine, cosine = scene.lower.angle(divide(relation.value, number(ring.angles[relation.name])))
+            step |= {ring.index("sine", relation.name): sine, ring.index("cosine", relation.name): cosine}
+        step = {k: ring.substitute(image, images) for k, image in step.items()}
+        images = {k: ring.substitute(image, step) for k, image in images.items()} | step
     return images
+
+
+def dependent(scene: Scene, images: Mapping[int, Polynomial]) -> dict[str, Polynomial]:
+    """The parameters among the generators of some images, by name."""
+    generators = scene.ring.generators
+    return {generators[k].name: image for k, image in images.items() if generators[k].kind == "parameter"}
+
+
+def unperturbed_with(scene: Scene, images: dict[int, Polynomial]) -> dict[int, Polynomial]:
+    """``unperturbed`` with further substitutions of parameters, which reach the values of the motion as well.
+
+    A substitution is simultaneous: of rate Omega and Omega = a - b it would leave the Omega of the rate.
+    """
+    ring: Ring = scene.ring
+    return {k: ring.substitute(x, dict(images)) for k, x in unperturbed(scene).items()} | images
 
 
 def determined(scene: Scene, solved: Iterable[tuple[str, Polynomial]]) -> dict[int, Polynomial]:

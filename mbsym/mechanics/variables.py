@@ -156,6 +156,11 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
 
     for argument in (*_angles(system), *arguments):
         note(argument)
+    for relation in reversed(system.relations):  # what an angle is related to stands under its sine then
+        form = linear_form(relation.value)
+        if relation.name in found and form is not None and not form.constant:
+            for other, factor in form.coefficients:
+                found[other] = lcm(found.get(other, 1), (factor / found[relation.name]).denominator)
     declared = [*system.coordinates, *(item.name for item in system.prescribed), *system.parameter_names, "t"]
     return {name: found[name] for name in declared if name in found}
 

@@ -46,7 +46,7 @@ from mbsym.expressions.tree import (
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
-from mbsym.mechanics.motion import relations, turning, unperturbed
+from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import (
     INERTIAL,
@@ -262,7 +262,7 @@ class Balance:
 
     @cached_property
     def _here(self) -> dict[int, Polynomial]:
-        return unperturbed(self.scene) | relations(self.scene)
+        return unperturbed_with(self.scene, relations(self.scene))
 
     def _on_motion(self, x: Polynomial) -> Polynomial | None:
         """A formula on the motion; None where it varies with the time there, or where the motion is not known."""

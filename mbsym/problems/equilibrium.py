@@ -24,7 +24,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed, unsteady
+from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed_with, unsteady
 from mbsym.model.system import System
 
 
@@ -60,7 +60,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> 
     ``residuals`` may be the forcing of the nonlinear equations or values already on the motion.
     """
     ring = scene.ring
-    at = unperturbed(scene) | relations(scene)
+    at = unperturbed_with(scene, relations(scene))
     values = [ring.substitute(x, at) for x in residuals]
     varying = tuple(dict.fromkeys(name for x in values for name in unsteady(scene, x)))
     pending = [condition for x in values if (condition := essential(scene, x, signs)) is not None]

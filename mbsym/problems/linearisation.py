@@ -61,8 +61,8 @@ class Subsystem:
     N: Matrix
 
 
-#: How many varying coefficients a message names.
-MOST_NAMED = 4
+#: How many varying coefficients a message names, and of how many terms those are whose values it tells.
+MOST_NAMED, SHORT = 4, 4
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,13 @@ class Varying:
     column: str
     value: Formula
     among: tuple[str, ...]
+
+    @property
+    def named(self) -> str:
+        """``K[theta, theta] = m*l*g*cos(chi)``, without the value where that is long."""
+        name = f"{self.matrix}[{self.row}, {self.column}]"
+        short = self.value.terms <= SHORT
+        return f"{name} = {self.value}" if short else name
 
 
 @dataclass(frozen=True)
@@ -111,7 +118,7 @@ class Linearisation:
         if not self.varying:
             return ""
         among = ", ".join(dict.fromkeys(name for entry in self.varying for name in entry.among))
-        entries = [f"{entry.matrix}[{entry.row}, {entry.column}]" for entry in self.varying[:MOST_NAMED]]
+        entries = [entry.named for entry in self.varying[:MOST_NAMED]]
         if len(self.varying) > MOST_NAMED:
             entries.append(f"{len(self.varying) - MOST_NAMED} more")
         return (

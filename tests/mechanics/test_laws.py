@@ -87,6 +87,24 @@ def test_quadratised_and_linearised_equations_agree(description: Description) ->
     assert impossible or "linearisation" in [check.name for check in analysis.checks]
 
 
+RELATIONS: list[dict[str, str]] = [
+    {"b": "c*alpha"},
+    {"Omega": "alpha - c"},
+    {"Omega": "0"},
+    {"b": "c - alpha", "c": "2*alpha"},
+    {"k": "g/l2"},
+    {"alpha": "0"},
+    {"alpha": "pi/2"},
+]
+
+
+@law
+@given(st.one_of(spinning(), resting()), st.sampled_from(RELATIONS))
+def test_relations_are_used_alike_by_both_routes(description: Description, related: dict[str, str]) -> None:
+    """Whether the motion is one or not: no check fails because a relation reaches one route only."""
+    assert passed(analysed(description | {"relations": related}), EXACT, NUMERICAL)
+
+
 @law
 @given(driving())
 def test_prescribed_motions_enter_both_routes_of_the_first_approximation_alike(description: Description) -> None:

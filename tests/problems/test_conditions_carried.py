@@ -89,3 +89,61 @@ def test_a_rate_that_is_zero_in_disguise_is_rest(rate: str, relations: dict[str,
     assert analysis.linearisation.K[0, 0] == Exact(analysis)("m*g")
     assert str(analysis.stability.verdict.word) == "stable"
     assert {check.outcome for check in analysis.checks} == {"exact"}
+
+
+def tilted(alpha: str) -> Analysis:
+    """U = m g cos(q + alpha): at rest in q = 0 only if sin(alpha) = 0; K = m g cos(alpha)."""
+    return mbsym.loads(
+        json.dumps(
+            {
+                "mbsym": 1,
+                "name": "tilted",
+                "parameters": {"m": "positive", "g": "positive", "alpha": "real", "beta": "real"},
+                "bodies": [ROD | {"mass centre": [0, -1, 0]}],
+                "loads": [{"force function": "m*g*cos(q + alpha)"}],
+                "relations": {"alpha": alpha},
+                "motion": {"q": 0},
+            }
+        )
+    )
+
+
+@pytest.mark.parametrize(("alpha", "stiffness"), [("0", "m*g"), ("pi", "-m*g"), ("4*pi", "m*g"), ("atan(0)", "m*g")])
+def test_a_related_angle_is_that_angle_under_sines_too(alpha: str, stiffness: str) -> None:
+    analysis = tilted(alpha)
+    assert analysis.equilibrium.satisfied
+    assert analysis.linearisation.K[0, 0] == Exact(analysis)(stiffness)
+    assert {check.outcome for check in analysis.checks} <= {"exact", "verified numerically"}
+
+
+def test_an_angle_may_be_related_to_another() -> None:
+    analysis = tilted("2*beta")
+    assert not analysis.equilibrium.satisfied
+    assert analysis.linearisation.K[0, 0] == Exact(analysis)("m*g*(2*cos(beta)**2 - 1)")
+    assert not [check for check in analysis.checks if check.failed]
+
+
+def test_a_related_rate_is_used_on_the_motion() -> None:
+    """A bead at the radius 1 of a table that turns at the rate w: the spring must pull with w^2, w = 2 v."""
+    table = {"name": "table", "attached to": 0, "rotation": {"axes": [3], "angles": ["psi"]}, "mass": 0}
+    inertia = {"inertia about": "joint", "inertia": [0, 0, "C"]}
+    analysis = mbsym.loads(
+        json.dumps(
+            {
+                "mbsym": 1,
+                "name": "table",
+                "parameters": {"C": "positive", "k": "positive", "w": "real", "v": "real"},
+                "bodies": [
+                    table | inertia,
+                    {"name": "bead", "attached to": "table", "connection point": ["r", 0, 0], "mass": 1}
+                    | {"coordinates": ["r"]},
+                ],
+                "loads": [{"spring": {"coordinate": "r", "stiffness": "k", "rest": 0}}],
+                "relations": {"w": "2*v"},
+                "motion": {"psi": {"value": 0, "rate": "w"}, "r": 1},
+            }
+        )
+    )
+    assert [str(x) for x in analysis.equilibrium.conditions] == [str(Exact(analysis)("k - 4*v**2"))]
+    assert [(name, str(x)) for name, x in analysis.equilibrium.solved] == [("k", "4*v**2")]
+    assert not [check for check in analysis.checks if check.failed]

@@ -18,7 +18,7 @@ from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import relations
+from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.model.system import rational
 from mbsym.problems.dissipation import Balance
@@ -413,8 +413,7 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
             value = rational(parameter.value)
             given[parameter.name] = Lowering(Balls(constants), constants)(parameter.value) if value is None else value
     solved = {name: value.polynomial for name, value in equilibrium.solved if name not in given}
-    dependent = {scene.ring.generators[k].name: value for k, value in relations(scene).items()}
-    for name, polynomial in (solved | dependent).items():
+    for name, polynomial in (solved | dependent(scene, relations(scene))).items():
         try:
             given[name] = _value_of(scene, polynomial, given)
         except Failure:
