@@ -12,7 +12,7 @@ from mbsym_cli.files import deliver
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.numerics.methods.interface import Method
+    from mbsym.numerics.methods.interface import Breakdown, Method
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.trade_study import Study
     from mbsym.numerics.tradeoff import Measured
@@ -44,7 +44,7 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
         try:
             study = studied(found, methods, request.end, request.budget, request.fidelity, watch)
         except Breakdown as error:
-            complain(file, f"there is no reference solution up to t = {request.end:g}: {error}")
+            complain(file, _without_reference(error, request))
             return BROKEN_DOWN
         except Failure as error:
             complain(file, f"the equations have no program: {error}")
@@ -58,6 +58,16 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
         complain(file, f"interrupted{kept}")
         return INTERRUPTED
     return OK
+
+
+def _without_reference(error: Breakdown, request: Request) -> str:
+    """A solution that ends is one thing, one that takes too long another."""
+    from mbsym.numerics.methods.interface import STEP_LIMIT
+
+    if error.kind != STEP_LIMIT:
+        return f"there is no reference solution up to t = {request.end:g}: {error}"
+    reached = f"the time ended at t = {error.time:.3g}; a shorter --time or a longer --budget helps"
+    return f"no reference solution up to t = {request.end:g} was found: {reached}"
 
 
 def _write(folder: Path, system: System, study: Study, request: Request) -> list[Path]:

@@ -21,7 +21,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
-from mbsym.numerics.methods.interface import Method, Setting, Unusable
+from mbsym.numerics.methods.interface import STEP_LIMIT, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.simulate import Integrated, Trajectory, integrated
 from mbsym.numerics.sizes import AFFORDABLE, GRID, MANY, scaled, usual_sizes
@@ -48,7 +48,8 @@ class Lacking(Enum):
     NOT_ASKED = "none was asked for"
     NOT_WHOLE = "the run ended early"
     FINEST = "no better run can be had: this one is as fine as the arithmetic, and no finer arithmetic is there"
-    TOO_LONG = "a better run takes too long, or does not reach the end"
+    TOO_LONG = "a better run takes too long"
+    BREAKS_DOWN = "a better run breaks down on the way; this one may have stepped over a singularity"
     INTERRUPTED = "interrupted"
     CONTRADICTED = "the energy, which is conserved, drifts by far more than the difference from a better run"
 
@@ -122,7 +123,7 @@ def estimated(
     times, end = found.times, float(found.times[-1])
     finer: Any = times if len(times) >= MANY else np.union1d(times, np.linspace(0.0, end, GRID))
     why = Lacking.FINEST
-    for better, kind, setting in _candidates(dynamics, method, found.setting, scalar, end, completed):
+    for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
         try:
             run = integrated(dynamics, better, setting, finer, kind)
         except Unusable:
@@ -130,6 +131,8 @@ def estimated(
         if run.interrupted:
             return NoEstimate(Lacking.INTERRUPTED)
         if not run.whole:
+            if run.breakdown is not None and run.breakdown.kind != STEP_LIMIT:
+                return NoEstimate(Lacking.BREAKS_DOWN)
             why = Lacking.TOO_LONG
             continue
         against = Against(better.traits.name, kind, setting)
@@ -140,13 +143,13 @@ def estimated(
 
 def _candidates(
     dynamics: Dynamics,
+    found: Trajectory,
     method: Method,
-    setting: Setting,
     scalar: str,
-    end: float,
     completed: Callable[[Method], Method],
 ) -> Iterator[tuple[Method, str, Setting]]:
     """Runs that are better, the best of them first."""
+    setting, end = found.setting, float(found.times[-1])
     name, operations = method.traits.name, max(1, dynamics.right_hand_side.operations)
     limit, longest = max(20_000, AFFORDABLE // (14 * operations)), end / PARTS
     explicit = completed(METHODS["dop853"])
@@ -156,7 +159,11 @@ def _candidates(
         # Explicit steps in more digits; where stability asks for too many of them, the limit ends it.
         yield explicit, more[0], Setting(max(wanted, 40 * _rounding(more[0])), None, limit, longest)
     if setting.step is not None:
-        yield method, scalar, replace(setting, step=min(setting.step / 4, longest), step_limit=4 * limit)
+        yield (
+            method,
+            scalar,
+            replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * found.work.steps)),
+        )
         return
     own = _taken(name, scalar, setting.tolerance or 0.0)
     if _taken(name, scalar, wanted) <= LEAST_RATIO * own:

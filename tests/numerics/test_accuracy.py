@@ -209,3 +209,22 @@ def test_a_coarse_run_is_called_so() -> None:
     assert run.error.final == pytest.approx(final, rel=1e-6)
     assert run.error.largest == pytest.approx(worst, rel=1e-2)
     assert any("little in common" in text for text in warnings(run.conservation, run.error))
+
+
+def test_a_run_across_a_pole_has_no_estimate_and_the_reason() -> None:
+    """U = 1/(x - 1/2): thrown at the wall, steps of 0.2 jump through it, and any better run ends at it or turns."""
+    wall = (
+        STIFF[: STIFF.index("parameters:")]
+        + """parameters: {m: 1}
+bodies:
+  - {name: ball, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - force function: 1/(x - 1/2)**2
+initial: {x: {position: 1, velocity: -1}}
+"""
+    )
+    run = mbsym.simulate(mbsym.loads(wall, ()), 2, method="rk4", step=0.2, estimate=True)
+    assert run.whole
+    assert isinstance(run.error, NoEstimate)
+    assert run.error.why is Lacking.BREAKS_DOWN
+    assert list(error_lines(run.error)) == [f"not estimated: {Lacking.BREAKS_DOWN.value}"]
