@@ -39,20 +39,27 @@ def _tangents(ring: Ring, source: random.Random) -> dict[str, fmpq]:
 
 
 def ball_states(system: System, ring: Ring, count: int) -> Iterator[State]:
-    """States in which irrational functions have rigorous enclosures.
-
-    Where every angle is a linear form, the rest of the state is rational, so that long polynomials stay cheap.
-    """
+    """States in which irrational functions have rigorous enclosures."""
     source = random.Random(SEED)
-    plain = has_linear_angles(system)
     for _ in range(count):
-        if plain:
-            exact = _values(system, ring, source)
-            numbers = BallsAtRationals(_tangents(ring, source), ring.angles, exact)
-            yield State(numbers, {**numbers.values, "pi": arb.pi()})
-            continue
         values = {name: arb(value) for name, value in _values(system, ring, source).items()} | {"pi": arb.pi()}
         yield State(Balls(values), values)
+
+
+def enclosed_states(system: System, ring: Ring, count: int) -> Iterator[State]:
+    """States for identities of the ring whose values are irrational.
+
+    Where every angle is a linear form, all but roots and functions is rational there, which makes long polynomials
+    cheap; q, sin q and cos q are then independent, as they are in rational states.
+    """
+    if not has_linear_angles(system):
+        yield from ball_states(system, ring, count)
+        return
+    source = random.Random(SEED)
+    for _ in range(count):
+        exact = _values(system, ring, source)
+        numbers = BallsAtRationals(_tangents(ring, source), ring.angles, exact)
+        yield State(numbers, {**numbers.values, "pi": arb.pi()})
 
 
 class Oracles:
@@ -70,4 +77,4 @@ class Oracles:
     @cached_property
     def balls(self) -> tuple[Oracle, ...]:
         """To be used at one working precision only: values are remembered."""
-        return tuple(Oracle(self.system, state) for state in ball_states(self.system, self.ring, self.count))
+        return tuple(Oracle(self.system, state) for state in enclosed_states(self.system, self.ring, self.count))

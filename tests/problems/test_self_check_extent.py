@@ -12,7 +12,7 @@ from mbsym.algebra.point import Balls, BallsAtRationals
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import Displacement, Oracle, Placement
-from mbsym.mechanics.states import ball_states, rational_states
+from mbsym.mechanics.states import enclosed_states, rational_states
 from mbsym.problems import checks, kinematics
 
 #: q1 turns two joints, q2 stands in a place and an angle, q3 is an angle only.
@@ -50,7 +50,7 @@ def test_a_displacement_moves_what_hangs_on_a_joint_as_one_body() -> None:
     """The same as placing every body anew."""
     analysis = mbsym.loads(SHARED)
     with ctx.workprec(200):
-        (state,) = ball_states(analysis.system, analysis.ring, 1)
+        (state,) = enclosed_states(analysis.system, analysis.ring, 1)
         oracle = Oracle(analysis.system, state)
         for name in analysis.system.coordinates:
             anew = Placement(analysis.system, state, oracle._displaced(name))
@@ -75,7 +75,7 @@ def test_polynomials_with_roots_are_enclosed_as_term_by_term() -> None:
     """Splitting off what is irrational gives the ball that the sum of all terms gives."""
     analysis = arm(4, "pi/4")
     with ctx.workprec(200):
-        (state,) = ball_states(analysis.system, analysis.ring, 1)
+        (state,) = enclosed_states(analysis.system, analysis.ring, 1)
         assert isinstance(state.numbers, BallsAtRationals)
         split = Carrier(analysis.ring, state.numbers, state.values)
         summed = Carrier(analysis.ring, _plain(state.numbers), state.values)
