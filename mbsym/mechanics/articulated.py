@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from mbsym.algebra.base import Algebra, Scalar, Vector
 from mbsym.algebra.failures import SingularPoint
 from mbsym.mechanics.articulation import Articulation, MassProperties, Matrix, symmetric, turned_symmetric
-from mbsym.mechanics.coasting import Coasting
+from mbsym.mechanics.bias_forces import BiasForces
 from mbsym.mechanics.frames import Turn, axis_vector, turn_back
 
 
@@ -61,7 +61,7 @@ def applies(system: Articulation) -> bool:
     return all(len(bodies) == 1 for bodies in drivers.values())
 
 
-def solve(system: Articulation, needed: Coasting) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+def solve(system: Articulation, needed: BiasForces) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
     """(accelerations, pivots) in the order of the coordinates.
 
     The product of the pivots is the determinant of M.  Raises SingularPoint for a pivot that is zero everywhere.
@@ -70,7 +70,7 @@ def solve(system: Articulation, needed: Coasting) -> tuple[tuple[Scalar, ...], t
 
 
 class _Articulated:
-    def __init__(self, system: Articulation, needed: Coasting) -> None:
+    def __init__(self, system: Articulation, needed: BiasForces) -> None:
         self.system = system
         self.algebra = system.algebra
         self.generalized = needed.generalized

@@ -42,18 +42,18 @@ class MassProperties:
 class Frame:
     """One elementary frame; ``parent`` is -1 for the inertial frame, vectors are in the parent's axes.
 
-    offset, sliding, jerking: r, r' and r'' of the frame's origin at q'' = 0.  The partial derivatives are those of the
-    angle and of r with respect to each coordinate that they contain.  ``fixed_turn`` and ``fixed_offset`` say that
-    nothing but parameters occurs in them; ``together`` that one coordinate drives several elementary joints of the
-    body, or several coordinates one turn, so that they cannot be taken one by one.
+    offset, offset_rate, offset_acceleration: r, r' and r'' of the frame's origin at q'' = 0.  The partial derivatives
+    are those of the angle and of r with respect to each coordinate that they contain.  ``fixed_turn`` and
+    ``fixed_offset`` say that nothing but parameters occurs in them; ``together`` that one coordinate drives several
+    elementary joints of the body, or several coordinates one turn, so that they cannot be taken one by one.
     """
 
     body: str
     parent: int
     turn: Turn | None
     offset: Vector
-    sliding: Vector
-    jerking: Vector
+    offset_rate: Vector
+    offset_acceleration: Vector
     angle_derivatives: Mapping[str, Scalar]
     offset_derivatives: Mapping[str, Vector]
     fixed_turn: bool
@@ -71,7 +71,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Articulation:
-    """``frames`` parents first; ``frame_of`` maps a body to its own frame, ``masses`` holds each frame's matter.
+    """``frames`` parents first; ``frame_of`` maps a body to its own frame, ``masses`` holds each frame's properties.
 
     ``scene`` is the system at q'' = 0 (its accelerations' environment holds zeros).
     """
@@ -95,8 +95,8 @@ def articulation(scene: Scene) -> Articulation:
     builder = _Builder(scene)
     for body in scene.system.bodies:
         builder.add(body)
-    matter = [_matter(scene, name) for name in scene.motions]
-    masses = _regrouped(scene.algebra, builder.frames, dict(zip(builder.frame_of.values(), matter, strict=True)))
+    properties = [_mass_properties(scene, name) for name in scene.motions]
+    masses = _regrouped(scene.algebra, builder.frames, dict(zip(builder.frame_of.values(), properties, strict=True)))
     return Articulation(scene, tuple(builder.frames), builder.frame_of, masses)
 
 
@@ -124,8 +124,8 @@ class _Builder:
             parent=parent,
             turn=None,
             offset=motion.offset,
-            sliding=lower.vector(first),
-            jerking=lower.vector([scene.rate(x) for x in first]),
+            offset_rate=lower.vector(first),
+            offset_acceleration=lower.vector([scene.rate(x) for x in first]),
             angle_derivatives={},
             offset_derivatives={name: lower.vector([differentiate(x, name) for x in point]) for name in steered},
             fixed_turn=True,
@@ -137,19 +137,25 @@ class _Builder:
         for number, turn in enumerate(motion.turns):
             fixed = names(turn.angle) <= self.parameters
             if number == 0:
-                moved = (frame.offset, frame.sliding, frame.jerking, frame.offset_derivatives, frame.fixed_offset)
+                moved = (
+                    frame.offset,
+                    frame.offset_rate,
+                    frame.offset_acceleration,
+                    frame.offset_derivatives,
+                    frame.fixed_offset,
+                )
             else:
                 parent = len(self.frames) - 1
                 moved = (zero, zero, zero, {}, True)
-            offset, sliding, jerking, derivatives, still = moved
+            offset, offset_rate, offset_acceleration, derivatives, still = moved
             self.frames.append(
                 Frame(
                     body.name,
                     parent,
                     turn,
                     offset,
-                    sliding,
-                    jerking,
+                    offset_rate,
+                    offset_acceleration,
                     slopes[number],
                     derivatives,
                     fixed,
@@ -167,7 +173,7 @@ class _Builder:
 # --- mass properties ---
 
 
-def _matter(scene: Scene, name: str) -> MassProperties:
+def _mass_properties(scene: Scene, name: str) -> MassProperties:
     """A body's mass properties about its connection point."""
     algebra, motion = scene.algebra, scene.motions[name]
     zero = algebra.zero_vector
@@ -255,10 +261,10 @@ def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
 
 
 def _regrouped(
-    algebra: Algebra, frames: list[Frame], matter: Mapping[int, MassProperties]
+    algebra: Algebra, frames: list[Frame], properties: Mapping[int, MassProperties]
 ) -> tuple[MassProperties, ...]:
     """Mass properties frame by frame after moving to the parents what the joints do not feel."""
-    masses = [matter.get(number, nothing(algebra)) for number in range(len(frames))]
+    masses = [properties.get(number, nothing(algebra)) for number in range(len(frames))]
     for number in reversed(range(len(frames))):
         frame, own = frames[number], masses[number]
         stays, leaves = _split(algebra, frame, own)

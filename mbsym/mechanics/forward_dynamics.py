@@ -19,7 +19,7 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.coasting import coasting, forcing
+from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.programs import coasting_scene, constants
 from mbsym.mechanics.variables import program_environment
@@ -56,7 +56,7 @@ def forward_dynamics(system: System, ring: Ring, method: str | None = None) -> F
     program = Program()
     inputs = program_environment(system, program)
     frames = articulation(coasting_scene(system, ring, program, inputs))
-    needed = coasting(frames)
+    needed = bias_forces(frames)
     given = constants(system)
     found: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}
     operations: dict[str, int] = {}

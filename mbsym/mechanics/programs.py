@@ -1,7 +1,7 @@
 """The equations as one straight-line program: what numbers are computed from.
 
     M         by composite bodies (``mbsym.mechanics.composite``)
-    forcing   by the lean Newton-Euler recursion at q'' = 0 (``mbsym.mechanics.coasting``)
+    forcing   by the lean Newton-Euler recursion at q'' = 0 (``mbsym.mechanics.bias_forces``)
     energy    = T - U, without the gyrostatic term h.omega, which no energy contains
 
 All over one hash-consed program, so what they share is computed once, and zeros (branches that do not feel a joint)
@@ -22,7 +22,7 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import articulation
-from mbsym.mechanics.coasting import coasting, forcing
+from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.kinematics import Scene
@@ -70,7 +70,7 @@ def programs(system: System, ring: Ring) -> Programs:
         program=program,
         environment=inputs,
         mass_matrix=mass_matrix(frames),
-        forcing=forcing(frames, coasting(frames)),
+        forcing=forcing(frames, bias_forces(frames)),
         energy=kinetic - force - gyrostatic_term(scene),
         kinetic_energy=kinetic,
         force_function=force,

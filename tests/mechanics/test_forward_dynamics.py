@@ -20,7 +20,7 @@ from mbsym.algebra.program import Program
 from mbsym.analysis import Analysis
 from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.coasting import coasting, forcing
+from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
@@ -58,7 +58,7 @@ def check_routes(analysis: Analysis, states: int = 1) -> None:
     """M, f, and the accelerations of both methods at exact states."""
     system, n = analysis.system, len(analysis.system.coordinates)
     program, frames = frames_of(analysis)
-    mass, force = mass_matrix(frames), forcing(frames, coasting(frames))
+    mass, force = mass_matrix(frames), forcing(frames, bias_forces(frames))
     methods = [FACTORISED, ARTICULATED] if articulated.applies(frames) else [FACTORISED]
     try:
         found = [forward_dynamics(system, analysis.ring, method) for method in methods]
@@ -168,7 +168,7 @@ def test_gravity_as_an_accelerated_base_equals_weights_at_the_mass_centres(
     analysis = analysed(description)
     assume(analysis.system.coordinates)
     program, frames = frames_of(analysis)
-    lean = forcing(frames, coasting(frames))
+    lean = forcing(frames, bias_forces(frames))
     general = residuals(frames.scene)
     for state in rational_states(analysis.system, analysis.ring, 1):
         nodes = [*lean, *(-general[name] for name in analysis.system.coordinates)]
@@ -306,10 +306,10 @@ MISTAKES = [
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
     ("mechanics.articulation:shifted", "twice = algebra.add(h, moved)", "twice = algebra.add(h, h)"),
     ("mechanics.articulation:_split", "algebra.zero, (across[0]", "own.mass, (across[0]"),
-    ("mechanics.coasting:_whirl", "p[0][1] - c", "p[0][1] + c"),
-    ("mechanics.coasting:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
-    ("mechanics.coasting:_moved", "algebra.number(2)", "algebra.number(1)"),
-    ("mechanics.coasting:_gravity", "algebra.subtract(base", "algebra.add(base"),
+    ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
+    ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
+    ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),
+    ("mechanics.bias_forces:_gravity", "algebra.subtract(base", "algebra.add(base"),
 ]
 
 

@@ -25,8 +25,8 @@ from mbsym.model.system import NewtonianGravity, UniformGravity
 
 
 @dataclass(frozen=True, slots=True)
-class Coasting:
-    """Force and moment about its origin that each frame's own matter needs at q'' = 0 beyond what the loads supply.
+class BiasForces:
+    """Force and moment about its origin that each frame's own mass needs at q'' = 0 beyond what the loads supply.
 
     ``generalized`` are the generalised forces Q that loads exert directly on coordinates.
     """
@@ -41,11 +41,11 @@ class _Motion:
     spin: Vector
     angular: Vector
     origin: Vector
-    whirl: Matrix
+    w_tensor: Matrix
     products: Matrix
 
 
-def coasting(system: Articulation) -> Coasting:
+def bias_forces(system: Articulation) -> BiasForces:
     """The wrenches of inertia and loads at q'' = 0."""
     algebra = system.algebra
     zero = algebra.zero_vector
@@ -79,10 +79,10 @@ def coasting(system: Articulation) -> Coasting:
             k = system.frame_of[wrench.body]
             forces[k] = algebra.subtract(forces[k], wrench.force)
             moments[k] = algebra.subtract(moments[k], wrench.moment)
-    return Coasting(tuple(forces), tuple(moments), generalized)
+    return BiasForces(tuple(forces), tuple(moments), generalized)
 
 
-def forcing(system: Articulation, needed: Coasting) -> tuple[Scalar, ...]:
+def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:
     """f of M q'' = f: the loads' part less the inertia's, carried from the tips to the base and projected."""
     algebra = system.algebra
     forces, moments = list(needed.forces), list(needed.moments)
@@ -114,18 +114,18 @@ def _gravity(system: Articulation) -> Vector:
 
 
 def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:
-    origin = algebra.add(parent.origin, algebra.apply(parent.whirl, frame.offset))
-    twice = algebra.scale(algebra.number(2), algebra.cross(parent.spin, frame.sliding))
-    origin = algebra.add(algebra.add(origin, twice), frame.jerking)
+    origin = algebra.add(parent.origin, algebra.apply(parent.w_tensor, frame.offset))
+    twice = algebra.scale(algebra.number(2), algebra.cross(parent.spin, frame.offset_rate))
+    origin = algebra.add(algebra.add(origin, twice), frame.offset_acceleration)
     if frame.turn is None:
-        return _Motion(parent.spin, parent.angular, origin, parent.whirl, parent.products)
+        return _Motion(parent.spin, parent.angular, origin, parent.w_tensor, parent.products)
     rate = axis_vector(algebra, frame.turn.axis, frame.turn.rate)
     spin = frame.out(algebra, parent.spin)
     angular = algebra.add(frame.out(algebra, parent.angular), algebra.cross(spin, rate))
     angular = algebra.add(angular, axis_vector(algebra, frame.turn.axis, frame.turn.second_rate))
     spin = algebra.add(spin, rate)
     products = _products(algebra, spin)
-    return _Motion(spin, angular, frame.out(algebra, origin), _whirl(algebra, angular, products), products)
+    return _Motion(spin, angular, frame.out(algebra, origin), _w_tensor(algebra, angular, products), products)
 
 
 def _products(algebra: Algebra, w: Vector) -> Matrix:
@@ -141,7 +141,7 @@ def _products(algebra: Algebra, w: Vector) -> Matrix:
     )
 
 
-def _whirl(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:
+def _w_tensor(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:
     """[alpha] + [omega][omega]."""
     a, b, c = angular
     return (
@@ -152,10 +152,10 @@ def _whirl(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:
 
 
 def _needed(system: Articulation, number: int, motion: _Motion) -> tuple[Vector, Vector]:
-    """(F, N) of a frame's own matter."""
+    """(F, N) of a frame's own mass."""
     algebra = system.algebra
     own = system.masses[number]
-    force = algebra.add(algebra.scale(own.mass, motion.origin), algebra.apply(motion.whirl, own.first_moment))
+    force = algebra.add(algebra.scale(own.mass, motion.origin), algebra.apply(motion.w_tensor, own.first_moment))
     moment = algebra.cross(own.first_moment, motion.origin)
     return force, algebra.add(moment, _rotational(algebra, own.tensor, motion))
 
@@ -163,7 +163,7 @@ def _needed(system: Articulation, number: int, motion: _Motion) -> tuple[Vector,
 def _rotational(algebra: Algebra, tensor: Matrix, motion: _Motion) -> Vector:
     """J alpha + omega x J omega; first component  J11 alpha1 + (J33 - J22) omega2 omega3
     + J12 (alpha2 - omega1 omega3) + J13 (alpha3 + omega1 omega2) + J23 (omega2^2 - omega3^2),  others cyclically."""
-    p, w = motion.products, motion.whirl
+    p, w = motion.products, motion.w_tensor
     found = []
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
