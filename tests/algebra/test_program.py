@@ -199,7 +199,7 @@ def test_programs_of_systems_equal_the_closed_equations(description: Description
         carry = Carrier(analysis.ring, here.numbers, here.values)
         assert found.program.evaluate(nodes, here.values, here.numbers) == [carry(x) for x in formulas]
     for here in ball_states(analysis.system, analysis.ring, 1):
-        values = found.program.evaluate(nodes, here.values, here.numbers)
+        values = found.program.evaluate(nodes, here.values, Balls(here.values))  # sin q is that of q here
         plain = {name: float(arb(value).mid()) for name, value in here.values.items()}
         floats = found.program.evaluate(nodes, plain, Floats(plain))
         scale = 1 + max(abs(float(value.mid())) for value in values)
