@@ -10,10 +10,11 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy
 from conftest import SHIPPED, Exact, parsed, reference, with_values
-from flint import fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
+from flint import arb, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
 import mbsym
 from mbsym.algebra.base import Lowering, Scalar
@@ -26,6 +27,7 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.model.system import System
+from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.routh import ignoring_cyclic
@@ -282,7 +284,8 @@ VERDICTS = {
     "U_unstable": Word.UNSTABLE,
     "U2_strong_unstable": Word.UNSTABLE,
     "V_divergence": Word.UNSTABLE,
-    "D_degenerate_lambda_eq_omega": Word.CRITICAL,
+    # The damper does not feel one mode, but K > 0 and D >= 0: stable by Routh's theorem with dissipation (see below).
+    "D_degenerate_lambda_eq_omega": Word.STABLE_BUT_CYCLIC,
 }
 
 
@@ -307,6 +310,29 @@ def test_the_six_sets_get_the_right_verdicts(path: Any, name: str) -> None:
     assert a.stability.numerical is not None
     assert a.stability.numerical.word == VERDICTS[name]
     assert (VERDICTS[name] == Word.ASYMPTOTIC_BUT_TURNED) == SETS[name]["RH_stable_exact"]
+
+
+@BOTH
+def test_the_degenerate_set_has_a_minimum_of_energy(path: Any) -> None:
+    """What the theorem needs, by the eigenvalues of K and D: K > 0, D >= 0, N = 0; roots on the axis beside +- i."""
+    a = at_set(path, "D_degenerate_lambda_eq_omega")
+    point = part(a).theory.at_point
+    assert point is not None
+    assert point.verdict.word == Word.STABLE
+    assert a.stability.numerical is not None
+    assert a.stability.numerical.theorem == "Routh"
+    values = parameter_values(a.parameters_scene, a.equilibrium)
+    found = part(a)
+    at = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in values.items()}
+    numbers = dict.fromkeys(a.ring.names(), arb(0)) | at
+    k, d, n = (
+        np.array([[float(a.ring.evaluate(x, numbers).mid()) for x in row] for row in found.matrices[i].polynomials])
+        for i in (3, 1, 4)
+    )
+    assert min(np.linalg.eigvalsh(k)) > 0.01
+    assert min(np.linalg.eigvalsh(d)) > -1e-12
+    assert max(np.linalg.eigvalsh(d)) > 0.01
+    assert not n.any()
 
 
 @BOTH

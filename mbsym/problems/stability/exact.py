@@ -17,6 +17,7 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.problems.stability.theorems import Fact, implied
 from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, undecided
+from mbsym.problems.stability.word import Word
 
 Numbers = Any  # a flint.fmpq_mat
 
@@ -147,6 +148,8 @@ def _judge_turned(a: Numbers, turned: Sequence[Any], whole: Verdict) -> Verdict:
     roots = count_roots(polynomial.coeffs())
     if roots.left == roots.degree:
         return concluded({Fact.LEFT_BUT_TURNED})
+    if whole.word is Word.STABLE:  # by its energy: K > 0, D >= 0
+        return whole
     if roots.zero or roots.imaginary_multiplicity > 1:
         return undecided(Because.ZERO_OR_MULTIPLE_BESIDES_TURNED)
     return concluded({Fact.BOUNDED}, Reason(Because.IMAGINARY_BESIDES_TURNED), Reason(Because.HIGHER_ORDER))
