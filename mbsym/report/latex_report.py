@@ -50,6 +50,8 @@ DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
+    from mbsym.analysis import PROBLEMS
+
     names = latex_names(analysis.ring)
     system = analysis.system
     printed = claimed_names(analysis)
@@ -92,6 +94,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         moving=moving,
         found=found,
+        parts=[f"latex/{PROBLEMS[number].attribute}.j2" for number in problems],
         problems=problems,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis, names) if 3 in stages and 3 not in found else None,

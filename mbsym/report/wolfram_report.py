@@ -37,6 +37,8 @@ DIALECT = Dialect(
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
+    from mbsym.analysis import PROBLEMS
+
     names = wolfram_names(analysis.ring)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
@@ -63,6 +65,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=found,
+        parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in found else None,
         prescribed=[(names[item.name], prescribed_value(item)) for item in analysis.system.prescribed],

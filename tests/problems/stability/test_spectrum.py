@@ -16,7 +16,7 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.report.latex_report import eigenvalues, scientific
-from mbsym.report.summary import root_text
+from mbsym.report.sections.stability import root_text
 from mbsym_cli.main import main
 
 #: Descriptions whose values, with their relations, give every parameter a number.

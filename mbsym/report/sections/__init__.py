@@ -1,0 +1,19 @@
+"""What each numbered problem shows, one problem a file.
+
+A problem's module is found by its attribute: ``data(found, system, write)`` is its section of results.json,
+``lines(found, analysis)`` its lines in the terminal.  Its parts of report.tex and report.wl are templates of that name
+in ``templates/latex`` and ``templates/wolfram``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Problem
+
+
+def section_of(problem: Problem[Any]) -> Any:
+    """The module that shows a problem."""
+    return import_module(f"{__name__}.{problem.attribute}")

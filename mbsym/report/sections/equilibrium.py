@@ -1,0 +1,32 @@
+"""Problem 4, equilibrium: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.model.system import System
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.report.plain import Write, column_text, shortened
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: Equilibrium, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    return {
+        "satisfied": found.satisfied,
+        "conditions": column_text(found.conditions, write),
+        "solved": {name: str(value) for name, value in found.solved},
+    }
+
+
+def lines(found: Equilibrium, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    if found.satisfied:
+        yield "the unperturbed motion satisfies the equations identically"
+    elif found.impossible:
+        yield "the unperturbed motion cannot satisfy the equations"
+    for condition in found.conditions:
+        yield shortened(f"{condition} = 0", condition.terms)

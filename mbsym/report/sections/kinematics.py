@@ -1,0 +1,34 @@
+"""Problem 1, kinematics: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.model.system import System
+from mbsym.problems.kinematics import Kinematics
+from mbsym.report.plain import Write, column_text, counted, matrix_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: Kinematics, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    return {
+        "bodies": [
+            {
+                "name": body.name,
+                "rotation": matrix_text(body.rotation, write),
+                "angular_velocity": column_text(body.angular_velocity, write),
+                "velocity_origin": column_text(body.velocity_origin, write),
+                "velocity_mass_centre": column_text(body.velocity_mass_centre, write),
+            }
+            for body in found.bodies
+        ]
+    }
+
+
+def lines(found: Kinematics, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    yield counted(len(found.bodies), "body", "bodies")

@@ -1,0 +1,41 @@
+"""Problem 5, linearisation: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.expressions.tree import text
+from mbsym.formulas.formula import Matrix
+from mbsym.model.system import System
+from mbsym.problems.linearisation import Linearisation
+from mbsym.report.plain import Write, matrix_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: Linearisation, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    return {
+        **_five(found, write),
+        "subsystems": [{"coordinates": list(part.coordinates), **_five(part, write)} for part in found.subsystems],
+        "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
+        "notation": {item.name: text(item.value) for item in system.notation},
+    }
+
+
+def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
+    yield f"matrices that are not zero: {', '.join(present)}"
+    if len(found.subsystems) > 1:
+        yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
+
+
+def _five(found: Any, write: Write) -> dict[str, list[list[str]]]:
+    return {name: matrix_text(getattr(found, name), write) for name in "MDGKN"}
+
+
+def _is_zero(matrix: Matrix) -> bool:
+    return matrix.is_zero

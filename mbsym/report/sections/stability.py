@@ -1,0 +1,142 @@
+"""Problem 6, stability: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mbsym.formulas.names import free_name
+from mbsym.model.system import System
+from mbsym.problems.stability import Stability
+from mbsym.problems.stability.requirements import Method
+from mbsym.problems.stability.sentences import short, with_theorem
+from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
+from mbsym.problems.stability.symbolic import Theory
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
+from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, provided, statements
+from mbsym.report.plain import LONGEST, Write, polynomial_text, shortened, statement_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: More eigenvalues of a subsystem are left to the files.
+MOST_ROOTS = 10
+
+
+def data(found: Stability, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
+    lam = free_name("lam", taken)
+    parts = found.subsystems
+    wanted = [list(statements(part.ring, part.theory.requirements)) for part in parts]
+    return {
+        "characteristic_polynomials": [polynomial_text(part.characteristic, lam) for part in parts],
+        "conditions": [statement_text(item) for items in wanted for item in items],
+        "condition_labels": [[item.label for item in items] for items in wanted],
+        "condition_places": [[item.place for item in items] for items in wanted],
+        "cases": [
+            [_case(case, items) for case in cases(part.ring, part.theory.cases)]
+            for part, items in zip(parts, wanted, strict=True)
+        ],
+        "verdict": found.verdict.word,
+        "theorem": found.verdict.theorem,
+        "verdict_at_values": None if found.numerical is None else found.numerical.word,
+        "eigenvalues_at_values": [
+            {
+                "coordinates": list(part.coordinates),
+                "roots": [
+                    {"real": x.real, "imaginary": x.imaginary, "multiplicity": x.multiplicity} for x in numbers(part)
+                ],
+            }
+            for part in found.spectra
+        ],
+    }
+
+
+def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    presumed = provided(len(analysis.equilibrium.conditions))
+    for part in found.subsystems:
+        # Of a motion that is proved to be stable, conditions of something stronger would be misread.
+        items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
+        verdict = _verdict(part.theory.verdict)
+        if part.theory.verdict.word is Word.DEPENDS and items:
+            verdict += f"; {_heading(part.theory)}:"
+        yield f"{', '.join(part.coordinates)}: {verdict}"
+        for item in items:
+            yield f"  {_condition(item)}"
+    if len(found.subsystems) > 1:
+        yield f"whole system: {_verdict(found.verdict)}"
+    if presumed:
+        yield f"all this {presumed}"
+    if found.numerical is not None:
+        why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
+        yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
+    for spectrum in found.spectra:
+        yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _case(case: CaseStatement, listed: Sequence[Statement]) -> dict[str, Any]:
+    """Conditions that the list already holds, or holds reversed, are named by their labels."""
+    shown = Shown()
+    for item in listed:
+        shown.show(item)
+
+    def short(item: Statement) -> str:
+        found = shown.reference(item)
+        return statement_text(item) if found is None else f"{found.under} {found.relation} 0"
+
+    return {
+        "all_of": [short(item) for item in case.all_of],
+        "any_of": [short(item) for item in case.any_of],
+        "verdict": case.word,
+        "theorem": case.theorem,
+    }
+
+
+def _roots(spectrum: Spectrum) -> str:
+    listed = [root_text(x) for x in numbers(spectrum)]
+    more = len(listed) - MOST_ROOTS
+    return ", ".join(listed[:MOST_ROOTS]) + (f" and {more} more" if more > 0 else "")
+
+
+def root_text(root: RootNumbers) -> str:
+    """``-0.1 +- 2.3i (twice)``."""
+    real = f"{root.real:.6g}"
+    text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
+    if root.imaginary and root.real:
+        text = f"{real} +- {root.imaginary:.6g}i"
+    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
+    return text + times
+
+
+def _condition(item: Statement) -> str:
+    if item.formula is None and item.never is None:
+        return f"a condition is {item.note}"
+    if item.never is not None:
+        value = str(item.never)
+        left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
+        return f"{left} {item.relation} 0 {item.note}"
+    remark = f" ({item.remark})" if item.remark else ""
+    return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
+
+
+def _heading(theory: Theory) -> str:
+    """What the listed conditions are."""
+    if theory.method is Method.EVEN and not theory.potential:
+        return "necessary conditions, but for the case of equality"
+    always = next((case.verdict for case in theory.cases if case.always), None)
+    if always is not None and always.stable:
+        return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
+    return "conditions"
+
+
+def _verdict(verdict: Verdict) -> str:
+    return with_theorem(short(verdict.word), verdict.theorem)
+
+
+def _clause(sentence: str) -> str:
+    """A sentence as the end of another one; the name of a matrix keeps its capital."""
+    first = sentence.split(" ")[0]
+    return (sentence if len(first) == 1 and first != "A" else sentence[:1].lower() + sentence[1:]).rstrip(".")
