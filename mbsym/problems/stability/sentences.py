@@ -80,7 +80,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.IMAGINARY_BESIDES_TURNED: (
         "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
     ),
-    Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem covers both.",
+    Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem that was tried covers both.",
     Because.HIGHER_ORDER: HIGHER_ORDER,
     Because.COASTING: (
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs."
