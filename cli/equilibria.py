@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from collections import Counter
-from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,21 +11,12 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.assignments import assignments, contradictions
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, console, counted, printable, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, read_description, status
 from mbsym_cli.lacking import missing
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from mbsym.model.system import System
-    from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
-
-#: How the first word of a verdict is coloured.
-_COLOURS = {"asymptotically": "green", "stable": "green", "gyroscopically": "yellow", "unstable": "red"}
-
-#: Longer equations of a family are only counted.
-_LONGEST = 100
 
 
 @click.command("equilibria")
@@ -83,7 +72,9 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
 
         click.echo(equilibria_json(system, values, found), nl=False)
     else:
-        _show(system, found, file, time.perf_counter() - started)
+        from mbsym_cli.equilibria_table import show_equilibria
+
+        show_equilibria(system, found, file, time.perf_counter() - started)
     sys.exit(OK)
 
 
@@ -118,121 +109,3 @@ def _values(file: Path, system: System, settings: tuple[str, ...], asked: Option
     if names:
         asked.complaints.append(missing(file, names, "number"))
     return values
-
-
-# --- the table -------------------------------------------------------------------------------------------------------
-
-
-def _show(system: System, found: Equilibria, file: Path, seconds: float) -> None:
-    from rich.text import Text
-
-    out = console()
-    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
-    for name, rate in found.turning:
-        out.print(Text(f"  {name} turns at the rate {rate:.10g}"))
-    if found.equilibria:
-        out.print(_table(system, found.equilibria))
-    if found.singular:
-        where = "the coordinates are singular there: equilibria or not is undecided"
-        out.print(Text(f"  {counted(len(found.singular), 'more solution', 'more solutions')}, {where}", style="bold"))
-        out.print(_table(system, found.singular, judged=False))
-    if found.beyond:
-        lengths = ", ".join(f"{name} < 0" for name in dict.fromkeys(x for one in found.beyond for x in one.beyond))
-        count = counted(len(found.beyond), "more solution", "more solutions")
-        where = "with positive lengths the bodies would be at the same places, but other forces would act"
-        out.print(Text(f"  {count} with {lengths}, not counted: {where}", style="bold"))
-        out.print(_table(system, found.beyond, judged=False))
-    for number, family in enumerate(found.families, 1):
-        _show_family(number, family)
-    _show_summary(found)
-
-
-def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
-    from rich.table import Table
-    from rich.text import Text
-
-    from mbsym.problems.stability.sentences import short
-
-    columns = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
-    others = any(x.coordinates_of for x in listed)
-    boxes = any(x.proof != "exact" for x in listed)
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-    table.add_column("", justify="right", style="dim")
-    for name in columns:
-        table.add_column(name, justify="right")
-    if judged:
-        table.add_column("stability")
-        table.add_column("by", style="dim")
-    if boxes:
-        table.add_column("proof", style="dim")
-    if others:
-        table.add_column("angles of", style="dim")
-    for number, one in enumerate(listed, 1):
-        colour = _COLOURS.get(one.verdict.word.split(" ")[0], "yellow")
-        cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
-        if judged:
-            cells += [Text(short(one.verdict.word), style=colour), one.verdict.theorem]
-        cells += [one.proof] if boxes else []
-        cells += [one.coordinates_of] if others else []
-        table.add_row(*cells)
-    return table
-
-
-def _has(one: RelativeEquilibrium, name: str) -> bool:
-    return name in one.free or any(item.name == name for item in one.values)
-
-
-def _cell(one: RelativeEquilibrium, name: str) -> str:
-    if name in one.free:
-        return "any"
-    return next((_text(item) for item in one.values if item.name == name), "")
-
-
-def _text(item: CoordinateValue) -> str:
-    return item.text if item.exact or item.text == "0" else f"{item.value:.8g}"
-
-
-def _show_family(number: int, family: EquilibriumFamily) -> None:
-    from rich.text import Text
-
-    from mbsym.problems.stability.sentences import short
-
-    out = console()
-    angles = f"; angles of {family.coordinates_of}" if family.coordinates_of else ""
-    title = (
-        f"  family {number}: {counted(family.dimension, 'parameter', 'parameters')} ({', '.join(family.free)}){angles}"
-    )
-    out.print(Text(title, style="bold cyan"))
-    for equation in family.equations[:12]:
-        terms = equation.count(" + ") + equation.count(" - ") + 1
-        shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
-        out.print(Text(f"    {shown} = 0"))
-    sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
-    out.print(Text(f"    for example {sample}: {short(family.verdict.word)}"))
-
-
-def _show_summary(found: Equilibria) -> None:
-    from rich.text import Text
-
-    from mbsym.problems.stability.sentences import short
-
-    out = console()
-    count = counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
-    words = Counter(one.verdict.word for one in found.equilibria)
-    kinds = "; ".join(f"{n} {short(word)}" for word, n in words.items())
-    families = f", {counted(len(found.families), 'family', 'families')}" if found.families else ""
-    out.print(Text.assemble((count + families, "bold"), f": {kinds}" if kinds else ""))
-    twice = {one.described for one in found.equilibria if one.described > 1}
-    if twice:
-        times = " or ".join(str(n) for n in sorted(twice))
-        out.print(Text(f"  counted as configurations: the coordinates describe one in {times} ways", style="dim"))
-    if found.charts > 1:
-        out.print(Text(f"  singular angles were replaced by others ({found.charts} sets of angles)", style="dim"))
-    for remark in found.remarks:
-        out.print(Text(f"  {remark}", style="yellow"))
-    if found.complete:
-        how = "every one exact" if all(x.proof == "exact" for x in found.equilibria) else "every one proved"
-        but = " apart from these" if found.singular or found.beyond else ""
-        out.print(Text(f"  the list is complete{but} ({how})", style="green"))
-    else:
-        out.print(Text("  the list may be incomplete", style="bold yellow"))
