@@ -69,9 +69,11 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """Names, verdicts and titles fold where the terminal is narrow; numbers never do."""
     from rich.table import Table
 
+    from mbsym.report.extremes_tables import APPROXIMATION
+
     shown = Table(box=None, padding=(0, 1), header_style="bold cyan")
     for place, name in enumerate(columns):
-        if name in ("extreme", "stability"):
+        if name in ("extreme", APPROXIMATION):
             shown.add_column(name, overflow="fold")
         else:
             width = max(len(row[place]) for row in rows)

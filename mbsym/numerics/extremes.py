@@ -357,7 +357,7 @@ def _verdicts(found: Extremes, say: Callable[[Word], str]) -> Iterator[str]:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
         sides = [[row for row in own if row.subject.endswith(f" from {side}")] for side in ("below", "above")]
         below, above = (_side(rows, say) for rows in sides)
-        text = f"{subject}: a border, {below} below and {above} above"
+        text = f"{subject}: a border of the first approximation, {below} below and {above} above"
         if all(len({row.judged.exact.word for row in rows}) == 1 for rows in sides):
             text += (
                 f", decided exactly down to a distance of {max(min(row.size for row in rows) for rows in sides):.0e}"

@@ -109,8 +109,11 @@ def tables(found: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:
                 title = "rates 1e-8 to 1e8" if kind == "rates" else title
                 rows.append([title, *cells, *([_verdicts(own)] if linear else [])])
         if rows:
-            yield ["extreme", *columns, *(["stability"] if linear else [])], rows
+            yield ["extreme", *columns, *([APPROXIMATION] if linear else [])], rows
 
+
+#: The title of verdicts: they are those of the linear equations, which problem 6 may know more about.
+APPROXIMATION = "first approximation"
 
 _LINEAR = ("M", "D", "G", "K", "N", "eigenvalues")
 
