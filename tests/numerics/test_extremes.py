@@ -519,6 +519,6 @@ def test_a_ladder_that_was_cut_short_is_not_said_to_be_whole(whole: Any) -> None
     borders = [row for row in whole.verdicts if not (row.subject == "A -> 9 from above" and row.size < 1e-6)]
     said = "\n".join(sentences(replace(whole, verdicts=tuple(borders))))
     assert (
-        "A -> 9: a border of the first approximation, unstable below and stable above, decided exactly down to a distance of 1e-06"
-        in said
+        "A -> 9: a border of the first approximation, unstable below and stable above, "
+        "decided exactly down to a distance of 1e-06" in said
     )
