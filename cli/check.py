@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, counted, defect, printable, read_description
+from mbsym.expressions.counting import counted
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
 from mbsym_cli.options import Options
 
 

@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import LOG
+from mbsym.expressions.counting import counted
 from mbsym.expressions.safe import safe as escaped
 from mbsym.source import load, render
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.text import Text
 
     from mbsym.model.system import System
 
@@ -80,6 +82,15 @@ def console(stderr: bool = False) -> Console:
     return Console(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
 
 
+def indented(text: Text, indent: int) -> None:
+    """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    out = console()
+    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)
+
+
 @contextmanager
 def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
     """A spinner on standard error that says what is being done; nothing where it is no terminal."""
@@ -140,8 +151,3 @@ def reason_of(error: OSError) -> str:
     """What the system says of a file, with its name."""
     said = error.strerror or str(error)
     return said if error.filename is None else f"{printable(str(error.filename))}: {said}"
-
-
-def counted(n: int, one: str, many: str) -> str:
-    """``1 body``, ``4 bodies``."""
-    return f"{n} {one if n == 1 else many}"

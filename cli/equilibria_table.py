@@ -9,11 +9,12 @@ from pathlib import Path
 from rich.table import Table
 from rich.text import Text
 
+from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
 from mbsym.problems.stability.sentences import short
 from mbsym.problems.stability.word import Word
-from mbsym_cli.console import console, counted, printable
+from mbsym_cli.console import console, printable
 
 #: What is neither proved to be stable nor unstable is yellow.
 _COLOURS = {

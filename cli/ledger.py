@@ -9,7 +9,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mbsym_cli.console import console
+from mbsym_cli.console import console, indented
 
 if TYPE_CHECKING:
     from mbsym.report.ledger import LedgerLine
@@ -30,12 +30,12 @@ def show_ledger(lines: Sequence[LedgerLine], unmeasured: Sequence[str]) -> None:
         out.print(Padding(_table(lines), (0, 0, 0, 4)))
     else:
         for line in lines:
-            _hanging(Text.assemble((line.kind, "bold"), f": {line.what}"), 4)
-            _hanging(_why(line), 6)
+            indented(Text.assemble((line.kind, "bold"), f": {line.what}"), 4)
+            indented(_why(line), 6)
             for text in line.saved:
-                _hanging(Text(text), 6)
+                indented(Text(text), 6)
     if unmeasured:
-        _hanging(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
+        indented(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
 
 
 def _table(lines: Sequence[LedgerLine]) -> Table:
@@ -51,9 +51,3 @@ def _table(lines: Sequence[LedgerLine]) -> Table:
 
 def _why(line: LedgerLine) -> Text:
     return Text.assemble(f"{line.why} ", (f"({line.how})", _COLOURS[line.how]))
-
-
-def _hanging(text: Text, indent: int) -> None:
-    """Wrapped with a hanging indent on a terminal; one line elsewhere."""
-    out = console()
-    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)

@@ -10,12 +10,13 @@ import sys
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from mbsym.expressions.counting import counted
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, Name, walk
 from mbsym.source import is_description, render_option
 from mbsym.source.scope import closest
-from mbsym_cli.console import counted, printable
+from mbsym_cli.console import printable
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000

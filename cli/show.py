@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.padding import Padding
 from rich.text import Text
 
-from mbsym_cli.console import console, printable
+from mbsym_cli.console import console, indented, printable
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
@@ -52,13 +51,7 @@ def _problem(line: Line) -> None:
     console().print(Text.assemble("  ", (f"{line.number} {line.title}", "bold cyan"), seconds))
     for text in line.lines:
         indent = 4 + len(text) - len(text.lstrip())
-        _indented(Text(text.strip(), style="" if line.available else "yellow"), indent)
-
-
-def _indented(text: Text, indent: int) -> None:
-    """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
-    out = console()
-    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)
+        indented(Text(text.strip(), style="" if line.available else "yellow"), indent)
 
 
 def _claims(claims: tuple[ClaimLine, ...]) -> None:
@@ -77,9 +70,9 @@ def _claims(claims: tuple[ClaimLine, ...]) -> None:
         told = (f"{claim.title}: ", claim.outcome)
         if len(group) > 1:
             told = (f"{len(group)} claims ", claim.outcome.replace("holds", "hold", 1))
-        _indented(Text.assemble(place + told[0], (told[1], _CLAIM_COLOURS[claim.word])), 4)
+        indented(Text.assemble(place + told[0], (told[1], _CLAIM_COLOURS[claim.word])), 4)
         for text in claim.lines:
-            _indented(Text(text.strip()), 6 + len(text) - len(text.lstrip()))
+            indented(Text(text.strip()), 6 + len(text) - len(text.lstrip()))
 
 
 def _checks(checks: tuple[Check, ...]) -> None:
@@ -89,4 +82,4 @@ def _checks(checks: tuple[Check, ...]) -> None:
     width = max(len(check.name) for check in checks)
     for check in checks:
         outcome = f"{check.outcome} ({check.detail})" if check.detail else check.outcome
-        _indented(Text.assemble(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome])), 4)
+        indented(Text.assemble(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome])), 4)

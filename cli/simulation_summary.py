@@ -7,7 +7,8 @@ from math import ceil, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym_cli.console import console, counted, printable
+from mbsym.expressions.counting import counted
+from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown

@@ -16,6 +16,7 @@ from typing import Any
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.generators import occurring
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 Coefficients = tuple[Polynomial, ...]
@@ -95,7 +96,7 @@ def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
 
 def _generators(matrix: Matrix) -> int:
     """How many generators the entries contain."""
-    return len({k for row in matrix for x in row for k, degree in enumerate(x.degrees()) if degree > 0})
+    return len(occurring(x for row in matrix for x in row))
 
 
 def _words(x: Polynomial) -> int:

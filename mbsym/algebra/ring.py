@@ -31,6 +31,7 @@ from flint.utils.flint_exceptions import DomainError
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
+from mbsym.algebra.generators import occurring
 from mbsym.expressions.angles import LinearForm
 
 Polynomial = Any
@@ -861,7 +862,7 @@ class _Evaluation:
 
     def __call__(self, x: Polynomial) -> Any:
         total = arb(0)
-        used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
+        used = occurring([x])
         base = {k: self.generator(k) for k in used}
         for monomial, coefficient in x.terms():
             term = arb(coefficient)

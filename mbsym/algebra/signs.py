@@ -34,6 +34,7 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.generators import occurring
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]
@@ -156,6 +157,10 @@ class Signs:
     def sign(self, p: Polynomial) -> str:
         """``positive``, ``negative``, ``zero``, ``nonnegative``, ``nonpositive``, ``nonzero`` or ``unknown``."""
         return SIGN_WORDS[self._possible(self.normalised(p), -1)]
+
+    def never_zero(self, p: Polynomial) -> bool:
+        """Whether p != 0 is known: positive, negative or nonzero."""
+        return 0 not in self._possible(self.normalised(p), -1)
 
     def normalised(self, p: Polynomial) -> Polynomial:
         """p in normal form."""
@@ -282,7 +287,7 @@ class Signs:
 
     def _by_value(self, p: Polynomial) -> SignSet | None:
         """The sign of a number, where its enclosure excludes zero; None for what has parameters or may be zero."""
-        used = [k for k, degree in enumerate(p.degrees()) if degree > 0] if self.numbers else []
+        used = occurring([p]) if self.numbers else []
         if not used or not all(k in self.numbers for k in used):
             return None
         with ctx.workprec(_NUMBER_BITS):

@@ -77,3 +77,11 @@ def linear_form(expression: Expression) -> LinearForm | None:
         case Call():
             return None
     return None
+
+
+def angle_name(angle: Expression | None) -> str | None:
+    """``theta`` for an angle ``theta`` or ``-theta``; None for anything else."""
+    match angle:
+        case Name(name) | Negative(Name(name)):
+            return name
+    return None

@@ -117,7 +117,6 @@ _UNITS = tuple(
 _DECIMAL_COMMA = re.compile(r"(?<![\w.,])([0-9]+),([0-9]+)(?![\w.,])")
 
 _BINDING = {"+": 10, "-": 10, "*": 20, "/": 20}
-_BINDING_SIGN = 30
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.numerals import writable
 
@@ -146,7 +147,9 @@ class _Presenter:
 
     def _as_fraction(self, polynomial: Polynomial) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
-        long = [k for k in _used(polynomial) if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
+        long = (
+            [k for k in occurring([polynomial]) if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
+        )
         if long and self._terms_of_denominator(polynomial, long) <= FRACTION_TERMS:
             try:
                 with self.ring.budget(FRACTION_WORK):
@@ -177,7 +180,7 @@ class _Presenter:
             generator = self.ring.generators[index]
             level = _MOTION.get(generator.kind, 1 if generator.kind in _PLACE else 0)
             if generator.argument is not None:
-                level = max([0, *(self.level(k) for k in _used(generator.argument))])
+                level = max([0, *(self.level(k) for k in occurring([generator.argument]))])
                 if generator.kind == "reciprocal" and level <= _RECIPROCAL:
                     level = _RECIPROCAL
             elif level == 1 and self.ring.has("parameter", generator.name):
@@ -205,7 +208,7 @@ class _Presenter:
 
     def _terms(self, polynomial: Polynomial) -> tuple[int, Terms]:
         """(common denominator, terms of what is left)."""
-        used = sorted(_used(polynomial), key=self.place)
+        used = sorted(occurring([polynomial]), key=self.place)
         scale = lcm(*(int(c.q) for c in polynomial.coeffs()))
         # In a context of its own: flint hands out all exponents, and the ring has many more generators.
         context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
@@ -437,10 +440,6 @@ def _by(variable: int) -> Split:
         return (), monomial
 
     return split
-
-
-def _used(polynomial: Polynomial) -> list[int]:
-    return [k for k, degree in enumerate(polynomial.degrees()) if degree > 0]
 
 
 def _obviously_irreducible(terms: Terms) -> bool:

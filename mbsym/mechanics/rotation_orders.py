@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import permutations
 
+from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.motion import motion_values
-from mbsym.mechanics.symmetry import angle_name
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import Body, Rotation, System, velocity_name
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mbsym.expressions.tree import ZERO, Expression, Name, Negative, names
+from mbsym.expressions.angles import angle_name
+from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import (
@@ -75,14 +76,6 @@ def _attitude(body: Body) -> tuple[str, str, str] | None:
     if not turns_freely or None in found or len(set(found)) != 3 or not {*found} <= {*body.coordinates}:
         return None
     return (str(found[0]), str(found[1]), str(found[2]))
-
-
-def angle_name(angle: Expression) -> str | None:
-    """``theta`` for an angle ``theta`` or ``-theta``."""
-    match angle:
-        case Name(name) | Negative(Name(name)):
-            return name
-    return None
 
 
 def _same_in_every_direction(system: System, root: Body, angles: Sequence[str]) -> bool:

@@ -33,6 +33,7 @@ from typing import Any
 
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import (
@@ -488,7 +489,7 @@ def _times(left: str, right: str) -> str:
 def _by_velocities(ring: Ring, x: Polynomial, coordinates: Sequence[str]) -> dict[tuple[int, ...], Polynomial] | None:
     """{exponents of the velocities: coefficient}; None where a velocity stands under a root or a function."""
     indices = [ring.index("velocity", name) for name in coordinates]
-    used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
+    used = occurring([x])
     speeds = [velocity_name(name) for name in coordinates]
     for k in used:
         if k not in indices and ring.dependencies(ring.context.gen(k), speeds):

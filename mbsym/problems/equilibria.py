@@ -35,6 +35,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra import krawczyk
 from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import (
     AlgebraicPoint,
     Family,
@@ -319,13 +320,11 @@ class _ChartSearch:
                 self.impossible = True
             elif not numerator.is_zero():
                 self.equations.append(numerator)
-        used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
+        used = set(occurring(self.equations))
         self.occurring = tuple(name for name in found.constant if any(ring.depends_on(x, name) for x in self.equations))
         self.free = tuple(name for name in found.constant if name not in self.occurring)
         usual = [
-            x
-            for x in self.chart.nonzero
-            if any(d > 0 and ring.generators[k].name in self.occurring for k, d in enumerate(x.degrees()))
+            x for x in self.chart.nonzero if any(ring.generators[k].name in self.occurring for k in occurring([x]))
         ]
         self.nonzero += usual
         self.singular_where = usual
@@ -380,7 +379,7 @@ class _ChartSearch:
                 what = "a number" if ring.constant_value(g.argument) is not None else "something that is no angle"
                 return f"{'sine and cosine' if g.kind != 'function' else g.name} of {what}"
             if g.argument is not None:
-                pending += [i for i, degree in enumerate(g.argument.degrees()) if degree > 0]
+                pending += occurring([g.argument])
             elif g.kind in ("sine", "cosine", "coordinate"):
                 kinds.setdefault(g.name, set()).add("plain" if g.kind == "coordinate" else "angle")
             else:
@@ -591,7 +590,7 @@ class _ChartSearch:
         )
 
     def _periodic(self, name: str) -> bool:
-        used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
+        used = occurring(self.equations)
         return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in used
 
     def _range(self, name: str, held: float | None = None) -> tuple[float, float]:

@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
@@ -70,7 +71,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> 
     while pending:
         condition = min(pending, key=len)
         pending.remove(condition)
-        if condition.is_constant() or signs.sign(condition) in ("positive", "negative", "nonzero"):
+        if condition.is_constant() or signs.never_zero(condition):
             impossible.append(condition)
             continue
         conditions.append(condition)
@@ -103,7 +104,7 @@ def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
         return None
     kept = ring.one
     for factor, _ in ring.factored(numerator)[1]:
-        if signs.sign(factor) not in ("positive", "negative", "nonzero"):
+        if not signs.never_zero(factor):
             kept = ring.times(kept, factor)
     return numerator if kept.is_constant() else ring.reduce(kept)
 
@@ -115,8 +116,7 @@ def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Poly
         index
         for k, g in enumerate(ring.generators)
         if g.argument is not None and condition.degrees()[k] > 0
-        for index, degree in enumerate(g.argument.degrees())
-        if degree > 0
+        for index in occurring([g.argument])
     }
     options = []
     for order, name in enumerate(_preferred(scene.system)):
@@ -124,7 +124,7 @@ def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Poly
         if condition.degrees()[index] != 1 or index in hidden or name in ring.angles:
             continue
         slope = condition.derivative(index)
-        if signs.sign(slope) in ("positive", "negative", "nonzero"):
+        if signs.never_zero(slope):
             options.append((len(slope), order, index, slope))
     if not options:
         return None

@@ -67,7 +67,7 @@ def _bounds(scene: Scene, told: Signs) -> list[tuple[Polynomial, str]]:
     for name in (name for name in ring.angles if ring.has("parameter", name)):
         pair = (ring.generator("sine", name), ring.generator("cosine", name))
         for bounded, other in (pair, pair[::-1]):
-            strict = told.sign(other) in ("positive", "negative", "nonzero")
+            strict = told.never_zero(other)
             facts += [(ring.one + sign * bounded, ">" if strict else ">=") for sign in (1, -1)]
     return facts
 

@@ -8,6 +8,7 @@ from typing import Any
 from flint import arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.failures import NotRational
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import inverse_modulo
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
@@ -96,7 +97,7 @@ class Place:
         if self.modulus is None:
             return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
         total = fmpq_poly([0])
-        used = [k for k, degree in enumerate(x.degrees()) if degree > 0]
+        used = occurring([x])
         generators = {k: self._generator(k) for k in used}
         if any(value is None for value in generators.values()):
             return None

@@ -8,6 +8,7 @@ from typing import Any
 
 from flint import fmpq, fmpz
 
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, context
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.python import python_text
@@ -19,13 +20,13 @@ class Unknowns:
 
     def __init__(self, ring: Ring, equations: Sequence[Polynomial]) -> None:
         self.ring = ring
-        used = {k for x in equations for k, degree in enumerate(x.degrees()) if degree > 0}
+        used = set(occurring(equations))
         pending = list(used)
         while pending:
             g = ring.generators[pending.pop()]
             more: set[int] = set()
             if g.argument is not None:
-                more = {k for k, degree in enumerate(g.argument.degrees()) if degree > 0}
+                more = set(occurring([g.argument]))
             elif g.kind in ("sine", "cosine"):
                 more = {ring.index("sine", g.name), ring.index("cosine", g.name)}
             pending += more - used
@@ -44,7 +45,7 @@ class Unknowns:
         self.context = context([f"x{k}" for k in range(len(self.indices))])
 
     def holds(self, x: Polynomial) -> bool:
-        return all(k in self.indices for k, degree in enumerate(x.degrees()) if degree > 0)
+        return all(k in self.indices for k in occurring([x]))
 
     def polynomial(self, x: Polynomial) -> Any:
         """x times a positive integer."""

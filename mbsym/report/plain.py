@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from mbsym.expressions.counting import counted
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.report.conditions import Statement
 
@@ -39,10 +40,6 @@ def statement_text(statement: Statement) -> str:
     if statement.formula is None:
         return f"{statement.label} {statement.relation} 0: {statement.note}"
     return f"{statement.formula} {statement.relation} 0"
-
-
-def counted(n: int, one: str, many: str = "") -> str:
-    return f"{n} {one if n == 1 else many or one + 's'}"
 
 
 def shortened(text: str, terms: int) -> str:

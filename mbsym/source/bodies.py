@@ -6,9 +6,10 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
+from mbsym.expressions.angles import angle_name
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, Negative, is_number, subtract, walk
+from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, is_number, subtract, walk
 from mbsym.model.admissibility import ROUNDING
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector, rational
 from mbsym.source.identity import vanishes
@@ -159,15 +160,7 @@ def _coordinate_hint(name: Name, draft: Draft, close: str | None) -> str:
 
 def _bare_name(node: Node) -> str | None:
     tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
-    return bare_name(tree)
-
-
-def bare_name(angle: Expression | None) -> str | None:
-    """``theta`` for an angle ``theta`` or ``-theta``."""
-    match angle:
-        case Name(name) | Negative(Name(name)):
-            return name
-    return None
+    return angle_name(tree)
 
 
 def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Union
 
+from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import ZERO, Expression, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.system import (
@@ -34,7 +35,6 @@ from mbsym.model.system import (
     UniformGravity,
     Vector,
 )
-from mbsym.source.bodies import bare_name
 
 Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)
 
@@ -105,7 +105,7 @@ def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
     declared = {parameter.name for parameter in system.parameters}
     declared |= {prescribed.name for prescribed in system.prescribed}
     bare = [
-        tuple(dict.fromkeys(name for angle in body.rotation.angles if (name := bare_name(angle)) is not None))
+        tuple(dict.fromkeys(name for angle in body.rotation.angles if (name := angle_name(angle)) is not None))
         for body in system.bodies
     ]
     listed = [body.coordinates != names for body, names in zip(system.bodies, bare, strict=True)]

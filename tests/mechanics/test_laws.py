@@ -144,8 +144,10 @@ def test_the_sine_of_a_velocity_is_an_angle_like_any_other() -> None:
 
 
 def test_a_coordinate_may_rest_at_a_number() -> None:
+    """M = m (a point at distance 1) and K = k, the spring's own stiffness, wherever it rests."""
     analysis = pendulum({"spring": {"coordinate": "q", "stiffness": "k", "rest": 0.5}}, motion=0.5)
-    assert analysis.linearisation.K[0, 0] == analysis.linearisation.K[0, 0]
+    assert str(analysis.linearisation.M[0, 0]) == "m"
+    assert str(analysis.linearisation.K[0, 0]) == "k"
     assert passed(analysis, EXACT, NUMERICAL)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.characteristic import BUDGET as DETERMINANT
@@ -46,10 +46,6 @@ def _given_up(work: Work, number: int) -> Counted:
     started = time.perf_counter()
     alone.stage(number)
     return Counted(None, alone.ring.work, time.perf_counter() - started)
-
-
-def _total(formulas: Iterable[Any]) -> int:
-    return sum(x.terms for x in formulas)
 
 
 def _terms(found: Any) -> int:

@@ -10,11 +10,12 @@ from typing import Any, TypeVar
 
 from flint import arb
 
-from mbsym.algebra.failures import Failure, NoClosedForm, NotRational, SingularPoint
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.analysis import Analysis, Unavailable
+from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression, Name
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.energy import kinetic_energy
@@ -31,9 +32,6 @@ BUDGET, WORK = 20.0, 20_000_000
 
 #: What is built faster than this is built again, so many times at most, and the shortest time counts.
 SOON, REPEATS = 0.2, 5
-
-#: What a model may refuse: nothing that the ledger looks at must stop a run.
-REFUSALS = (NoClosedForm, NotRational, SingularPoint, Unavailable)
 
 Made = TypeVar("Made")
 
@@ -225,11 +223,10 @@ def moving_names(system: System) -> frozenset[str]:
 
 def holds(ring: Ring, x: Polynomial, name: str) -> bool:
     """Whether a parameter occurs in a polynomial: plainly, under sin and cos, or inside what is adjoined."""
-    for k, degree in enumerate(x.degrees()):
-        if degree > 0:
-            found = ring.generators[k]
-            if found.name == name and found.kind in ("parameter", "sine", "cosine"):
-                return True
-            if found.argument is not None and holds(ring, found.argument, name):
-                return True
+    for k in occurring([x]):
+        found = ring.generators[k]
+        if found.name == name and found.kind in ("parameter", "sine", "cosine"):
+            return True
+        if found.argument is not None and holds(ring, found.argument, name):
+            return True
     return False

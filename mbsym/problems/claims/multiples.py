@@ -107,7 +107,7 @@ def _exceptions(derived: Derived, top: Polynomial, bottom: Polynomial) -> str:
         except NoClosedForm:
             return "where the factor is neither 0 nor infinite"
         for factor, _ in factors:
-            if derived.signs.sign(factor) not in ("positive", "negative", "nonzero"):
+            if not derived.signs.never_zero(factor):
                 doubtful.append(str(Formula(ring, factor)))
     if not doubtful:
         return ""

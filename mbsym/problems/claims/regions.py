@@ -179,7 +179,7 @@ class Region:
         if x.is_constant() or not stiff:
             return False
         factors = (factor for factor, _ in ring.factored(x)[1])
-        may_vanish = [f for f in factors if self.signs.sign(f) not in ("positive", "negative", "nonzero")]
+        may_vanish = [f for f in factors if not self.signs.never_zero(f)]
         return all(any(ring.quotient(k, factor) is not None for k in stiff) for factor in may_vanish)
 
     def verdict_with(self, conditions: Sequence[Inequality], bodies: bool = False) -> Verdict | None:

@@ -11,6 +11,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat, fmpq_poly
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.roots import RootCount, count_roots, rational
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
@@ -181,7 +182,7 @@ def _evaluate(matrix: Matrix, point: Mapping[int, Fraction]) -> Numbers:
 
 def _number(entry: Polynomial, point: Mapping[int, Fraction]) -> Any:
     context = entry.context()
-    missing = [i for i, degree in enumerate(entry.degrees()) if degree > 0 and i not in point]
+    missing = [i for i in occurring([entry]) if i not in point]
     if missing:
         raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
     return fmpq(entry(*(rational(point.get(i, 0)) for i in range(context.nvars()))))

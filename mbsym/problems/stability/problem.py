@@ -13,6 +13,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
@@ -333,16 +334,16 @@ def _turned(
 
 def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], signs: Signs) -> tuple[Ring, Signs]:
     """The ring of the parameters that matter, with what is known about them; the ring itself if it takes more."""
-    used = {k for matrix in rows for row in matrix for x in row for k, d in enumerate(x.degrees()) if d > 0}
+    used = set(occurring(x for matrix in rows for row in matrix for x in row))
     for assumption, _ in signs.assumptions:
-        used |= {k for k, d in enumerate(assumption.degrees()) if d > 0 and ring.generators[k].kind == "parameter"}
+        used |= {k for k in occurring([assumption]) if ring.generators[k].kind == "parameter"}
     if any(ring.generators[k].kind != "parameter" for k in used):
         return ring, replace(signs, normal=ring.reduce)
     small = ParameterRing(ring, sorted(used))
     kept = [
         (small.project(assumption), relation)
         for assumption, relation in signs.assumptions
-        if all(d <= 0 or k in used for k, d in enumerate(assumption.degrees()))
+        if used.issuperset(occurring([assumption]))
     ]
     return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept))
 
@@ -463,7 +464,7 @@ def _point(
     numbers = Rationals({}, {})
     environment = {name: numbers.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     carry = Carrier(scene.ring, numbers, environment)
-    used = {k for matrix in rows for row in matrix for x in row for k, degree in enumerate(x.degrees()) if degree > 0}
+    used = occurring(x for matrix in rows for row in matrix for x in row)
     notation = {item.name for item in scene.system.notation}
     point = {}
     try:

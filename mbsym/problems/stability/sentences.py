@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from mbsym.expressions.counting import counted
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.word import Word
 
@@ -18,8 +19,8 @@ SHORT = {
 HIGHER_ORDER = "Terms of higher order decide."
 
 
-def _counted(number: object) -> str:
-    return f"{number} root{'' if number == 1 else 's'} with positive real part."
+def _to_the_right(number: int) -> str:
+    return f"{counted(number, 'root')} with positive real part."
 
 
 def _undamped(coordinates: object) -> str:
@@ -37,7 +38,7 @@ def _integrals(*names: object) -> str:
 
 #: A sentence, or what makes one of the data.
 _SENTENCES: dict[Because, str | Callable[..., str]] = {
-    Because.RIGHT_ROOTS: _counted,
+    Because.RIGHT_ROOTS: _to_the_right,
     Because.RIGHT_ROOT: "A root with positive real part.",
     Because.REAL_ROOT: "K is not positive semidefinite: a real positive root lambda.",
     Because.RIGHT_BY_TRACE: (

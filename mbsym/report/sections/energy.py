@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.energy import Energy
-from mbsym.report.plain import Write, column_text, counted, matrix_text
+from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
