@@ -218,7 +218,7 @@ def _settings(method: Method, scalar: str, duration: float) -> Iterator[Setting]
 
 
 def _with_front(rows: Sequence[Measured]) -> tuple[Measured, ...]:
-    """A row is on the Pareto front if no other is both cheaper and more accurate."""
+    """A row is on the Pareto front if none is no worse in cost and error, and better in one of them."""
     best = inf
     front = set()
     for place in sorted(range(len(rows)), key=lambda k: (rows[k].seconds, rows[k].error)):

@@ -31,12 +31,19 @@ def unreadable(filename: str, text: str) -> str:
     return ""
 
 
+#: Longer whole numbers than 4300 digits are not read by Python, as it is set by default.
+MOST_BITS = 14_284
+
 # --- Python -----------------------------------------------------------------------------------------------------------
 
 
 def _python(text: str) -> None:
     """Compiles; every name is known where it is used; tables of the module have numbers as values."""
     tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, int) and node.value.bit_length() > MOST_BITS:
+            # Python refuses these unless somebody has lifted its limit in this process.
+            raise ValueError("a number with more digits than Python reads")
     compile(tree, "<module>", "exec", dont_inherit=True)
     known = set(dir(builtins)) | {"__name__"}
     for statement in tree.body:

@@ -13,9 +13,11 @@ from click.testing import CliRunner, Result
 
 import mbsym
 from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.analysis import PROBLEMS
 from mbsym.formulas.formula import Formula
-from mbsym.report import results_json, targets
+from mbsym.report import targets
 from mbsym.report.parsing import unreadable
+from mbsym.report.sections import section_of
 from mbsym_cli.files import MANIFEST
 from mbsym_cli.main import main
 
@@ -128,7 +130,7 @@ def mbsym_claims() -> Callable[..., Any]:
 
 
 def test_in_a_section_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(results_json._SECTIONS, 5, broken)
+    monkeypatch.setattr(section_of(PROBLEMS[5]), "data", broken)
     done = run(PENDULUM, "-o", tmp_path)
     assert done.exit_code == 1
     assert "results.json: problem 5 cannot be written: internal error: OverflowError: planted" in done.stderr
