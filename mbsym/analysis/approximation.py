@@ -5,14 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.angles import linear_form
+from mbsym.expressions.tree import Call, Expression, Name, children
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import turning
 from mbsym.mechanics.rotation_orders import rotation_orders
+from mbsym.mechanics.variables import expressions
 from mbsym.problems import linearisation
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.formulas.formula import Matrix
 
 
 #: A hint lists so many coordinates; of more it shows one.
@@ -60,6 +66,73 @@ def autonomous(analysis: Analysis) -> Linearisation:
         why = NoResult(found.time_dependence, hint, "time-dependent", "time-dependent")
         raise Unavailable("linearisation", why)
     return found
+
+
+def judgeable(analysis: Analysis) -> Linearisation:
+    """The first approximation where its roots say something about the motion, which problem 6 needs.
+
+    Lyapunov's theorems ask of the terms of higher order that they are small **at all times alike**: with roots to the
+    left, x'' + x' + x = x^3 exp(10 t) is unstable.  And in tau = w t with w < 0 what decays grows.  Raises Unavailable
+    where time occurs in the nonlinear equations other than under sines and cosines, or w is not known to be positive
+    and the spectrum is not symmetric (it is where D = N = 0 or D = G = 0).
+    """
+    found = analysis.linearisation
+    scale = found.time_scale
+    symmetric = _vanish(found.D, found.N) or _vanish(found.D, found.G)
+    if scale is not None and not symmetric and analysis.signs.sign(scale.polynomial) != "positive":
+        reason = f"the rate of dimensionless time, {scale}, is not known to be positive: tau may run backwards"
+        hint = "declare it positive, or leave 'dimensionless time' out"
+        raise Unavailable("stability", NoResult(reason, hint, "time may run backwards", "time-scale-sign"))
+    growing = _growing(analysis)
+    if growing:
+        reason = (
+            f"terms of higher order vary with {', '.join(growing)} and are not known to be small at all times alike; "
+            "no theorem about the first approximation applies"
+        )
+        raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
+    return found
+
+
+def _vanish(*matrices: Matrix) -> bool:
+    return all(x.is_zero() for matrix in matrices for row in matrix.polynomials for x in row)
+
+
+def _growing(analysis: Analysis) -> tuple[str, ...]:
+    """What grows with time and stands in the nonlinear equations outside of sines and cosines.
+
+    The equations are asked for only where a formula of the description holds such a quantity other than in an angle.
+    """
+    system = analysis.system
+    names = (*turning(analysis.parameters_scene), *(item.name for item in system.prescribed), "t")
+    angles = [angle for body in system.bodies for angle in body.rotation.angles]
+    plain = [x for body in system.bodies for x in (*body.connection_point, *body.mass_centre)]
+    told = {name for x in (*plain, *expressions(system.loads)) for name in _outside(x)}
+    told |= {name for x in angles if linear_form(x) is None for name in _outside(x)}
+    suspects = tuple(name for name in names if name in told)
+    equations = analysis.optional("equations") if suspects else None
+    if equations is None:
+        return suspects
+    entries = [x.polynomial for x in equations.forcing]
+    entries += [x for row in equations.mass_matrix.polynomials for x in row]
+    return tuple(name for name in suspects if any(_unbounded(analysis.ring, x, name) for x in entries))
+
+
+def _outside(expression: Expression) -> set[str]:
+    """The names that occur other than in a linear form under a sine or cosine."""
+    if isinstance(expression, Name):
+        return {expression.name}
+    if isinstance(expression, Call) and expression.function in ("sin", "cos") and linear_form(expression.argument):
+        return set()
+    return {name for child in children(expression) for name in _outside(child)}
+
+
+def _unbounded(ring: Ring, x: Polynomial, name: str) -> bool:
+    """Whether a quantity that grows with time occurs in x, or in what is adjoined to it, but for sines and cosines."""
+    held = [ring.generators[k] for k, degree in enumerate(x.degrees()) if degree > 0]
+    if any(g.argument is None and g.kind in ("coordinate", "prescribed", "time") and g.name == name for g in held):
+        return True
+    deeper = [g.argument for g in held if g.argument is not None and g.kind not in ("sine", "cosine")]
+    return any(_unbounded(ring, argument, name) for argument in deeper)
 
 
 def steady_order(analysis: Analysis) -> str:

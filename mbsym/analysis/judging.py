@@ -66,7 +66,7 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
 
 def trials(analysis: Analysis) -> Trials:
     """Parameters at which claimed conditions are tried, with exact verdicts."""
-    scene, linear = analysis.parameters_scene, analysis.linearisation
+    scene, linear = analysis.parameters_scene, analysis.judgeable
     verdict_at = stability.ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     solved = {name: value.polynomial for name, value in analysis.equilibrium.solved}
     return Trials(analysis.system, analysis.ring, linear.M, solved, verdict_at)

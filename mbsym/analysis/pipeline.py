@@ -170,6 +170,7 @@ class Analysis(Stages):
     linearisation = Problem[Linearisation](
         5, "linearisation", linearisation, approximation.autonomous, ("linearisation", "perturbed motion")
     )
+    judgeable = Derived["Analysis", Linearisation](approximation.judgeable)
     balance = Derived["Analysis", Balance](lambda a: a._balance())
     stability = Problem[Stability](6, "stability", stability, lambda a: a._stability(), JUDGED, says=True)
     integrals = Problem[tuple[Integral, ...]](
@@ -211,7 +212,7 @@ class Analysis(Stages):
         return self._checks[name]
 
     def _stability(self) -> Stability:
-        scene, linear = self.parameters_scene, self.linearisation
+        scene, linear = self.parameters_scene, self.judgeable
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
         return open_verdicts.decided(found, scene, self.equilibrium)
 

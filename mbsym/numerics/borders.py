@@ -83,7 +83,7 @@ class LinearModel:
 
     def __init__(self, analysis: Analysis) -> None:
         with analysis.strictly():  # matrices whose self-check fails are no ground for anything
-            linear, motion = analysis.linearisation, analysis.equilibrium
+            linear, motion = analysis.judgeable, analysis.equilibrium
         scene = analysis.parameters_scene
         self.verdict_of = ExactVerdicts(scene, analysis.balance, linear, motion, analysis.signs)
         self.ring, self.linear = scene.ring, linear

@@ -173,3 +173,70 @@ def test_a_length_that_is_prescribed_damps_or_drives() -> None:
     assert (found.M[0, 0], found.D[0, 0], found.K[0, 0]) == (exact("m*s**2"), exact("2*m*s*v"), exact("m*g*s"))
     assert {entry.matrix for entry in found.varying} == {"M", "D", "K"}
     assert analysis.stage(6).failure is not None
+
+
+def oscillator(force: str, stiffness: int = 1, **more: object) -> Analysis:
+    """x'' + stiffness x + x' = force."""
+    body = {"name": "p", "connection point": ["x", 0, 0], "mass": 1, "coordinates": ["x"]}
+    loads = [{"potential": f"({stiffness})*x**2/2"}, {"generalized force": {"x": f"-x_dot + {force}"}}]
+    return loaded(bodies=[body], loads=loads, motion={"x": 0}, **more)
+
+
+def farthest(force: Callable[[float, float], float], stiffness: int) -> float:
+    """The largest |x| in 0 < t < 4 of x'' + x' + stiffness x = force(t, x) from x = 0.01 at rest."""
+    blown = lambda t, y: abs(y[0]) - 1  # noqa: E731
+    blown.terminal = True  # type: ignore[attr-defined]
+    run = solve_ivp(
+        lambda t, y: [y[1], -y[1] - stiffness * y[0] + force(t, y[0])],
+        (0, 4),
+        (0.01, 0),
+        events=blown,
+        rtol=1e-9,
+        atol=1e-12,
+    )
+    return float(max(abs(run.y[0])))
+
+
+def test_terms_of_higher_order_that_grow_with_time_leave_no_theorem() -> None:
+    """x'' + x' + x = x^3 exp(10 t) leaves 0, all roots to the left; with -x for x it stays, one to the right.
+
+    After s = x exp(5 t) the cubic term is autonomous and not small: the linear theorems need it small at all times.
+    """
+    assert farthest(lambda t, x: x**3 * np.exp(10 * t), 1) > 0.9
+    assert farthest(lambda t, x: -(x**3) * np.exp(10 * t), -1) < 0.02
+    for analysis in (oscillator("x**3*exp(10*t)"), oscillator("-x**3*exp(10*t)", -1), oscillator("x**3*t")):
+        assert analysis.linearisation.varying == ()
+        failure = analysis.stage(6).failure
+        assert failure is not None
+        assert (failure.short, "vary with t " in failure.reason) == ("time-dependent", True)
+        with pytest.raises(Unavailable):
+            _ = analysis.stability
+
+
+@pytest.mark.parametrize(
+    ("force", "more"),
+    [
+        ("x**3*sin(3*t)", {}),
+        ("x**2*cos(chi)", {"prescribed": {"chi": 2}}),
+        ("x**3*(t - t)", {}),
+    ],
+)
+def test_terms_of_higher_order_that_swing_with_time_are_small_at_all_times_alike(
+    force: str, more: dict[str, object]
+) -> None:
+    assert str(oscillator(force, **more).stability.verdict.word) == "asymptotically stable"
+    assert str(oscillator(force, -1, **more).stability.verdict.word) == "unstable"
+
+
+@pytest.mark.parametrize(("sign", "decided"), [("positive", True), ("negative", False), ("real", False)])
+def test_a_dimensionless_time_that_may_run_backwards_leaves_no_verdict(sign: str, decided: bool) -> None:
+    """x'' + x' + x = 0 decays, whatever w of tau = w t is; in tau it grows where w < 0."""
+    analysis = oscillator("0*x", parameters={"w": sign}, **{"dimensionless time": "w"})
+    if decided:
+        assert str(analysis.stability.verdict.word) == "asymptotically stable"
+        return
+    failure = analysis.stage(6).failure
+    assert failure is not None
+    assert failure.code == "time-scale-sign"
+    undamped = loaded(**TABLE | {"dimensionless time": "w"})  # its spectrum is the same backwards
+    assert undamped.stage(6).failure is None
