@@ -113,7 +113,10 @@ def determinant(matrix: Matrix, budget: int = BUDGET) -> Polynomial:
 
 
 def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
-    """det(lambda^2 M + lambda C + K), 2n + 1 coefficients from low to high (zeros included)."""
+    """det(lambda^2 M + lambda C + K), 2n + 1 coefficients from low to high (zeros included).
+
+    Raises ValueError for matrices of other shapes, TooLargeError where the polynomial has too many terms.
+    """
     n = len(m)
     if n == 0 or any(len(rows) != n or any(len(row) != n for row in rows) for rows in (m, c, k)):
         raise ValueError("M, C and K must be square matrices of one size")
@@ -207,7 +210,7 @@ def subdiscriminants(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ..
 
     Over the reals all roots are real and simple if and only if all D_k > 0 (D_1 = n always is); D_n is the
     discriminant.  The D_k are, up to a_n^2, the lower right minors of the Bezoutian of p and p', which equals
-    V^T V up to a triangular congruence (V: the Vandermonde matrix of the roots).
+    V^T V up to a triangular congruence (V: the Vandermonde matrix of the roots).  Raises ValueError for a constant.
     """
     p = trimmed(coefficients)
     n = len(p) - 1
@@ -221,7 +224,10 @@ def subdiscriminants(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ..
 
 
 def resultant(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polynomial:
-    """Vanishes exactly where two polynomials in lambda have a common root (or both leading coefficients vanish)."""
+    """Vanishes exactly where two polynomials in lambda have a common root (or both leading coefficients vanish).
+
+    Raises TooLargeError where it would have too many terms.
+    """
     terms = [sum(len(c) for c in p if c != 0) for p in (left, right)]
     if terms[0] ** (len(right) - 1) * terms[1] ** (len(left) - 1) > BUDGET**2:
         raise TooLargeError("a resultant with too many terms")
@@ -231,7 +237,10 @@ def resultant(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polyno
 
 
 def hurwitz_minors(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ...]:
-    """Delta_1, ..., Delta_n of a_n lambda^n + ... + a_0: leading minors of H_ij = a_(n - 2j + i), i, j = 1..n."""
+    """Delta_1, ..., Delta_n of a_n lambda^n + ... + a_0: leading minors of H_ij = a_(n - 2j + i), i, j = 1..n.
+
+    Raises ValueError for a constant.
+    """
     p = trimmed(coefficients)
     n = len(p) - 1
     if n < 1:

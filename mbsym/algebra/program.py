@@ -83,6 +83,7 @@ class Program(Algebra):
         return known
 
     def number(self, value: Fraction | int) -> Node:
+        """A constant.  Raises NoClosedForm beyond the range of floating point."""
         if isinstance(value, int) and value in self._whole:
             return self._whole[value]
         exact = Fraction(value)
@@ -176,6 +177,7 @@ class Program(Algebra):
         return self._node("multiply", (i, j) if i < j else (j, i))
 
     def divide(self, a: Node, b: Node) -> Node:
+        """a/b.  Raises SingularPoint where b is the constant 0."""
         y = self._constant(b)
         if y == 0:
             raise SingularPoint("division by zero")

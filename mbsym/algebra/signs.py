@@ -87,6 +87,11 @@ def _sum(left: SignSet, right: SignSet) -> SignSet:
     return frozenset(s for a in left for b in right for s in ((a or b,) if a * b >= 0 else (-1, 0, 1)))
 
 
+def sign_of_product(left: str, right: str) -> str:
+    """The word for the sign of a product, from those of its factors, all as ``Signs.sign`` says them."""
+    return SIGN_WORDS[_product(SIGN_SETS.get(left, ANY), SIGN_SETS.get(right, ANY))]
+
+
 def _power(base: SignSet, exponent: int) -> SignSet:
     return frozenset(s**exponent for s in base)
 

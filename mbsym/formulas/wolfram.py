@@ -113,7 +113,7 @@ def wolfram_call(function: str, argument: str) -> str:
 
 
 def wolfram_expression(expression: Expression, names: WolframNames) -> str:
-    """An expression of the description as it stands, in plain symbols."""
+    """An expression of the description as it stands, in plain symbols.  Raises TypeError for anything else."""
     match expression:
         case Number(value):
             return wolfram_number(value)

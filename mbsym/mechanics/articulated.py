@@ -82,6 +82,10 @@ class _Articulated:
         self.whole = self._whole_joints()
 
     def solved(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+        """(accelerations, pivots), both in the order of the coordinates.
+
+        Raises SingularPoint where a coordinate moves no body.
+        """
         for number in reversed(range(len(self.system.frames))):
             self._inwards(number)
         lacking = [name for name in self.system.coordinates if name not in self.pivots]

@@ -20,7 +20,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import actions, force_function
-from mbsym.mechanics.programs import coasting_scene
+from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 
@@ -36,7 +36,7 @@ class EnergyRate:
 def energy_rate(system: System, ring: Ring) -> EnergyRate:
     """dh/dt as straight-line code; without terms where it is zero at sight."""
     program = Program()
-    scene = coasting_scene(system, ring, program, program_environment(system, program))
+    scene = scene_without_accelerations(system, ring, program, program_environment(system, program))
     terms = [*_explicit(scene, program), *_applied(scene, program)]
     return EnergyRate(program, tuple(term for term in terms if not program.vanishes(term)))
 

@@ -21,7 +21,7 @@ from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
-from mbsym.mechanics.programs import coasting_scene, constants
+from mbsym.mechanics.programs import constants, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 
@@ -55,7 +55,7 @@ def forward_dynamics(system: System, ring: Ring, method: str | None = None) -> F
     """
     program = Program()
     inputs = program_environment(system, program)
-    frames = articulation(coasting_scene(system, ring, program, inputs))
+    frames = articulation(scene_without_accelerations(system, ring, program, inputs))
     needed = bias_forces(frames)
     given = constants(system)
     found: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}

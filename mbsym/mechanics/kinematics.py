@@ -88,9 +88,9 @@ class Scene:
             relative = algebra.add(turn_forward(algebra, turn, relative), rate)
             spin = algebra.add(turn_forward(algebra, turn, spin), rate)
         offset = lower.vector(body.connection_point)
-        sliding = lower.vector([self.rate(x) for x in body.connection_point])
+        relative_velocity = lower.vector([self.rate(x) for x in body.connection_point])
         carried = algebra.add(parent_velocity, algebra.cross(parent_spin, offset))
-        velocity = forward(algebra, turns, algebra.add(carried, sliding))
+        velocity = forward(algebra, turns, algebra.add(carried, relative_velocity))
         if body.name in self.falling:
             velocity = algebra.zero_vector
         centre = lower.vector(body.mass_centre)

@@ -37,11 +37,11 @@ class _Accelerations:
         algebra, parent = self.scene.algebra, motion.body.attached_to
         spin, angular = self.spin[parent], self.angular[parent]
         first = [self.scene.rate(x) for x in motion.body.connection_point]
-        sliding = self.scene.lower.vector(first)
+        relative_velocity = self.scene.lower.vector(first)
         second = self.scene.lower.vector([self.scene.rate(x) for x in first])
         at = algebra.add(self.origin[parent], algebra.cross(angular, motion.offset))
         at = algebra.add(at, algebra.cross(spin, algebra.cross(spin, motion.offset)))
-        at = algebra.add(at, algebra.scale(algebra.number(2), algebra.cross(spin, sliding)))
+        at = algebra.add(at, algebra.scale(algebra.number(2), algebra.cross(spin, relative_velocity)))
         self.origin[name] = forward(algebra, motion.turns, algebra.add(at, second))
         for turn in motion.turns:
             rate = axis_vector(algebra, turn.axis, turn.rate)
@@ -64,8 +64,8 @@ def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: V
     force, moment = algebra.zero_vector, algebra.zero_vector
     about_joint = motion.body.inertia is not None and motion.body.inertia.about == "joint"
     if not algebra.vanishes(motion.mass):
-        whirl = algebra.add(algebra.cross(angular, centre), algebra.cross(spin, algebra.cross(spin, centre)))
-        at_centre = algebra.add(origin, whirl)
+        about_origin = algebra.add(algebra.cross(angular, centre), algebra.cross(spin, algebra.cross(spin, centre)))
+        at_centre = algebra.add(origin, about_origin)
         force = algebra.scale(motion.mass, at_centre)
         lever = origin if about_joint else at_centre
         moment = algebra.cross(centre, algebra.scale(motion.mass, lever))

@@ -48,7 +48,7 @@ class Programs:
     force_function: Node
 
 
-def coasting_scene(system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]) -> Scene:
+def scene_without_accelerations(system: System, ring: Ring, program: Program, inputs: Mapping[str, Node]) -> Scene:
     """The system over a program, at q'' = 0."""
     still = {acceleration_name(name): program.zero for name in system.coordinates}
     return Scene(system, program, dict(inputs) | still, ring)
@@ -63,7 +63,7 @@ def programs(system: System, ring: Ring) -> Programs:
     """Mass matrix, forcing and energy as straight-line code."""
     program = Program()
     inputs = program_environment(system, program)
-    scene = coasting_scene(system, ring, program, inputs)
+    scene = scene_without_accelerations(system, ring, program, inputs)
     frames = articulation(scene)
     kinetic, force = kinetic_energy(scene), force_function(scene)
     return Programs(

@@ -363,6 +363,7 @@ class System:
         return tuple(parameter.name for parameter in self.parameters)
 
     def body(self, name: str) -> Body:
+        """The body of that name.  Raises KeyError where there is none."""
         for body in self.bodies:
             if body.name == name:
                 return body

@@ -29,7 +29,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.forward_dynamics import forward_dynamics
-from mbsym.mechanics.programs import coasting_scene, programs
+from mbsym.mechanics.programs import programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code, Kernel
@@ -104,7 +104,7 @@ def quantities(system: System, ring: Ring, with_jacobian: bool = True) -> tuple[
     made.append(("pivots", solved.program, list(solved.pivots)))
     program = Program()
     environment = program_environment(system, program)
-    kinetic, force = relative_lagrangian(coasting_scene(system, ring, program, environment))
+    kinetic, force = relative_lagrangian(scene_without_accelerations(system, ring, program, environment))
     total = -(kinetic + force)
     velocities = [environment[name] for name in system.velocities]
     for velocity, momentum in zip(velocities, gradient(program, kinetic + force, velocities), strict=True):

@@ -21,7 +21,7 @@ from mbsym.algebra.stable import stabilised
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.forward_dynamics import forward_dynamics
-from mbsym.mechanics.programs import Programs, coasting_scene, programs
+from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import Code
@@ -88,7 +88,7 @@ class Dynamics:
     def _lagrangian(self) -> tuple[Node, Node]:
         """(T, U) in the specialised program; relative to the frames that fall, where there are any."""
         program = Program()
-        scene = coasting_scene(self.system, self.ring, program, program_environment(self.system, program))
+        scene = scene_without_accelerations(self.system, self.ring, program, program_environment(self.system, program))
         kinetic, force = substituted(program, relative_lagrangian(scene), self._specialised)
         return kinetic, force
 

@@ -20,7 +20,7 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.newton_euler import residuals
-from mbsym.mechanics.programs import coasting_scene
+from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
@@ -235,7 +235,7 @@ def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth
     if not frames or usual is None:
         return None
     program = Program()
-    scene = coasting_scene(given.system, ring, program, program_environment(given.system, program))
+    scene = scene_without_accelerations(given.system, ring, program, program_environment(given.system, program))
     nodes = tuple(-x for x in residuals(scene).values())
     apart = Quantity("forcing", Code(program, usual.code.inputs, nodes))
     rates = [rate for _, rate in given.prescribed.values() if rate]

@@ -21,7 +21,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.programs import coasting_scene
+from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import expressions, program_environment, ring_of
 from mbsym.model.system import (
     INERTIAL,
@@ -137,7 +137,7 @@ def positions(scenario: Scenario, times: Any, states: Any, ring: Ring | None = N
     system = scenario.system
     program = Program()
     environment = program_environment(system, program)
-    scene = coasting_scene(system, ring if ring is not None else ring_of(system), program, environment)
+    scene = scene_without_accelerations(system, ring if ring is not None else ring_of(system), program, environment)
     fresh = bound(scenario)
     inputs = ("t", *system.coordinates, *system.velocities)
     frames = _frames(system)

@@ -35,7 +35,7 @@ from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import Signs, sign_of_product
 from mbsym.expressions.tree import (
     Expression,
     Name,
@@ -320,7 +320,7 @@ class Balance:
         elif isinstance(load, GeneralizedForce):
             for name, force in load.components:
                 for one in _products(multiply(Name(velocity_name(name)), force)):
-                    yield _OPPOSITE.get(word := self._product_word(one), word)
+                    yield sign_of_product("negative", self._product_word(one))
 
     def _degree(self, one: _Product) -> int | None:
         """The degree of a product in the velocities; None where it is not homogeneous."""
@@ -341,7 +341,7 @@ class Balance:
     def _product_word(self, one: _Product) -> str:
         word = "positive" if one.number > 0 else "negative" if one.number < 0 else "zero"
         for base, exponent in one.powers:
-            word = _times(word, self._power_word(base, exponent))
+            word = sign_of_product(word, self._power_word(base, exponent))
         return word
 
     def _power_word(self, base: Expression, exponent: int) -> str:
@@ -460,27 +460,6 @@ def _products(expression: Expression) -> list[_Product]:
     if len(found) > MOST_PRODUCTS:
         raise Failure("too many products")
     return found
-
-
-_OPPOSITE = {
-    "positive": "negative",
-    "negative": "positive",
-    "nonnegative": "nonpositive",
-    "nonpositive": "nonnegative",
-}
-
-
-def _times(left: str, right: str) -> str:
-    """The sign of a product."""
-    if "zero" in (left, right):
-        return "zero"
-    if left not in _OPPOSITE or right not in _OPPOSITE:
-        return "unknown"
-    strict = left in ("positive", "negative") and right in ("positive", "negative")
-    same = (left in ("positive", "nonnegative")) == (right in ("positive", "nonnegative"))
-    if strict:
-        return "positive" if same else "negative"
-    return "nonnegative" if same else "nonpositive"
 
 
 # --- polynomials in the velocities ---

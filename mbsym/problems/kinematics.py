@@ -54,6 +54,7 @@ class Kinematics:
         )
 
     def body(self, name: str) -> BodyKinematics:
+        """Those of the body of that name.  Raises KeyError where there is none."""
         for body in self.bodies:
             if body.name == name:
                 return body

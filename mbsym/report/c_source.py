@@ -59,7 +59,10 @@ LARGEST_JACOBIAN = 100_000
 
 
 def number(value: Fraction) -> str:
-    """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short."""
+    """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short.
+
+    Raises NoClosedForm beyond the range of double.
+    """
     try:
         shown = repr(float(value))
     except OverflowError:

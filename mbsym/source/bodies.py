@@ -41,7 +41,10 @@ class Draft:
 
 
 def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
-    """The first pass: names of bodies and coordinates, so that expressions may refer to any of them."""
+    """The first pass: names of bodies and coordinates, so that expressions may refer to any of them.
+
+    Raises TooManyComplaints where there are more than MAX_BODIES.
+    """
     if node is None:
         return []
     items = reading.items(node, "'bodies'")

@@ -120,7 +120,7 @@ def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
 
 
 def load_shape(load: Load) -> tuple[str, Shape]:
-    """The kind of a load and its data."""
+    """The kind of a load and its data.  Raises TypeError for anything else."""
     match load:
         case NewtonianGravity(constant, centre, about, order):
             return "newtonian gravity", {

@@ -26,7 +26,7 @@ from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
-from mbsym.mechanics.programs import accelerated, coasting_scene
+from mbsym.mechanics.programs import accelerated, scene_without_accelerations
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import acceleration_name, velocity_name
@@ -37,7 +37,7 @@ SHIPPED = sorted(Path(__file__).parents[2].joinpath("systems").glob("*.yaml"))
 def frames_of(analysis: Analysis) -> tuple[Program, Articulation]:
     program = Program()
     inputs = program_environment(analysis.system, program)
-    return program, articulation(coasting_scene(analysis.system, analysis.ring, program, inputs))
+    return program, articulation(scene_without_accelerations(analysis.system, analysis.ring, program, inputs))
 
 
 def by_columns(analysis: Analysis, state: State) -> tuple[list[list[Any]], list[Any]]:

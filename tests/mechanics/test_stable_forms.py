@@ -21,7 +21,7 @@ from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.falling import falling_frames, relative_lagrangian
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
-from mbsym.mechanics.programs import coasting_scene, programs
+from mbsym.mechanics.programs import programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import GRAVITY_ORDERS, NewtonianGravity, System
 from mbsym.numerics.dynamics import Dynamics
@@ -283,7 +283,7 @@ def test_a_falling_frame_changes_no_equation(name: str, order: int | str) -> Non
     joined = programs(changed, ring)
     program = Program()
     inputs = program_environment(changed, program)
-    scene = coasting_scene(changed, ring, program, inputs)
+    scene = scene_without_accelerations(changed, ring, program, inputs)
     apart = residuals(scene)
     relative, force = relative_lagrangian(scene)
     difference = (relative + force) - (kinetic_energy(scene) + force_function(scene))
@@ -312,7 +312,7 @@ def test_a_satellite_keeps_its_digits_on_any_orbit(radius: int, apart_loses: flo
     dynamics = Dynamics(scenario(system("satellite"), values))
     program = Program()
     inputs = program_environment(dynamics.system, program)
-    apart = residuals(coasting_scene(dynamics.system, dynamics.ring, program, inputs))
+    apart = residuals(scene_without_accelerations(dynamics.system, dynamics.ring, program, inputs))
     fresh = dynamics.forcing.program
     nodes = substituted(program, [-apart[q] for q in dynamics.system.coordinates], fresh)
     plain = Code(fresh, dynamics.inputs, tuple(nodes))

@@ -339,7 +339,7 @@ CAUGHT = [
     Mistake(
         "the velocity of a sliding joint",
         RECURSIONS,
-        "algebra.add(carried, sliding)",
+        "algebra.add(carried, relative_velocity)",
         "carried",
         "machine",
         (KINEMATICS, ENERGY, EQUATIONS),
@@ -388,7 +388,7 @@ CAUGHT = [
     Mistake(
         "the Coriolis term 2 w x r' dropped",
         "mechanics.newton_euler:_Accelerations._step",
-        "algebra.scale(algebra.number(2), algebra.cross(spin, sliding))",
+        "algebra.scale(algebra.number(2), algebra.cross(spin, relative_velocity))",
         "algebra.zero_vector",
         "machine",
         (PROGRAM,),

@@ -97,7 +97,10 @@ class Symbols:
         return Lowering(algebra, known)
 
     def polynomial(self, scene: Scene, claim: Claim) -> Polynomial:
-        """What was claimed, in the ring; a characteristic polynomial's variable is the generator of the time."""
+        """What was claimed, in the ring; a characteristic polynomial's variable is the generator of the time.
+
+        Raises NoClosedForm where such a polynomial holds the time itself.
+        """
         wanted = self.occurring([claim.equals])
         environment = dict(scene.environment)
         if claim.variable:

@@ -139,22 +139,18 @@ def stability(
 
     ``balance`` knows what the loads without a force function do to the energy and to cyclic momenta in all orders.
     """
-    elimination = _elimination(scene)
     values = parameter_values(scene, equilibrium)
-    spin = free_spin(scene.system)
-    judged = tuple(
-        _judge(scene, part, elimination, signs, values, balance, turned)
-        for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
-    )
+    prepared = _prepared_parts(scene, balance, linear, equilibrium, signs)
+    judged = tuple(_judge(scene, part, values, balance) for part in prepared)
     numerical = _motion_at(scene, equilibrium, values)
     spectra: tuple[Spectrum, ...] = ()
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = (
-            _enclosed(scene, linear, part.coordinates, values, balance)
-            if part.theory.at_point is None
-            else part.theory.at_point.verdict
-            for part in judged
+            _enclosed(scene, linear, part, values, balance)
+            if found.theory.at_point is None
+            else found.theory.at_point.verdict
+            for part, found in zip(prepared, judged, strict=True)
         )
         numerical = combine(there, balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
@@ -171,56 +167,43 @@ def _spectrum(
         return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
     if point is not None:
         return None
-    at = [linear.coordinates.index(name) for name in part.coordinates]
-    rows = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
-    return from_matrices(part.coordinates, [_balls(scene, matrix, values) for matrix in rows])
+    return from_matrices(part.coordinates, _matrices_at(scene, linear, part.coordinates, values))
+
+
+def _matrices_at(
+    scene: Scene, linear: Linearisation, coordinates: Sequence[str], values: Mapping[str, Fraction]
+) -> list[list[list[Any]]]:
+    """The blocks of M, D, G, K, N that belong to some coordinates, as enclosures at parameter values."""
+    at = [linear.coordinates.index(name) for name in coordinates]
+    return [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
 
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
     """Formulas in the parameters as enclosures."""
-    ring = scene.ring
-    numbers = dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
+    numbers = _numbers(scene.ring, values)
     with ctx.workprec(PRECISION):
-        return [[ring.evaluate(x, numbers) for x in row] for row in rows]
+        return [[scene.ring.evaluate(x, numbers) for x in row] for row in rows]
 
 
 def _enclosed(
-    scene: Scene,
-    linear: Linearisation,
-    coordinates: Sequence[str],
-    values: Mapping[str, Fraction],
-    balance: Balance,
+    scene: Scene, linear: Linearisation, part: _Prepared, values: Mapping[str, Fraction], balance: Balance
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
-    at = [linear.coordinates.index(name) for name in coordinates]
-    parts = [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
     there = balance.at(values)
-    idle = tuple(
-        at.index(i)
-        for i in at
-        if linear.coordinates[i] in there.ignorable
-        and all(x.is_zero() for matrix in (linear.K, linear.N) for x in matrix.polynomials[i])
-    )
-    if any(name in there.driven for name in coordinates):
-        idle = ()  # their momenta are not known to be constant
-    return enclosed_verdict_with_cyclic(parts, there.law.bounded, idle, PRECISION)
+    constant = not any(name in there.driven for name in part.coordinates)  # the momenta of cyclic coordinates
+    cyclic = part.system.cyclic if constant else ()
+    matrices = _matrices_at(scene, linear, part.coordinates, values)
+    return enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
 
 
 def _judge(
-    scene: Scene,
-    part: Subsystem,
-    elimination: Elimination,
-    signs: Signs,
-    values: Mapping[str, Fraction] | None,
-    balance: Balance,
-    turned: Sequence[Polynomial],
+    scene: Scene, made: _Prepared, values: Mapping[str, Fraction] | None, balance: Balance
 ) -> SubsystemStability:
-    made = _prepared(scene, part, elimination, signs, balance, turned)
     point = None if values is None else _point(scene, made.ring, made.system.matrices, values)
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
         theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
-    return SubsystemStability(part.coordinates, made.matrices, made.factor, made.ring, theory)
+    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory)
 
 
 @dataclass(frozen=True)
@@ -238,6 +221,17 @@ class _Prepared:
         """The system with what is known of energy and momenta at parameter values."""
         driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
         return replace(self.system, conservative=there.law.bounded, driven=driven)
+
+
+def _prepared_parts(
+    scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
+) -> tuple[_Prepared, ...]:
+    """Every subsystem, ready to be judged."""
+    elimination, spin = _elimination(scene), free_spin(scene.system)
+    return tuple(
+        _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
+        for part in linear.subsystems
+    )
 
 
 def _prepared(
@@ -282,11 +276,7 @@ class ExactVerdicts:
     ) -> None:
         self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
         self.balance = balance
-        elimination, spin = _elimination(scene), free_spin(scene.system)
-        self._parts = [
-            _prepared(scene, part, elimination, signs, balance, turned)
-            for part, turned in ((part, _turned(scene, part, spin, equilibrium)) for part in linear.subsystems)
-        ]
+        self._parts = _prepared_parts(scene, balance, linear, equilibrium, signs)
 
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         """Right, or "undecided" with the reason."""
@@ -303,11 +293,10 @@ class ExactVerdicts:
         if elsewhere is not None:
             return elsewhere
         there, found = self.balance.at(values), []
-        for part, subsystem in zip(self._parts, self.linear.subsystems, strict=True):
+        for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                names = subsystem.coordinates
-                found.append(_enclosed(self.scene, self.linear, names, values, self.balance))
+                found.append(_enclosed(self.scene, self.linear, part, values, self.balance))
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)
@@ -425,7 +414,7 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
 
 
 def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
-    """A formula in parameters, exactly where it is rational, else enclosed.  Raises KeyError where one has no value."""
+    """A formula in parameters, exactly where it is rational, else enclosed.  Raises Failure where one has no value."""
     rationals = Rationals({}, {})
     exact = {name: rationals.number(value) for name, value in given.items() if isinstance(value, Fraction)}
     try:
@@ -441,14 +430,18 @@ def _number(value: Any) -> Any:
     return fmpq(value.numerator, value.denominator) if isinstance(value, Fraction) else value
 
 
+def _numbers(ring: Ring, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of all names of the ring: those of the parameters, 0 for the others, which do not occur."""
+    return dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
+
+
 def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any] | None) -> Verdict | None:
     """ "undecided", with the reason, where the given values break a condition of problem 4; None where they do not."""
     if values is None:
         return None
-    ring = scene.ring
-    numbers = dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
+    numbers = _numbers(scene.ring, values)
     for condition in equilibrium.conditions:
-        value = ring.evaluate(condition.polynomial, numbers)
+        value = scene.ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
             size = float(value.mid())
             return undecided(Because.MOTION_NOT_THERE, str(condition), f"{size:.6g}")

@@ -20,7 +20,7 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
 
     and D_R = D_rr, N_R = N_rr; everything here times det M_cc > 0.  K_R is the second derivative of the effective
-    potential.
+    potential.  Raises ValueError where the momenta are not constant.
     """
     if not momenta_are_constant(system):
         raise ValueError("Routh's reduction needs cyclic coordinates without D and N and no G between them, and others")
