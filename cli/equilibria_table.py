@@ -16,16 +16,6 @@ from mbsym.problems.stability.sentences import short
 from mbsym.problems.stability.word import Word
 from mbsym_cli.console import console, printable
 
-#: What is neither proved to be stable nor unstable is yellow.
-_COLOURS = {
-    Word.ASYMPTOTIC: "green",
-    Word.ASYMPTOTIC_BUT_CYCLIC: "green",
-    Word.ASYMPTOTIC_BUT_TURNED: "green",
-    Word.STABLE: "green",
-    Word.STABLE_BUT_CYCLIC: "green",
-    Word.UNSTABLE: "red",
-}
-
 #: Longer equations of a family are only counted.
 _LONGEST = 100
 
@@ -70,7 +60,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
     if others:
         table.add_column("angles of", style="dim")
     for number, one in enumerate(listed, 1):
-        colour = _COLOURS.get(one.verdict.word, "yellow")
+        colour = _colour(one.verdict.word)
         cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
         if judged:
             cells += [Text(short(one.verdict.word), style=colour), one.verdict.theorem]
@@ -132,3 +122,8 @@ def _show_summary(found: Equilibria) -> None:
         out.print(Text(f"  the list is complete{but} ({how})", style="green"))
     else:
         out.print(Text("  the list may be incomplete", style="bold yellow"))
+
+
+def _colour(word: Word) -> str:
+    """What is neither proved to be stable nor unstable is yellow."""
+    return "green" if word.stable else "red" if word is Word.UNSTABLE else "yellow"

@@ -69,10 +69,9 @@ class Judged:
         said = self.floats[scalar]
         if self.exact.word in (Word.UNDECIDED, Word.DEPENDS):
             return False
-        stable = self.exact.word in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_CYCLIC, Word.ASYMPTOTIC_BUT_TURNED)
         if self.exact.word == Word.UNSTABLE:
             return said != Word.UNSTABLE
-        return said == Word.UNSTABLE or (said == Word.ASYMPTOTIC and not stable)
+        return said == Word.UNSTABLE or (said == Word.ASYMPTOTIC and not self.exact.word.asymptotic)
 
 
 class LinearModel:

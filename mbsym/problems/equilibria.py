@@ -165,7 +165,7 @@ def equilibria(
         if not search.equations and not search.impossible:  # everywhere: other angles have nothing to add
             break
     listed = [_described(group) for group in _groups(found)]
-    listed.sort(key=lambda x: (_ORDER.get(x.verdict.word, 9), x.coordinates_of, _sort_key(x)))
+    listed.sort(key=lambda x: (_ORDER[x.verdict.word], x.coordinates_of, _sort_key(x)))
     singular = tuple(x for x in listed if x.verdict.coordinates_singular)
     beyond = tuple(x for x in listed if x.beyond and x not in singular)
     listed = [x for x in listed if x not in singular and x not in beyond]
@@ -207,22 +207,7 @@ def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[_
     ]
 
 
-_ORDER = {
-    word: k
-    for k, word in enumerate(
-        (
-            Word.ASYMPTOTIC,
-            Word.ASYMPTOTIC_BUT_TURNED,
-            Word.ASYMPTOTIC_BUT_CYCLIC,
-            Word.STABLE,
-            Word.STABLE_BUT_CYCLIC,
-            Word.GYROSCOPIC,
-            Word.CRITICAL,
-            Word.UNDECIDED,
-            Word.UNSTABLE,
-        )
-    )
-}
+_ORDER = {word: k for k, word in enumerate(Word)}
 
 
 def _sort_key(x: RelativeEquilibrium) -> tuple[tuple[float, float], ...]:

@@ -21,7 +21,7 @@ from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.rest_candidates import candidate_at
 from mbsym.problems.rest_place import exact_rates
-from mbsym.problems.rest_verdict import OPEN, linear_at_rest
+from mbsym.problems.rest_verdict import linear_at_rest
 from mbsym.problems.stability import Stability, parameter_values
 
 #: Larger systems are not derived again at their numbers.
@@ -31,7 +31,7 @@ MOST_COORDINATES = 8
 def decided(found: Stability, scene: Scene, equilibrium: Equilibrium) -> Stability:
     """``found`` with its verdict at the values decided where that is possible; values have to be rational."""
     verdict, system = found.numerical, scene.system
-    if verdict is None or verdict.word not in OPEN or len(system.coordinates) > MOST_COORDINATES:
+    if verdict is None or not verdict.word.open or len(system.coordinates) > MOST_COORDINATES:
         return found
     values = parameter_values(scene, equilibrium)
     if values is None or not all(isinstance(x, Fraction) for x in values.values()):
@@ -46,7 +46,7 @@ def decided(found: Stability, scene: Scene, equilibrium: Equilibrium) -> Stabili
             return found
         place = candidate.place(there, exact_rates(there))
         again = linear_at_rest(there).verdict(place)
-        return found if again.word in OPEN else replace(found, numerical=again)
+        return found if again.word.open else replace(found, numerical=again)
     except NOT_THERE:
         return found
 

@@ -29,10 +29,7 @@ from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
-from mbsym.problems.stability.word import Word
 
-#: Verdicts that the first approximation leaves open.
-OPEN = (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
 #: Derivatives of fourth order of a potential in more coordinates than this are not formed.
 MOST_DEGENERATE = 4
 
@@ -61,7 +58,7 @@ class LinearAtRest:
 
     def decided(self, verdict: Verdict, place: Place) -> Verdict:
         """An open verdict decided by terms of higher order of the energy, or by further integrals; else as it is."""
-        if verdict.word not in OPEN or verdict.coordinates_singular or self.varying or place.modulus is None:
+        if not verdict.word.open or verdict.coordinates_singular or self.varying or place.modulus is None:
             return verdict
         field = NumberField(place.modulus, place.enclose)
         try:

@@ -33,16 +33,8 @@ from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
-#: Verdicts of a motion that is stable.
-_STABLE = (
-    Word.STABLE,
-    Word.ASYMPTOTIC,
-    Word.STABLE_BUT_CYCLIC,
-    Word.ASYMPTOTIC_BUT_CYCLIC,
-    Word.ASYMPTOTIC_BUT_TURNED,
-)
-#: ... and the last of these is about the first approximation only.
-_LINEARLY_STABLE = (*_STABLE, Word.GYROSCOPIC)
+#: Verdicts of a motion that is stable, if only in first approximation.
+_LINEARLY_STABLE = (*(word for word in Word if word.stable), Word.GYROSCOPIC)
 _BODIES = ", with the triangle inequalities of the inertias"
 
 
@@ -205,7 +197,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             found = region.verdict_with(conditions, bodies)
             if found is None:
                 continue
-            if found.word in _STABLE:
+            if found.word.stable:
                 with_it = "with it" if len(together) == 1 else f"with {subject}"
                 note = f"{with_it}{_BODIES if bodies else ''} the motion is {_words(found)}"
                 return replace(result, remark=note)

@@ -147,7 +147,7 @@ class Verdict:
     @property
     def stable(self) -> bool:
         """Whether stability of the motion itself is proved, be it asymptotic, or but for drift or rotation."""
-        return self.flawed <= _SOUND and not {Ground.DECAYS, Ground.ENERGY}.isdisjoint(self.laid)
+        return self.word.stable
 
     @property
     def coordinates_singular(self) -> bool:

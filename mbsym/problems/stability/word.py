@@ -6,15 +6,15 @@ from enum import StrEnum
 
 
 class Word(StrEnum):
-    """A verdict in the words that reports print; ``sentences`` has shorter ones."""
+    """A verdict in the words that reports print, in the order of lists; ``sentences`` has shorter ones."""
 
     ASYMPTOTIC = "asymptotically stable"
+    #: A turned steady spin is a steady spin: it does not come back.
+    ASYMPTOTIC_BUT_TURNED = "asymptotically stable up to a rotation of space"
     #: With cyclic coordinates nothing better can hold: they drift.
     ASYMPTOTIC_BUT_CYCLIC = (
         "asymptotically stable with respect to the other variables; the cyclic coordinates may drift"
     )
-    #: A turned steady spin is a steady spin: it does not come back.
-    ASYMPTOTIC_BUT_TURNED = "asymptotically stable up to a rotation of space"
     STABLE = "stable"
     STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates may drift"
     GYROSCOPIC = "gyroscopically stabilised only"
@@ -27,3 +27,18 @@ class Word(StrEnum):
 
     def __repr__(self) -> str:
         return repr(self.value)
+
+    @property
+    def asymptotic(self) -> bool:
+        """Whether it says that disturbed motions come back, be it but for drift or rotation."""
+        return self in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_TURNED, Word.ASYMPTOTIC_BUT_CYCLIC)
+
+    @property
+    def stable(self) -> bool:
+        """Whether it says that the motion itself is stable, be it asymptotically, or but for drift or rotation."""
+        return self.asymptotic or self in (Word.STABLE, Word.STABLE_BUT_CYCLIC)
+
+    @property
+    def open(self) -> bool:
+        """Whether it leaves the nonlinear system open, at one place."""
+        return self in (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
