@@ -34,7 +34,7 @@ def show(found: Summary, path: Path, seconds: float) -> None:
 
 def show_brief(found: Brief, name: str, width: int) -> None:
     """A run in one line; columns are as wide as they mostly are."""
-    colour = next((colour for word, colour in reversed(_COLOURS.items()) if word in found.self_check), "")
+    colour = _COLOURS.get(found.worst, "")
     text = Text.assemble(
         (f"{printable(name):<{width}}", "bold"),
         f"  {found.problems:<8}",

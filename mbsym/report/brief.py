@@ -16,11 +16,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Brief:
-    """``problems``: ``1-7``, or ``1-3, 7`` with ``missing`` ``4-6: no motion``; the others are words and numbers."""
+    """``problems``: ``1-7``, or ``1-3, 7`` with ``missing`` ``4-6: no motion``; the others are words and numbers.
+
+    ``worst`` is the worst outcome of a check; "" where there are none.
+    """
 
     problems: str
     missing: str
     self_check: str
+    worst: str
     claims: str
     seconds: float
 
@@ -36,6 +40,7 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
             for reason, group in groupby(failures, key=lambda item: item[1])
         ),
         self_check=_self_check(analysis.checks),
+        worst=_worst(analysis.checks),
         claims=_claims([claim_line(result).word for result in analysis.claims]),
         seconds=seconds,
     )
@@ -63,6 +68,11 @@ def _self_check(checks: Sequence[Check]) -> str:
         return "all exact"
     words = (EXACT, NUMERICAL, UNDECIDED)
     return ", ".join(f"{outcomes.count(word)} {word}" for word in words if word in outcomes)
+
+
+def _worst(checks: Sequence[Check]) -> str:
+    outcomes = {check.outcome for check in checks}
+    return next((word for word in (FAILED, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
 
 
 def _claims(words: Sequence[str]) -> str:
