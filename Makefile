@@ -67,7 +67,7 @@ robots: robot-data
 robot-data: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'
 
-bench: $(READY)
+bench: robot-data
 	$(BIN)/python tests/bench/run.py
 
 # What can be made again; reports are the user's.
