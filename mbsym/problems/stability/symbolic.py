@@ -65,6 +65,8 @@ from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depen
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
+#: Of more inequalities it is not asked whether two of them exclude each other.
+MOST_COMPARED = 6
 
 
 @dataclass(frozen=True)
@@ -192,7 +194,7 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
         cases, reduced = _cases_with_zero_roots(system, found, known)
     else:
         cases, reduced = _cases(system, found, known), None
-    return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases))
+    return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases, known))
 
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
@@ -405,15 +407,36 @@ def _conservative(minimum: frozenset[Fact]) -> Verdict:
     return concluded(minimum | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
 
 
-def _first_certain(cases: Sequence[Case]) -> Verdict:
+def _first_certain(cases: Sequence[Case], known: Signs) -> Verdict:
     """The first case proved to hold while all before it are refuted."""
     for case in cases:
-        if case.always:
+        if case.always or (not case.all_of and _one_holds(case.any_of, known)):
             return case.verdict
-        if not case.never:
+        if not case.never and not _contradict(case.all_of, known):
             possible = (r for other in cases if not other.never for r in (*other.all_of, *other.any_of))
             return undecided(Because.CONDITIONS_UNWRITTEN) if any(r.unwritten for r in possible) else depends()
     return undecided(Because.BORDER)
+
+
+def _contradict(wanted: Sequence[Requirement], known: Signs) -> bool:
+    """Whether two inequalities exclude each other: 2 m k - c^2 > 0 and c^2 - 4 m k > 0, whose sum is -2 m k."""
+    return any(
+        known.assuming([(p, ">")]).sign(q) in ("negative", "nonpositive", "zero")
+        for p, q in combinations(_short_inequalities(wanted), 2)
+    )
+
+
+def _one_holds(choice: Sequence[Requirement], known: Signs) -> bool:
+    """Whether of two inequalities one holds wherever the other does not."""
+    plain = [r for r in choice if not r.condition.nonzero]
+    return any(
+        known.assuming([(-p, ">=")]).sign(q) == "positive" for p, q in combinations(_short_inequalities(plain), 2)
+    )
+
+
+def _short_inequalities(wanted: Sequence[Requirement]) -> list[Polynomial]:
+    found = [r.condition.polynomial for r in wanted if r.condition.kind == "inequality"]
+    return [p for p in found if len(p) <= MOST_TERMS][:MOST_COMPARED]
 
 
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:

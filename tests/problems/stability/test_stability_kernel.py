@@ -488,6 +488,38 @@ def test_indefinite_damping_without_trace_is_not_asymptotic() -> None:
     assert words[0] in ("unstable", "undecided")
 
 
+def test_conditions_that_exclude_each_other_leave_nothing_to_depend_on() -> None:
+    """R = c x'y': x + y is damped by c, x - y driven by it, so that s^2 - c s + k = 0 has its roots to the right."""
+    context, (c, k) = ring("c k")
+    damped = linear(context, M=[[1, 0], [0, 1]], D=[[0, c], [c, 0]], K=[[k, 0], [0, k]])
+    found = analyse(damped, signs(context, "positive positive"))
+    wanted = requirement(found, "v2"), requirement(found, "discriminant")
+    assert [p for p in wanted if p == 2 * k - c**2]
+    assert (found.verdict.word, found.verdict.theorem) == (Word.UNSTABLE, "Lyapunov's first method")
+    # Damping c and -c, coupled by a spring e: for small c the roots stay imaginary, for large ones they do not.
+    context, (c, k, e) = ring("c k e")
+    stiff = [[k + e, -e], [-e, k + e]]
+    balanced = linear(context, M=[[1, 0], [0, 1]], D=[[c, 0], [0, -c]], K=stiff)
+    assert analyse(balanced, signs(context, "positive positive positive")).verdict.word == Word.DEPENDS
+    at = linear(NONE, M=[[1, 0], [0, 1]], D=[[F(1, 10), 0], [0, F(-1, 10)]], K=[[2, -1], [-1, 2]])
+    assert verdict_at(at, {}).verdict.word == Word.CRITICAL
+
+
+def test_a_trace_and_its_opposite_are_never_positive_together() -> None:
+    """K = diag(-k, -2 k), damping c and d, gyroscopic b: a_3 = c + d and a_1 = -k (2 c + d); their sum is -c at k = 1.
+
+    So one of the roots is to the right, whatever b and d are; at c = 1/10, d = -1/15, b = 5 by numbers, too.
+    """
+    context, (b, c, d, k) = ring("b c d k")
+    parts: dict[str, Any] = {"D": [[c, 0], [0, d]], "G": [[0, -b], [b, 0]], "K": [[-k, 0], [0, -2 * k]]}
+    known = signs(context, "positive positive real positive")
+    assert analyse(linear(context, M=[[1, 0], [0, 1]], **parts), known).verdict.word == Word.UNSTABLE
+    rows = np.block([[np.zeros((2, 2)), np.eye(2)], [np.diag([1.0, 2.0]), -np.array([[0.1, -5], [5, -1 / 15]])]])
+    assert max(np.linalg.eigvals(rows).real) > 0.001
+    opposite = parts | {"K": [[k, 0], [0, 2 * k]]}  # a_1 = k (2 c + d): for d > 0 every root is to the left
+    assert analyse(linear(context, M=[[1, 0], [0, 1]], **opposite), known).verdict.word == Word.DEPENDS
+
+
 def test_incomplete_but_pervasive_damping() -> None:
     parts: dict[str, Any] = {"M": [[1, 0], [0, 1]], "D": [[1, 0], [0, 0]], "K": [[2, -1], [-1, 2]]}
     assert at_once(**parts) == ("asymptotically stable", "asymptotically stable")
