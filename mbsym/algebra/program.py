@@ -14,7 +14,7 @@ from math import isqrt
 from typing import Any, NamedTuple
 
 from mbsym.algebra.base import Algebra
-from mbsym.algebra.failures import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import NoClosedForm, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
@@ -262,7 +262,7 @@ class Program(Algebra):
         """The outputs over any algebra whose scalars divide through ``algebra.reciprocal``.
 
         Sines and cosines of inputs are looked up through ``algebra.sin_cos`` of their linear form, so that exact
-        rational states stay exact.
+        rational states stay exact.  Raises NoValue for an input without a value, and what the algebra raises.
         """
         values: dict[int, Any] = {}
         for number in self.live(outputs):
@@ -282,7 +282,11 @@ class Program(Algebra):
                 assert isinstance(instruction.payload, Fraction)
                 return algebra.number(instruction.payload)
             case "input":
-                return inputs[str(instruction.payload)]
+                name = str(instruction.payload)
+                try:
+                    return inputs[name]
+                except KeyError:
+                    raise NoValue(name) from None
             case "sin" | "cos" as which:
                 angle = self._angle(instruction.operands[0])
                 argument = values[instruction.operands[0]]

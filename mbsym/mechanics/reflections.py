@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.model.system import INERTIAL
@@ -40,7 +40,7 @@ def reflections(found: Rest) -> tuple[Reflection, ...]:
                 if _moves_nothing(found, length, angle) and _same_places(found, length, angle):
                     made.append(Reflection(length, angle, _same_forces(found, length, angle)))
                     break
-            except (Failure, ZeroDivisionError):
+            except NOT_THERE:
                 continue
     return tuple(made)
 

@@ -20,7 +20,7 @@ import numpy as np
 from flint import acb, ctx, fmpq_mat
 
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NOT_THERE, SingularPoint
+from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.roots import enclosures
@@ -267,7 +267,7 @@ class LinearModel:
         def word(factor: Fraction) -> str:
             try:
                 return self.verdict_of(scaled(given, overrides, name, factor).parameters).word
-            except (Incomplete, SingularPoint, ValueError, ZeroDivisionError):
+            except (Incomplete, ValueError, ZeroDivisionError):
                 return Word.UNDECIDED
 
         places = {k: OFF * Fraction(2) ** k for k in POWERS}

@@ -133,7 +133,7 @@ def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
     try:
         terms = rate.program.evaluate(rate.terms, ring_environment(dynamics.system, ring), ring)
         return ring.is_zero(ring.reduce(sum(terms, ring.zero))) is True
-    except (Failure, KeyError):
+    except Failure:
         return False
 
 

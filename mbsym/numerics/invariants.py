@@ -44,7 +44,7 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
     for integral in integrals:
         try:
             node = Carrier(ring, program, environment)(integral.formula.polynomial)
-        except (Failure, KeyError):
+        except Failure:
             continue
         column = _column(integral, taken)
         taken.add(column)

@@ -385,14 +385,17 @@ class Balance:
             return found | {load.coordinate, velocity_name(load.coordinate)}
         if isinstance(load, GeneralizedForce):
             return found | {x for name, _ in load.components for x in (name, velocity_name(name))}
+        if isinstance(load, Rayleigh):
+            return found
         system = self.scene.system
-        bodies: list[str] = []
         if isinstance(load, (PointDamper, IsotropicDamper)):
             bodies = [load.first.body, load.second.body]
         elif isinstance(load, PointForce):
             bodies = [load.point.body, load.axes]
         elif isinstance(load, Torque):
             bodies = [load.body, load.axes, load.reaction_on or INERTIAL]
+        else:  # of a kind that is not known here: on anything
+            return found | {*system.coordinates, *system.velocities}
         paths = [system.path(name) for name in bodies]
         common: set[str] = {INERTIAL}
         if isinstance(load, PointDamper):

@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.mechanics.rest import Rest
@@ -35,7 +35,7 @@ class Candidate:
         """Whether x is proved to be zero there."""
         try:
             return bool(self.ring.substitute(x, dict(self.images)).is_zero())
-        except (Failure, ZeroDivisionError):
+        except NOT_THERE:
             return False
 
     def place(self, found: Rest, rates: Mapping[int, Any]) -> Place:

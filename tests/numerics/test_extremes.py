@@ -36,7 +36,7 @@ from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.extremes_tables import HEADER, extremes_csv, extremes_json, tables
+from mbsym.report.extremes_tables import extremes_csv, extremes_json, tables
 from mbsym.source import load
 from mbsym_cli.main import main
 
@@ -323,7 +323,10 @@ def test_sentences_and_tables_follow_the_rows(whole: Any) -> None:
     assert "theta -> pi/2: the mass matrix is singular" in text
     assert "A -> 9: a border of the first approximation, unstable below and stable above" in text
     rows = list(csv.reader(io.StringIO(extremes_csv(whole))))
-    assert tuple(rows[0]) == HEADER
+    verdicts = {line["subject"]: line for line in csv.DictReader(io.StringIO(extremes_csv(whole)))}
+    assert verdicts["A -> 9 from above"]["quantity"] == "stability"
+    assert verdicts["A -> 9 from above"]["verdict"] == "stable"
+    assert verdicts["A -> 9 from below"]["verdict"] == "unstable"
     assert len(rows) == 1 + len(whole.rows) + len(whole.verdicts)
     content = json.loads(extremes_json(whole))
     assert content["sentences"]

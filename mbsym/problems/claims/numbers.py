@@ -12,6 +12,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls
+from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import (
     Expression,
     names,
@@ -117,7 +118,7 @@ def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> Clai
     else:
         first = (abs(printed).mid().log() / arb(10).log()).floor().mid()
         tolerance = arb(10) ** (first - claim.digits + 1) / 2
-        words = f"{claim.digits} digit{'' if claim.digits == 1 else 's'}"
+        words = counted(claim.digits, "digit")
     if _is_below(error, tolerance):
         return replace(result, outcome=TOLERANCE, remark=words)
     return replace(result, outcome=DIFFERS, remark=f"by more than {words}") if error > tolerance else None
@@ -148,7 +149,7 @@ def _rounding_of_doubles(derived: Derived, claim: Claim, value: Any) -> Any:
                 changed[name] = number * (1 + UNIT_OF_DOUBLES * fmpq(source.randint(-8, 8), 16))
             try:
                 found = _derived_number(derived, claim, State(Balls(changed), changed)).mid()
-            except (KeyError, *NOT_THERE):
+            except NOT_THERE:
                 return arb(0)
         worst = max(worst, abs(arb(found) - value).upper(), key=float)
     unit = largest if value.contains(0) else abs(value)
