@@ -38,7 +38,7 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
     in a small box.  The list says whether it is complete.  Orientations behind the singularity of the description's
     angles are found with other angles.  Each equilibrium is judged as in problem 6.
 
-    Exit codes: 0 listed, 1 the equations outgrew their budget, 2 something is missing or wrong,
+    Exit codes: 0 listed, 1 they cannot be listed (the reason is given), 2 something is missing or wrong,
     130 interrupted.
 
     \b

@@ -95,7 +95,11 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
     names = [*found.system.coordinates, *found.system.velocities]
     state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
     hints = {
-        BLOW_UP: "the motion leaves every bound in finite time; is a sign of the forces right?",
+        BLOW_UP: (
+            "the motion grows without an end in sight, in finite time or exponentially; is a sign of the forces right?"
+            if ended.time > 0
+            else "choose other initial values, or units in which the numbers are smaller"
+        ),
         SINGULAR: (
             "a coordinate loses its meaning in this state: a distance has shrunk to zero (a collision, a fall to the "
             "centre), or angles are singular (a pole; other angles help); or a mass is zero. Start elsewhere or stop "

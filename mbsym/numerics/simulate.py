@@ -29,6 +29,9 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.kept import compiled_kernel
 
+#: No initial state is beyond this: the world measures 1e27 metres.
+LARGEST_START = 1e30
+
 #: A pivot of M that has become so much smaller than it was means that M is singular for practical purposes.
 SINGULAR_PIVOT = 1e-11
 
@@ -153,6 +156,7 @@ def integrated(
     work = Work()
     initial = np.array([float(x) for x in dynamics.scenario.state])
     breakdown, interrupted = _at_once(dynamics, initial), False
+    bound = _bound(initial)
     # Room for all states is taken at once, and only touched as they come.
     states = np.empty((len(times), len(initial)), dtype=np.longdouble if scalar == EXTENDED else float)
     states[0], reached = initial, 1
@@ -165,8 +169,8 @@ def integrated(
             states[0] = run.state
             for t in times[1:]:
                 state = run.advance(float(t))
-                if not np.all(np.abs(state) < LARGEST):
-                    bad = "is not a number" if np.any(np.isnan(state)) else "has left every bound"
+                if not np.all(np.abs(state) < bound):
+                    bad = "is not a number" if np.any(np.isnan(state)) else f"is beyond {bound:.0e}"
                     message = f"a coordinate or velocity {bad}"
                     raise Breakdown(BLOW_UP, message, float(t), np.array(state, dtype=float))
                 states[reached] = state
@@ -211,10 +215,15 @@ def _energies(dynamics: Dynamics, points: Any, scalar: str) -> tuple[Any, Any, A
     return energy, generalized, change if np.all(alike) else plain, kinetic
 
 
+def _bound(initial: Any) -> float:
+    """Where a run is ended: sizes of 1e12, and as many times those of the initial state (orbits in metres)."""
+    return LARGEST * max(1.0, float(np.max(np.abs(initial), initial=0.0)))
+
+
 def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:
     """What is wrong with the initial state itself: there the right-hand side must exist."""
-    if not np.all(np.abs(initial) < LARGEST):
-        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST:g}", 0.0, initial)
+    if not np.all(np.abs(initial) < LARGEST_START):
+        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST_START:g}", 0.0, initial)
     point = np.concatenate(([0.0], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
@@ -249,8 +258,9 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
     if _undefined(dynamics, found.time, state):
         message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
         return Breakdown(UNDEFINED, message, found.time, found.state)
-    if not np.all(np.abs(state) < LARGEST):
-        return Breakdown(BLOW_UP, "a coordinate or velocity has left every bound", found.time, found.state)
+    bound = _bound(past[1:, 0])
+    if not np.all(np.abs(state) < bound):
+        return Breakdown(BLOW_UP, f"a coordinate or velocity is beyond {bound:.0e}", found.time, found.state)
     return found
 
 

@@ -67,7 +67,7 @@ def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> I
     if conservation.broken:
         yield (
             f"the {conservation.quantity} is conserved, and this run does not keep it: it is too coarse; choose a "
-            "smaller --tolerance or --step"
+            "smaller --tolerance, or --method rk4 with a small --step"
         )
     if isinstance(error, ErrorEstimate) and error.largest > UNLIKE:
         yield (

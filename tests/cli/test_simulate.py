@@ -467,6 +467,62 @@ def test_a_blow_up_keeps_what_there_was(method: list[str], tmp_path: Path) -> No
     assert isclose(content["ended"]["time"], 1 / sqrt(2), abs_tol=0.01)
 
 
+#: One turn of a planet a = 4.5e12 m away about the sun takes 2 pi sqrt(a^3/mu), on a circle at the speed sqrt(mu/a).
+NEPTUNE = """
+mbsym: 1
+name: Planet in metres
+parameters: {m: positive, mu: positive}
+bodies:
+  - {name: planet, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - potential: -mu*m/sqrt(x**2 + y**2)
+values: {m: 1, mu: 1.327e20}
+initial: {x: 4.5e12, y: {position: 0, velocity: sqrt(1.327e20/4.5e12)}}
+"""
+
+
+def test_a_planet_in_metres_is_no_blow_up(tmp_path: Path) -> None:
+    turn = 2 * pi * sqrt(4.5e12**3 / 1.327e20)
+    done = mbsym(described(tmp_path, NEPTUNE), "--time", repr(turn), "-f", "csv", "-o", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    found = table(tmp_path / "out" / "trajectory.csv")
+    assert (found["x"][-1] / 4.5e12, found["y"][-1] / 4.5e12) == pytest.approx((1, 0), abs=1e-7)
+    assert np.hypot(found["x"], found["y"]) / 4.5e12 == pytest.approx(1, abs=1e-7)
+
+
+def test_exponential_growth_is_not_said_to_end_in_finite_time(tmp_path: Path) -> None:
+    """x'' = 100 x from x = 1, x' = 10 is exp(10 t): beyond 1e13 from t = 2.8 (velocity) on, and finite at all times."""
+    text = PARTICLE + "  - potential: -50*x**2\nvalues: {m: 1, k: 0}\ninitial: {x: {position: 1, velocity: 10}}\n"
+    done = mbsym(described(tmp_path, text), "--time", 5, "--every", 0.01, "-f", "csv", "-o", tmp_path / "out")
+    assert done.exit_code == 3
+    assert "a coordinate or velocity is beyond 1e+13" in done.stderr
+    assert "every bound" not in done.output
+    assert "in finite time or exponentially" in done.stderr
+    assert 2.7 < summary(tmp_path / "out")["ended"]["time"] < 2.8
+
+
+#: A wall a thousandth wide and twice as high as the energy, far from where the motion starts.
+WALL = (
+    PARTICLE
+    + """\
+  - potential: exp(-1000000*(x - 10)**2)
+values: {m: 1, k: 0}
+initial: {x: {position: 0, velocity: 1}}
+"""
+)
+
+
+def test_the_hint_against_a_wall_stepped_over_works(tmp_path: Path) -> None:
+    """Here a smaller tolerance alone does not help: before the wall the step is as long as it likes."""
+    path = described(tmp_path, WALL)
+    over = mbsym(path, "--time", 20, "-f", "csv", "-o", tmp_path / "out")
+    assert "this run does not keep it" in over.stdout
+    assert "--method rk4 with a small --step" in over.stdout
+    done = mbsym(path, "--time", 20, "-f", "csv", "--method", "rk4", "--step", "2e-4", "-o", tmp_path / "out")
+    assert "warning" not in done.stdout
+    assert table(tmp_path / "out" / "trajectory.csv")["x"][-1] < 1  # thrown back at 10
+
+
 def test_marked_results_replace_whole_ones_and_are_replaced(tmp_path: Path) -> None:
     """A table beside ``simulation.json`` always belongs to it."""
     (tmp_path / "out").mkdir()

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from mbsym.numerics.dynamics import Dynamics
 
-#: Rates beyond this mean that the solution has left every bound.
+#: Where a step vanishes, rates beyond this mean a blow-up.
 LARGEST = 1e12
 
 

@@ -521,7 +521,7 @@ class AdaptiveRun(_Arrays):
                 size = float(np.max(np.abs(self.x), initial=0.0))
                 steep = float(np.max(np.abs(self.k[0]), initial=0.0))
                 if self.count[INFINITE] or not size < LARGEST or not steep < LARGEST:
-                    message = f"values or rates grow beyond every bound (largest rate {steep:.2g})"
+                    message = f"values or rates grow too large to go on (largest rate {steep:.2g})"
                     raise self.fail(BLOW_UP, message, self.clock[TIME], self.x)
                 raise self.fail(STUCK, f"step {float(self.clock[STEP]):.2g}", self.clock[TIME], self.x)
         self.time = until

@@ -173,7 +173,7 @@ class TaylorRun:
         if step > self._least * max(1.0, abs(now)):
             return
         if not np.all(np.abs(self._taylor.state) < LARGEST):
-            raise self._fail(BLOW_UP, "a coordinate or velocity has left every bound", now, before)
+            raise self._fail(BLOW_UP, f"a coordinate or velocity is beyond {LARGEST:.0e}", now, before)
         raise self._fail(STUCK, f"step {float(step):.2g}", now, before)
 
     @staticmethod

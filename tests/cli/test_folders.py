@@ -1,0 +1,77 @@
+"""Folders as arguments: descriptions are taken, the other files of a project are not."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym_cli.main import main
+
+DESCRIPTION = """
+mbsym: 1
+name: Oscillator
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+"""
+
+#: What stands beside descriptions in a repository.
+OTHERS = {
+    "docker-compose.yaml": 'version: "3"\nservices:\n  web: {image: python}\n',
+    ".pre-commit-config.yaml": "repos:\n  - repo: https://example.org/mbsym\n    hooks: [{id: mbsym}]\n",
+    "mkdocs.yml": "site_name: mbsym\nnav:\n  - mbsym: index.md\n",
+    "notes.txt": "mbsym is run every night.\n",
+    "empty.yaml": "",
+    "broken.yaml": "\tservices: [",
+}
+
+
+def mbsym(*words: Any) -> Result:
+    return CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+
+
+def filled(folder: Path) -> Path:
+    for name, text in OTHERS.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_other_files_of_a_project_are_passed_over(command: str, tmp_path: Path) -> None:
+    folder = filled(tmp_path)
+    (folder / "oscillator.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    os.mkfifo(folder / "pipe.yaml")
+    (folder / "loop.yaml").symlink_to("loop.yaml")
+    out = ("--brief", "--out", tmp_path / "out") if command == "run" else ()
+    done = mbsym(command, folder, *out)
+    assert done.exit_code == 0, done.output
+    assert "oscillator.yaml" in done.stdout
+    assert not [name for name in [*OTHERS, "pipe.yaml", "loop.yaml"] if name in done.output]
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_a_folder_of_other_files_alone_is_complained_about(command: str, tmp_path: Path) -> None:
+    done = mbsym(command, filled(tmp_path))
+    assert done.exit_code == 2
+    assert f"there are no descriptions here ({len(OTHERS)} other files were passed over)" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["docker-compose.yaml", ".pre-commit-config.yaml"])
+def test_another_file_that_is_named_is_read_as_a_description(name: str, tmp_path: Path) -> None:
+    done = mbsym("check", filled(tmp_path) / name)
+    assert done.exit_code == 2
+    assert "error[missing-key]: a description has no 'mbsym'" in done.stderr
+
+
+def test_a_broken_description_in_a_folder_is_not_passed_over(tmp_path: Path) -> None:
+    (tmp_path / "good.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    (tmp_path / "bad.yaml").write_text(DESCRIPTION.replace("coordinates: [x]}", "coordinates: [x]"), encoding="utf-8")
+    done = mbsym("check", tmp_path)
+    assert done.exit_code == 2
+    assert "bad.yaml" in done.stderr
+    assert "good.yaml: ok" in done.stdout
