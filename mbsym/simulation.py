@@ -178,7 +178,10 @@ class Simulation:
         return self.trajectory.breakdown
 
     def __getitem__(self, name: str) -> Any:
-        """The samples of a coordinate, a velocity (``theta_dot``), a first integral's column, or ``t``; shape (m,)."""
+        """The samples of a coordinate, a velocity (``theta_dot``), a first integral's column, or ``t``; shape (m,).
+
+        Raises KeyError for any other name.
+        """
         if name == "t":
             return self.times
         rows = (*self.system.coordinates, *self.system.velocities)

@@ -57,9 +57,14 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
             yield Statement(label, Formula(ring, polynomial), "!=", note, None, requirement.strict)
 
 
+def _is_opposite(label: str) -> bool:
+    """Whether it is the label of a condition reversed, as ``requirements.against`` makes it."""
+    return label.startswith("-(") and label.endswith(")")
+
+
 def _bare(label: str) -> str:
     """v4 for -(v4)."""
-    return label[2:-1] if label.startswith("-(") and label.endswith(")") else label
+    return label[2:-1] if _is_opposite(label) else label
 
 
 def _part(label: str, which: str) -> str:
@@ -141,12 +146,11 @@ class Shown:
         if statement.formula is None:
             return None
         label, polynomial, relation = statement.label, statement.formula.polynomial, statement.relation
-        if label.startswith("-(") and label.endswith(")"):
-            label, polynomial, relation = label[2:-1], -polynomial, _OPPOSITE.get(relation, relation)
+        if _is_opposite(label):
+            label, polynomial, relation = _bare(label), -polynomial, _OPPOSITE.get(relation, relation)
         for own in (True, False):
             for under, formula in self._shown:
-                opposite = under.startswith("-(") and under.endswith(")")
-                bare, shown = (under[2:-1], -formula.polynomial) if opposite else (under, formula.polynomial)
+                bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
                 if (bare == label) is not own or len(shown) != len(polynomial):
                     continue
                 if shown == polynomial:

@@ -17,6 +17,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
 from mbsym.report.drawing import pictures, thinned
 
@@ -147,7 +148,7 @@ def _caption(found: Positions, step: float, end: float) -> list[str]:
     said = f"t = 0 to {_rounded(last)}" + ("" if last == end else f" (of {_rounded(end)})")
     if found.bodied:
         said += f", a snapshot every {_rounded(step)}"
-    return [said] if found.frame == "0" else [said, f"seen in the frame '{found.frame}'"]
+    return [said] if found.frame == INERTIAL else [said, f"seen in the frame '{found.frame}'"]
 
 
 def _rounded(value: float) -> str:
@@ -310,7 +311,7 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, not
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)
     grid[-1].set_xlabel("$t$")
     grid[-1].set_xlim(0, float(found.times[-1]))
-    where = "" if found.frame == "0" else f" in the frame '{found.frame}'"
+    where = "" if found.frame == INERTIAL else f" in the frame '{found.frame}'"
     lines = (_title(found) + part, f"places of the mass centres{where}", note)
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure

@@ -30,7 +30,7 @@ from mbsym.problems.claims.differences import rational_ratio
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.word import Word
 
 #: Verdicts of a motion that is stable, if only in first approximation.
@@ -199,17 +199,13 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 continue
             if found.word.stable:
                 with_it = "with it" if len(together) == 1 else f"with {subject}"
-                note = f"{with_it}{_BODIES if bodies else ''} the motion is {_words(found)}"
+                note = f"{with_it}{_BODIES if bodies else ''} the motion is {with_theorem(found.word, found.theorem)}"
                 return replace(result, remark=note)
             if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 remark = f"in the first approximation {subject} suffice{'s' if len(together) == 1 else ''}; " + (
                     "whether the motion itself is stable is open"
                 )
     return replace(result, outcome=UNDECIDED, remark=remark)
-
-
-def _words(verdict: Verdict) -> str:
-    return verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
 
 
 def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
@@ -234,10 +230,9 @@ def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimR
         subject = "it is" if len(together) == 1 else "the conditions of this place together are"
         remark = f"{subject} not sufficient for stability"
     else:
-        shows = dict(found.shows)
         in_first = found.word is Word.GYROSCOPIC
         remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
-        if claim.relation in ("<", ">") and next(iter(shows.values())) == "0":
+        if claim.relation in ("<", ">") and found.at_equality:
             remark += ": with equality, too, the motion is stable"
     return replace(result, outcome=FAILS, remark=remark, counterexample=found)
 

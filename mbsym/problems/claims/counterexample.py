@@ -37,6 +37,7 @@ from mbsym.model.admissibility import ROUNDING, body_violation
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
+from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
@@ -56,12 +57,14 @@ PRECISION, DIGITS_SHOWN = 256, 12
 class Counterexample:
     """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value).
 
-    ``word`` is the verdict of problem 6 there, where it is asked for.
+    ``word`` is the verdict of problem 6 there, where it is asked for; ``at_equality``: both sides of the condition
+    that was claimed are equal there.
     """
 
     at: tuple[tuple[str, str], ...]
     shows: tuple[tuple[str, str], ...]
     word: Word | None = None
+    at_equality: bool = False
 
 
 # --- parameters ---
@@ -206,10 +209,10 @@ class Trials:
                 break
             try:
                 gaps = claimed(self.numbers, trial.values)
+            except KeyError:  # a name without a value, here and everywhere: sines of constant angles and the like
+                break
             except NOT_THERE:
                 continue
-            except KeyError:  # sines of constant angles and the like
-                break
             self.ring.spend(WORK_OF_A_TRIAL * len(gaps))
             if all(holds(gap, relation) for _, gap, relation in gaps) is not sufficient:
                 continue
@@ -217,10 +220,10 @@ class Trials:
             verdict = self.verdict(trial)
             if verdict.word not in words or (best is not None and verdict.word == words[-1]):
                 continue
-            word = verdict.word + (f" ({verdict.theorem})" if verdict.theorem else "")
+            word = with_theorem(verdict.word, verdict.theorem)
             at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
             shows = tuple((text, str(gap)) for text, gap, _ in gaps)
-            best = Counterexample(at, (*shows, ("the motion", word)), verdict.word)
+            best = Counterexample(at, (*shows, ("the motion", word)), verdict.word, bool(gaps[0][1] == 0))
             if verdict.word != words[-1] or len(words) == 1:
                 break
         return best
@@ -270,10 +273,10 @@ class Trials:
         for free in parameter_samples(self.system, tuple(self.solved)):
             try:
                 made = self._made_of(free)
+            except KeyError:  # a name without a value, here and everywhere
+                return
             except NOT_THERE:
                 continue
-            except KeyError:
-                return
             if made is not None:
                 yield made
 
