@@ -10,7 +10,7 @@ where it is shown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -272,14 +272,16 @@ def simulate(
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
         dynamics = Dynamics(scenario, analysis.ring) if analysis is not None and not missing else Dynamics(scenario)
-        chosen = _chosen(dynamics, request, None if request.whole else reduced(dynamics))
+        resting = reduced(dynamics)
+        chosen = _chosen(dynamics, request, None if request.whole else resting)
     with stage(INTEGRATING):
         found = integration.simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
     found = replace(found, between=kinetic_between(dynamics, found, chosen.completed))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
-        energies = _energies(dynamics, found)
-        kept = _kept(dynamics, found, integrals)
+        held = resting.names if resting is not None and resting.proved else ()
+        energies = _energies(dynamics, found, held)
+        kept = _kept(dynamics, found, integrals, held)
         if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
             error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed)
     if energies[0].standing is Standing.PROVED and contradicted(error, energies[0].change):
@@ -337,26 +339,26 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
 # --- what a run keeps ---
 
 
-def _energies(dynamics: Dynamics, found: Trajectory) -> tuple[Conservation, Conservation]:
-    """Of T2 - T0 - U, and of T - U."""
+def _energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
+    """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
     points = visited(found.times, found.states, found.change)
     scale = found.energy_scale
-    known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300))
+    known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held)
     if dynamics.natural:
         same = confronted("energy", known, found.change, scale, doubt)
         return same, same
     generalized = confronted("generalised energy", known, found.change, scale, doubt)
-    known, doubt = standing(dynamics, dynamics.energies, 0, visited(found.times, found.states, found.energy))
+    known, doubt = standing(dynamics, dynamics.energies, 0, visited(found.times, found.states, found.energy), held)
     return generalized, confronted("energy", known, found.energy, scale, doubt)
 
 
-def _kept(dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...]) -> tuple[Kept, ...]:
+def _kept(dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str]) -> tuple[Kept, ...]:
     """First integrals along the run; one that is not proved is looked at where the run goes."""
     known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural)) if integrals else ()
     kept = []
     for item, (column, size) in zip(known, values(known, found.times, found.states), strict=True):
         state, doubt = Standing.PROVED, None
         if not item.proved:
-            state, doubt = standing(dynamics, item.code, 0, visited(found.times, found.states, column))
+            state, doubt = standing(dynamics, item.code, 0, visited(found.times, found.states, column), held)
         kept.append(Kept(item.column, column, confronted(item.name, state, column, size, doubt)))
     return tuple(kept)

@@ -10,7 +10,7 @@ not conserved; where all of them hold zero it is verified numerically along this
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
@@ -97,8 +97,12 @@ def confronted(
 # --- rates ---
 
 
-def energy_standing(dynamics: Dynamics, points: Any, worth: float = 0.0) -> tuple[Standing, Doubt | None]:
+def energy_standing(
+    dynamics: Dynamics, points: Any, worth: float = 0.0, held: Collection[str] = ()
+) -> tuple[Standing, Doubt | None]:
     """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns.
+
+    ``held`` are the coordinates that provably rest in this motion: nothing is said about motions in which they do not.
 
     A power is zero where its ball holds zero and is narrow beside its terms, or beside ``worth`` (an energy over the
     time of the run).  The balls are of the formula itself, so one without zero is a power, however small.
@@ -106,7 +110,7 @@ def energy_standing(dynamics: Dynamics, points: Any, worth: float = 0.0) -> tupl
     rate = dynamics.energy_rate
     if not rate.terms or not dynamics.energy_power.outputs or _vanishes(dynamics, rate):
         return Standing.PROVED, None
-    return judged(dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False)
+    return judged(dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False, held=held)
 
 
 def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list[arb]:
@@ -137,19 +141,26 @@ def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
         return False
 
 
-def standing(dynamics: Dynamics, code: Code, output: int, points: Any) -> tuple[Standing, Doubt | None]:
-    """Whether one output of a code over (t, q, q') is constant along the motion."""
+def standing(
+    dynamics: Dynamics, code: Code, output: int, points: Any, held: Collection[str] = ()
+) -> tuple[Standing, Doubt | None]:
+    """Whether one output of a code over (t, q, q') is constant along the motion, in which ``held`` provably rest."""
     rhs = dynamics.right_hand_side
     program = code.program
     slopes = gradient(program, code.outputs[output], [program.input(name) for name in dynamics.inputs])
     moving = zip(slopes[1:], rhs.outputs, strict=True)
     terms = [slopes[0], *(program.product(slope, rate) for slope, rate in moving)]
     whole = Code(program, dynamics.inputs, tuple(terms))
-    return judged(dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True)
+    return judged(dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True, held=held)
 
 
 def judged(
-    dynamics: Dynamics, terms: Callable[[Sequence[float]], list[arb]], points: Any, worth: float, rounded: bool
+    dynamics: Dynamics,
+    terms: Callable[[Sequence[float]], list[arb]],
+    points: Any,
+    worth: float,
+    rounded: bool,
+    held: Collection[str] = (),
 ) -> tuple[Standing, Doubt | None]:
     """Whether the sum of the terms vanishes at visited states, and at some beside the start, in balls.
 
@@ -157,7 +168,7 @@ def judged(
     """
     seen = [[float(x) for x in state] for state in np.asarray(points, dtype=float).T]
     decided = 0
-    for place, state in enumerate([*seen, *_beside(dynamics)]):
+    for place, state in enumerate([*seen, *_beside(dynamics, held)]):
         with ctx.workprec(BITS):
             found = terms(state)
             if not all(term.is_finite() for term in found):
@@ -174,14 +185,17 @@ def judged(
     return (Standing.VERIFIED, None) if enough else (Standing.UNDECIDED, Doubt.NOT_FINITE)
 
 
-def _beside(dynamics: Dynamics) -> list[list[float]]:
-    """States near the initial one: dyadic numbers, so that lengths stay lengths and roots stay real."""
+def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
+    """States near the initial one: dyadic numbers, so that lengths stay lengths and roots stay real; ``held`` rest."""
     random = Random(1)
     start = [float(x) for x in dynamics.scenario.state]
-    return [
-        [random.randint(0, 1024) / 256, *(x + random.randint(-64, 64) / 256 * (1 + abs(x)) for x in start)]
-        for _ in range(BESIDE)
-    ]
+    free = [name not in held for name in dynamics.system.coordinates] * 2
+    found = []
+    for _ in range(BESIDE):
+        time, *parts = random.randint(0, 1024) / 256, *(random.randint(-64, 64) / 256 for _ in start)
+        moved = [x + part * (1 + abs(x)) * one for x, part, one in zip(start, parts, free, strict=True)]
+        found.append([time, *moved])
+    return found
 
 
 def visited(times: Any, states: Any, values: Any) -> Any:

@@ -162,3 +162,27 @@ def test_words_of_each_standing() -> None:
     assert said[Standing.VERIFIED].startswith("conserved (verified numerically along this run); largest relative drift")
     assert said[Standing.CHANGING] == "not conserved; largest relative change 1.0e-12"
     assert said[Standing.UNDECIDED] == "undecided; largest relative change 1.0e-12"
+
+
+RESTING = """
+mbsym: 1
+name: Particle whose damper has nothing to do
+bodies:
+  - {name: particle, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - spring: {coordinate: y, stiffness: 4}
+  - damper: {coordinate: y, coefficient: 1}
+initial: {x: 1, y: START}
+"""
+
+
+@pytest.mark.parametrize("whole", [False, True])
+@pytest.mark.parametrize(("start", "wanted"), [("0", Standing.VERIFIED), ("1e-9", Standing.CHANGING)])
+def test_a_damper_on_a_coordinate_that_rests_takes_nothing(
+    start: str, wanted: Standing, whole: bool, tmp_path: Path
+) -> None:
+    """x = cos t and y = 0: T - U = 1/2 for ever.  Displaced by whatever little, y loses its energy to the damper."""
+    path = tmp_path / "particle.yaml"
+    path.write_text(RESTING.replace("START", start), encoding="utf-8")
+    assert mbsym.simulate(path, 5, whole=whole).conservation.standing is wanted
