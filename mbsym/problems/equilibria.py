@@ -575,8 +575,21 @@ class _ChartSearch:
         )
 
     def _periodic(self, name: str) -> bool:
-        used = occurring(self.equations)
-        return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in used
+        """Whether it occurs as an angle only: not outside of its sine and cosine, nor in a function or another sine."""
+        return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in self._reached
+
+    @cached_property
+    def _reached(self) -> frozenset[int]:
+        """The generators of the equations and, however deep, those that adjoined ones are made of."""
+        reached: set[int] = set()
+        pending = [*occurring(self.equations)]
+        while pending:
+            k = pending.pop()
+            if k not in reached:
+                reached.add(k)
+                argument = self.ring.generators[k].argument
+                pending += [] if argument is None else [*occurring([argument])]
+        return frozenset(reached)
 
     def _range(self, name: str, held: float | None = None) -> tuple[float, float]:
         """Where ``name`` is looked for; ``held`` is a proved bound."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import permutations, product
 from pathlib import Path
@@ -397,6 +397,38 @@ loads:
   - spring: {between: [{body: bead, point: [0, 0, 0]}, {body: 0, point: [0, a, 0]}], stiffness: k, length: l}
 values: {m: 1, k: 1, a: 3, l: 5}
 """
+
+
+@pytest.mark.parametrize(
+    ("potential", "slope"),
+    [
+        ("exp(x/9) + cos(x)", lambda x: np.exp(x / 9) / 9 - np.sin(x)),
+        ("sin(x) + sin(sqrt(2)*x)", lambda x: np.cos(x) + np.sqrt(2) * np.cos(np.sqrt(2) * x)),
+    ],
+)
+def test_a_sine_beside_another_function_of_the_same_length_has_no_period(
+    potential: str, slope: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    """V'(x) = 0 has a root between any two samples of opposite signs, and there are others beyond |x| = 10."""
+    body = {"name": "P", "connection point": ["x", 0, 0], "mass": 1, "coordinates": ["x"]}
+    description = {"mbsym": 1, "name": "bead", "bodies": [body], "loads": [{"potential": potential}]}
+    _, found = at(json.dumps(description, indent=1))
+    samples = slope(np.linspace(-10, 10, 20001))
+    assert len(found.equilibria) == np.count_nonzero(samples[1:] * samples[:-1] < 0) > 2
+    beyond = slope(np.linspace(10.1, 16, 6001))
+    assert np.any(beyond[1:] * beyond[:-1] < 0)
+    assert not found.complete
+
+
+def test_a_function_of_a_sine_keeps_its_period() -> None:
+    """V = exp(cos x) + sin x: V' = cos x - exp(cos x) sin x changes its sign twice in a turn."""
+    body = {"name": "P", "connection point": ["x", 0, 0], "mass": 1, "coordinates": ["x"]}
+    loads = [{"potential": "exp(cos(x)) + sin(x)"}]
+    _, found = at(json.dumps({"mbsym": 1, "name": "bead", "bodies": [body], "loads": loads}, indent=1))
+    angles = np.linspace(-np.pi, np.pi, 6001)
+    samples = np.cos(angles) - np.exp(np.cos(angles)) * np.sin(angles)
+    assert len(found.equilibria) == np.count_nonzero(samples[1:] * samples[:-1] < 0) == 2
+    assert found.complete
 
 
 def test_distances_are_solved_exactly() -> None:
