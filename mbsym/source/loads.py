@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -274,9 +274,24 @@ def _force_function(load: _Load) -> Load:
     return ForceFunction(load.reading.expression(load.value, POTENTIAL), load.kind, load.span)
 
 
+def _spelled_out(entries: list[Entry], coordinates: Collection[str]) -> str:
+    """The coordinate of {coordinate: x, ...: force}, as other loads have it; empty for what is none."""
+    if len(entries) != 2 or entries[0].key.text != "coordinate" or "coordinate" in coordinates:
+        return ""
+    value = entries[0].value
+    return value.text if isinstance(value, Scalar) and value.text in coordinates else ""
+
+
 def _generalized_force(load: _Load) -> Load:
     components = []
-    for entry in load.reading.entries(load.value, "'generalized force'"):
+    entries = list(load.reading.entries(load.value, "'generalized force'"))
+    spelled = _spelled_out(entries, load.reading.scope.of_kind("coordinate"))
+    if spelled:
+        hint = f"the key is the coordinate itself: write {spelled}: and then the force"
+        message = f"unknown key '{entries[0].key.text}' of a generalized force"
+        load.reading.error("unknown-key", message, entries[0].key.span, hint)
+        return GeneralizedForce((), load.span)
+    for entry in entries:
         allowed = Allowed("the key of a generalized force", ("coordinate",))
         known = load.reading.scope.check_name(entry.key.text, entry.key.span, allowed)
         value = load.reading.expression(entry.value, FORCE)

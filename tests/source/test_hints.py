@@ -272,3 +272,16 @@ def test_following_the_hints_leads_to_a_valid_description(key: str, wrong: str) 
         system, complaints = read(text)
         assert len(complaints.errors) < len(errors), (text, [one.message for one in complaints.errors])
     assert system is not None, [one.message for one in complaints.errors]
+
+
+def test_a_generalized_force_written_as_other_loads_are() -> None:
+    """``{coordinate: theta, equals: Q}`` is one mistake; the hint says what stands there instead."""
+    _, complaints = read(described("force", "  - generalized force: {coordinate: theta, equals: -c*theta_dot}"))
+    (only,) = complaints
+    assert (only.code, only.hint) == (
+        "unknown-key",
+        "the key is the coordinate itself: write theta: and then the force",
+    )
+    system, complaints = read(described("force", "  - generalized force: {theta: -c*theta_dot}"))
+    assert system is not None
+    assert not list(complaints)
