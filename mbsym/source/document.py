@@ -12,7 +12,7 @@ from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
 from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
-from mbsym.source.yaml_reader import has_key, has_yaml_marks, read_yaml
+from mbsym.source.yaml_reader import has_bodies, has_key, has_yaml_marks, read_yaml
 
 #: So many complaints are shown, in all and of one kind; when so many were met, reading stops.
 MAX_COMPLAINTS = 200
@@ -66,6 +66,7 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
 def is_description(path: Path) -> bool:
     """Whether a file says of itself that it is a description: by the key ``mbsym``, or the labels of the editor.
 
+    A list of bodies that are ``attached to`` others says so, too: it is not passed over for a misspelt first line.
     What is no plain file, as a pipe or a link to nothing, is none; what may not be read could be one.
     """
     try:
@@ -78,7 +79,7 @@ def is_description(path: Path) -> bool:
     except (OSError, ValueError):
         return False
     text = normalised(data.decode("utf-8", "replace"))
-    return b"\0" not in data and (has_key(text) or has_text_marks(text))
+    return b"\0" not in data and (has_key(text) or has_bodies(text) or has_text_marks(text))
 
 
 def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:

@@ -45,6 +45,11 @@ def has_key(text: str) -> bool:
     return bool(re.search(before + _KEY, text, re.MULTILINE))
 
 
+def has_bodies(text: str) -> bool:
+    """Whether bodies attached to each other stand there, as in a description whose first line was lost or misspelt."""
+    return bool(re.search(r"^bodies\s*:", text, re.MULTILINE) and re.search(r"\battached to\s*:", text))
+
+
 def read_yaml(text: str, complaints: Complaints) -> Node | None:
     """The placed tree of a YAML text (already normalised), or None with complaints."""
     if not _brackets_bounded(text, complaints):
