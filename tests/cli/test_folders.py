@@ -77,12 +77,19 @@ def test_a_broken_description_in_a_folder_is_not_passed_over(tmp_path: Path) -> 
     assert "good.yaml: ok" in done.stdout
 
 
-@pytest.mark.parametrize("first", ["", "mbsm: 1", "version: 1"])
-def test_a_description_without_its_first_line_is_not_passed_over(first: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("first", "hint"),
+    [
+        ("", "begin the file with 'mbsym: 1'"),
+        ("mbsm: 1", "did you mean 'mbsym'?"),
+        ("version: 1", "begin the file with 'mbsym: 1'"),
+    ],
+)
+def test_a_description_without_its_first_line_is_not_passed_over(first: str, hint: str, tmp_path: Path) -> None:
     """In a folder of descriptions a misspelt key must not end as a check that found nothing."""
     (tmp_path / "good.yaml").write_text(DESCRIPTION, encoding="utf-8")
     (tmp_path / "lost.yaml").write_text(DESCRIPTION.replace("mbsym: 1", first), encoding="utf-8")
     done = mbsym("check", tmp_path)
     assert done.exit_code == 2
-    assert "begin the file with 'mbsym: 1'" in done.stderr
+    assert hint in done.stderr
     assert "good.yaml: ok" in done.stdout
