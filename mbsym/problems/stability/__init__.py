@@ -23,6 +23,10 @@ enclosures).  A theorem is named where all its hypotheses are shown:
 * Kelvin-Chetaev: N = 0, D > 0, and K > 0 or det K != 0; or D = N = 0 and det K < 0;
 * Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins.
 
+No verdict is given where terms of higher order hold t, or what grows with it, outside of sines and cosines: they are
+not small at all times alike, as Lyapunov's theorems ask; nor where D is not 0 (or G and N are both there) and the rate
+of a dimensionless time is not known to be positive.
+
 Verdicts of subsystems combine to the weakest that they share: all asymptotically stable, or all with K > 0 under one
 energy that does not grow (a damped part beside an undamped one: stable), or none of them dissipative; else critical.
 
