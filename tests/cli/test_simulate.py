@@ -490,6 +490,14 @@ def test_a_planet_in_metres_is_no_blow_up(tmp_path: Path) -> None:
     assert np.hypot(found["x"], found["y"]) / 4.5e12 == pytest.approx(1, abs=1e-7)
 
 
+def test_a_constant_too_large_for_float32_is_said_to_be_that(tmp_path: Path) -> None:
+    """1e26 kg times mu is about 1e46; single precision ends at 3.4e38."""
+    path = described(tmp_path, NEPTUNE.replace("m: 1,", "m: 1e26,"))
+    done = mbsym(path, "--time", "1e8", "--arithmetic", "float32", "-f", "csv", "-o", tmp_path / "out")
+    assert done.exit_code != 0
+    assert "beyond the range of single precision (float32)" in done.stderr
+
+
 def test_exponential_growth_is_not_said_to_end_in_finite_time(tmp_path: Path) -> None:
     """x'' = 100 x from x = 1, x' = 10 is exp(10 t): beyond 1e13 from t = 2.8 (velocity) on, and finite at all times."""
     text = PARTICLE + "  - potential: -50*x**2\nvalues: {m: 1, k: 0}\ninitial: {x: {position: 1, velocity: 10}}\n"

@@ -55,7 +55,8 @@ def constant(value: Fraction, kind: str) -> str:
     except OverflowError:
         number = float("inf")
     if number in (float("inf"), float("-inf")):
-        raise NoClosedForm(f"a constant beyond the range of {kind}")
+        known = {"float": "single precision (float32)", "double": "double precision (float64)"}
+        raise NoClosedForm(f"a constant beyond the range of {known.get(kind, kind)}")
     return f"0x{struct.unpack('<Q', struct.pack('<d', number))[0]:016X}"
 
 
@@ -88,7 +89,7 @@ def _extended(value: Fraction) -> str:
     if significand == 2**64:
         significand, exponent = 2**63, exponent + 1
     if exponent > 16383:
-        raise NoClosedForm("a constant beyond the range of x86_fp80")
+        raise NoClosedForm("a constant beyond the range of extended precision")
     sign = 0x8000 if value < 0 else 0
     biased = exponent + 16383 if significand >= 2**63 else 0
     return f"0xK{sign | biased:04X}{significand:016X}"
