@@ -58,6 +58,11 @@ class Unavailable(Failure):
         super().__init__(sentence, limit=failure.limit, remedy=failure.hint)
         self.failure = failure
 
+    @property
+    def reason(self) -> str:
+        """Why, without the name of the stage."""
+        return self.failure.reason
+
 
 @dataclass(frozen=True)
 class Stage:

@@ -209,7 +209,7 @@ def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel 
             return None
         return LinearModel(analysis)
     except Failure as reason:
-        left_out.append(f"{what}: {reason}")
+        left_out.append(f"{what}: {reason.reason}")
         return None
 
 
