@@ -203,8 +203,9 @@ def _attached_to(draft: Draft, drafts: list[Draft], reading: Reading) -> str:
         if draft.number > 1:
             draft.fields.require("attached to", "an earlier body, or 0 for the inertial frame")
         return INERTIAL
-    name = read_body_name(node, "'attached to'", [other.name for other in drafts], reading)
-    later = {other.name for other in drafts[draft.number - 1 :]} - {other.name for other in drafts[: draft.number - 1]}
+    earlier = list(dict.fromkeys(other.name for other in drafts[: draft.number - 1]))
+    name = read_body_name(node, "'attached to'", [other.name for other in drafts], reading, earlier)
+    later = {other.name for other in drafts[draft.number - 1 :]} - {*earlier}
     if name is None or name not in later:
         return name or INERTIAL
     assert isinstance(node, Scalar)
@@ -227,15 +228,19 @@ def _complain_of_order(draft: Draft, name: str, drafts: list[Draft], span: Span,
         reading.error("body-order", "a body is attached to an earlier body; this one comes later", span, hint)
 
 
-def read_body_name(node: Node, what: str, known: list[str], reading: Reading) -> str | None:
-    """The name of a known body, or "0"."""
+def read_body_name(
+    node: Node, what: str, known: list[str], reading: Reading, possible: list[str] | None = None
+) -> str | None:
+    """The name of a known body, or "0"; a hint names the ``possible`` ones (by default all that are known)."""
     scalar = reading.scalar(node, what)
     if scalar is None:
         return None
     name = " ".join(scalar.text.split())
     if name == INERTIAL or name in known:
         return name
-    hint = did_you_mean(name, known) or f"the bodies are: 0, {', '.join(known[:8])}"
+    named = known if possible is None else possible
+    which = "the bodies are" if possible is None else "the bodies before this one are"
+    hint = did_you_mean(name, named) or f"{which}: {', '.join([INERTIAL, *named[:8]])}"
     reading.error("unknown-body", f"there is no body {ascii_safe(name)}", scalar.span, hint)
     return None
 
