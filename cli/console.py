@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import click
 
 from mbsym.algebra.failures import LOG
 from mbsym.expressions.counting import counted
@@ -151,3 +153,12 @@ def reason_of(error: OSError) -> str:
     """What the system says of a file, with its name."""
     said = error.strerror or str(error)
     return said if error.filename is None else f"{printable(str(error.filename))}: {said}"
+
+
+class OutPath(click.Path):
+    """Where to write.  An empty text (a shell's unset variable) is no path: it would mean the current folder."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if not str(value).strip():
+            self.fail("it is empty (an unset variable?); write . for this folder", param, ctx)
+        return super().convert(value, param, ctx)

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from mbsym.source import to_text, to_yaml
-from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, printable, read_description
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -17,7 +17,7 @@ from mbsym_cli.options import Options
 @click.command("convert")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--to", "spelling", type=click.Choice(["yaml", "text"]), help="Default: the other spelling.")
-@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Default: standard output.")
+@click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
 def command(file: Path, spelling: str | None, out: Path | None) -> None:
     """Convert a description between YAML and the editor's plain text, without loss.
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
 from mbsym_cli.extremes_run import measure, rank
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
@@ -20,7 +20,7 @@ from mbsym_cli.options import Options
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--sequences", is_flag=True, help="Rank the 12 rotation sequences of each body instead.")
 @click.option("--budget", default="60", show_default=True, metavar="S", help="About so many seconds at most.")
-@click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only the sentences.")
 def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str, out: Path | None, quiet: bool) -> None:
     """Measure how many digits each quantity of FILE keeps at the extremes, and where the model breaks down.

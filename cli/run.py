@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, OK, read_description
+from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
@@ -17,7 +17,7 @@ from mbsym_cli.reports import Request, report_on
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
 @click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show; all of them: 1-7]")
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
-@click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
+@click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")

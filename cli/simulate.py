@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_request import ARITHMETIC, Flags, read_request
@@ -35,7 +35,7 @@ from mbsym_cli.simulation_run import run
 )
 @click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
 @click.option("--format", "-f", "formats", default="csv,svg,png", show_default=True)
-@click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     file: Path,

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.tradeoff_run import Request, run
@@ -34,7 +34,7 @@ FINEST, COARSEST = 1e-15, 0.1
 )
 @click.option("--fidelity/--no-fidelity", default=True, show_default=True, help="Compare simpler models too.")
 @click.option("--all-rows", is_flag=True, help="Print every run, not only those on the front and near the target.")
-@click.option("--out", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only the recommendation.")
 def command(
     file: Path,

@@ -292,3 +292,12 @@ def test_long_values_and_control_characters_are_shown_safely() -> None:
     assert asked.whole("--samples", "9" * 5_000, 1, 5) is None
     assert len(asked.complaints) == 5  # two characters of the escape sequence
     assert all(len(line) < 250 and "\x1b" not in line for text in asked.complaints for line in text.splitlines())
+
+
+@pytest.mark.parametrize("command", ["run", "simulate", "tradeoff", "extremes", "convert"])
+def test_an_empty_path_is_not_the_current_folder(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = mbsym(command, DOUBLE, "--out", "")
+    assert done.exit_code == 2
+    assert "it is empty" in done.stderr
+    assert not list(tmp_path.iterdir())
