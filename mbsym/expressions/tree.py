@@ -163,55 +163,59 @@ def power(base: Expression, exponent: Expression) -> Expression:
 
 
 def differentiate(expression: Expression, name: str) -> Expression:
-    """The partial derivative with respect to a name; all other names are constants.
+    """The partial derivative with respect to a name; all other names are constants.  See Derivation."""
+    return Derivation({name: ONE})(expression)
 
-    d(u**n) = n u**(n-1) du for a constant exponent n; the other rules are the elementary ones.  A tree shared by
-    many parents is differentiated once, and the result is simplified only by dropping zeros and ones.  Raises TypeError
-    for what is not an expression.
+
+class Derivation:
+    """The derivation D with D(name) = ``rates[name]``, and 0 for every other name and every number:
+
+        D(u + v) = Du + Dv,  D(u v) = Du v + u Dv,  D(u**n) = n u**(n-1) Du,  D f(u) = f'(u) Du
+
+    Exponents are constants.  A tree shared by many parents is differentiated once, by identity, also from call to call,
+    so the trees must outlive it; the result is simplified only by dropping zeros and ones.  Raises TypeError for what
+    is not an expression, ValueError for a function without a known derivative.
     """
-    return _derivative(expression, name, {})
 
+    def __init__(self, rates: Mapping[str, Expression]) -> None:
+        self.rates = rates
+        self._known: dict[int, Expression] = {}
 
-def _derivative(expression: Expression, name: str, known: dict[int, Expression]) -> Expression:
-    """The derivative; ``known`` holds those of the trees met before, by identity (the whole keeps them alive)."""
-    found = known.get(id(expression))
-    if found is None:
-        found = known[id(expression)] = _differentiated(expression, name, known)
-    return found
+    def __call__(self, expression: Expression) -> Expression:
+        found = self._known.get(id(expression))
+        if found is None:
+            found = self._known[id(expression)] = self._derivative(expression)
+        return found
 
-
-def _differentiated(expression: Expression, name: str, known: dict[int, Expression]) -> Expression:
-    match expression:
-        case Number():
-            return ZERO
-        case Name(other):
-            return ONE if other == name else ZERO
-        case Negative(operand):
-            return negative(_derivative(operand, name, known))
-        case Operation("+", left, right):
-            return add(_derivative(left, name, known), _derivative(right, name, known))
-        case Operation("-", left, right):
-            return subtract(_derivative(left, name, known), _derivative(right, name, known))
-        case Operation("*", left, right):
-            first, second = _derivative(left, name, known), _derivative(right, name, known)
-            return add(multiply(first, right), multiply(left, second))
-        case Operation("/", left, right):
-            first = divide(_derivative(left, name, known), right)
-            second = divide(multiply(left, _derivative(right, name, known)), power(right, number(2)))
-            return subtract(first, second)
-        case Operation("**", base, exponent):
-            inner = _derivative(base, name, known)
-            if is_number(inner, 0):
+    def _derivative(self, expression: Expression) -> Expression:
+        match expression:
+            case Number():
                 return ZERO
-            if isinstance(exponent, Number):
-                lowered: Expression = Number(exponent.value - 1)
-            else:
-                lowered = subtract(exponent, ONE)
-            return multiply(multiply(exponent, power(base, lowered)), inner)
-        case Call(function, argument):
-            inner = _derivative(argument, name, known)
-            return ZERO if is_number(inner, 0) else multiply(_derivative_of_function(function, argument), inner)
-    raise TypeError(f"not an expression: {expression!r}")
+            case Name(name):
+                return self.rates.get(name, ZERO)
+            case Negative(operand):
+                return negative(self(operand))
+            case Operation("+", left, right):
+                return add(self(left), self(right))
+            case Operation("-", left, right):
+                return subtract(self(left), self(right))
+            case Operation("*", left, right):
+                return add(multiply(self(left), right), multiply(left, self(right)))
+            case Operation("/", left, right):
+                second = divide(multiply(left, self(right)), power(right, number(2)))
+                return subtract(divide(self(left), right), second)
+            case Operation("**", base, exponent):
+                inner = self(base)
+                if is_number(inner, 0):
+                    return ZERO
+                lowered: Expression = subtract(exponent, ONE)
+                if isinstance(exponent, Number):
+                    lowered = Number(exponent.value - 1)
+                return multiply(multiply(exponent, power(base, lowered)), inner)
+            case Call(function, argument):
+                inner = self(argument)
+                return ZERO if is_number(inner, 0) else multiply(_derivative_of_function(function, argument), inner)
+        raise TypeError(f"not an expression: {expression!r}")
 
 
 def _derivative_of_function(function: str, argument: Expression) -> Expression:

@@ -24,13 +24,7 @@ from mbsym.expressions.tree import (
     add,
     children,
     differentiate,
-    divide,
     multiply,
-    negative,
-    number,
-    power,
-    substitute,
-    subtract,
     walk,
 )
 from mbsym.model.system import EXACT, NewtonianGravity, System, acceleration_name, velocity_name
@@ -76,7 +70,7 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
         if velocity_name(name) in present:
             rates[velocity_name(name)] = Name(acceleration_name(name))
     for name in sorted(present & rates.keys()):
-        total = add(total, multiply(_Derivation(name)(expression), rates[name]))
+        total = add(total, multiply(differentiate(expression, name), rates[name]))
     return total
 
 
@@ -93,44 +87,6 @@ def _names(expression: Expression) -> set[str]:
             if isinstance(node, Name):
                 found.add(node.name)
     return found
-
-
-class _Derivation:
-    """``differentiate`` with a memory: second derivatives of a long expression share most of their parts."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.known: dict[int, Expression] = {}
-
-    def __call__(self, expression: Expression) -> Expression:
-        found = self.known.get(id(expression))
-        if found is None:
-            found = self.known[id(expression)] = self._derivative(expression)
-        return found
-
-    def _derivative(self, expression: Expression) -> Expression:
-        match expression:
-            case Negative(operand):
-                return negative(self(operand))
-            case Operation("+", left, right):
-                return add(self(left), self(right))
-            case Operation("-", left, right):
-                return subtract(self(left), self(right))
-            case Operation("*", left, right):
-                return add(multiply(self(left), right), multiply(left, self(right)))
-            case Operation("/", left, right):
-                second = divide(multiply(left, self(right)), power(right, number(2)))
-                return subtract(divide(self(left), right), second)
-            case Operation("**", inner, exponent):
-                return self._composed(Operation("**", Name("u"), exponent), inner)
-            case Call(function, inner):
-                return self._composed(Call(function, Name("u")), inner)
-        return ONE if expression == Name(self.name) else ZERO
-
-    def _composed(self, outer: Expression, inner: Expression) -> Expression:
-        """The chain rule for an expression in u."""
-        slope = self(inner)
-        return ZERO if slope == ZERO else multiply(substitute(differentiate(outer, "u"), {"u": inner}), slope)
 
 
 def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> dict[str, int]:

@@ -9,21 +9,12 @@ from fractions import Fraction
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
-    ZERO,
-    Call,
+    Derivation,
     Expression,
     Name,
-    Negative,
-    Operation,
-    add,
     differentiate,
-    divide,
-    multiply,
     names,
-    negative,
     number,
-    power,
-    substitute,
     subtract,
     text,
 )
@@ -102,7 +93,7 @@ def _check_relative_velocity(system: System, body: Body, draft: Draft, reading: 
     rates = _rates(system)
     relations = {relation.name: relation.value for relation in system.relations}
     for index, (given, radius) in enumerate(zip(body.relative_velocity, body.connection_point, strict=True)):
-        derived = time_derivative(radius, rates)
+        derived = Derivation(rates)(radius)
         if vanishes(subtract(given, derived), relations) is False:
             span = given.span or draft.fields.key_span("relative velocity")
             message = f"component {index + 1} is not the derivative of the connection point"
@@ -117,32 +108,6 @@ def _rates(system: System) -> dict[str, Expression]:
     rates: dict[str, Expression] = {name: Name(velocity_name(name)) for name in system.coordinates}
     rates.update({prescribed.name: prescribed.rate for prescribed in system.prescribed})
     return rates
-
-
-def time_derivative(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
-    """The total derivative, in one pass whatever the number of names that change with time."""
-    match expression:
-        case Name(name):
-            return rates.get(name, ZERO)
-        case Negative(operand):
-            return negative(time_derivative(operand, rates))
-        case Operation("+", left, right):
-            return add(time_derivative(left, rates), time_derivative(right, rates))
-        case Operation("-", left, right):
-            return subtract(time_derivative(left, rates), time_derivative(right, rates))
-        case Operation("*", left, right):
-            first = multiply(time_derivative(left, rates), right)
-            return add(first, multiply(left, time_derivative(right, rates)))
-        case Operation("/", left, right):
-            second = multiply(left, time_derivative(right, rates))
-            return subtract(divide(time_derivative(left, rates), right), divide(second, power(right, number(2))))
-        case Operation(operator, base, exponent):
-            outer = differentiate(Operation(operator, Name("u"), exponent), "u")
-            return multiply(substitute(outer, {"u": base}), time_derivative(base, rates))
-        case Call(function, argument):
-            outer = differentiate(Call(function, Name("u")), "u")
-            return multiply(substitute(outer, {"u": argument}), time_derivative(argument, rates))
-    return ZERO
 
 
 # --- masses and inertias ---------------------------------------------------------------------------------------------
