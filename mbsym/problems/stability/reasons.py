@@ -19,6 +19,7 @@ class Because(Enum):
     ODD_DEGREE_REMAINS = auto()
     COMPLETE = auto()
     LEFT = auto()
+    LEFT_BUT_CYCLIC = auto()
     TURNED_DECAYS = auto()
     MINIMUM = auto()
     MINIMUM_AND_DISSIPATION = auto()

@@ -49,6 +49,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.ODD_DEGREE_REMAINS: "det K < 0: an odd degree of instability, which gyroscopic forces cannot remove.",
     Because.COMPLETE: "K > 0 and complete dissipation.",
     Because.LEFT: "All roots have negative real parts.",
+    Because.LEFT_BUT_CYCLIC: "All roots but the zero ones of the cyclic coordinates have negative real parts.",
     Because.TURNED_DECAYS: (
         "All roots have negative real parts but those of the steady spins about other directions of space: a "
         "disturbed motion tends to a steady spin about an axis near by, and every variable that does not change "

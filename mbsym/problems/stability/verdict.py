@@ -209,7 +209,13 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     drift = Because.DRIFT_AT_GIVEN_MOMENTA if decays else Because.DRIFT
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
-    return Verdict(row.word, names, (*verdict.reasons, Reason(drift)), tuple(grounds.items()), flaws)
+    reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
+    return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
+
+
+#: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
+_BESIDE_ZERO_ROOTS = {Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC)}
+_BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
 
 
 def _at_constant_momenta(theorems: Iterable[str]) -> tuple[str, ...]:
@@ -279,6 +285,8 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
             found.add(Reason(Because.PARTLY_CYCLIC))
     if idle and moving and row.ground is Ground.DECAYS:
         found.add(Reason(Because.CONSTANT_MOMENTA))
+    if Reason(Because.CONSTANT_MOMENTA) in found:
+        found = {_BESIDE_CONSTANT_MOMENTA.get(reason, reason) for reason in found}
     several = len(alike) > 1
     return tuple(sorted({_uncounted(x) if several else x for x in found}, key=lambda reason: reason.rank))
 

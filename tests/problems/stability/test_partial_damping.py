@@ -191,3 +191,26 @@ def test_asymptotic_or_merely_stable_depends_but_stable_it_is() -> None:
         ("asymptotically stable", True),
         ("stable", False),
     ]
+
+
+FREE = """
+mbsym: 1
+name: a point that friction holds back, and that nothing else acts on
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - rayleigh: RAYLEIGH
+motion: {x: 0, y: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("rayleigh", "momenta"), [("y_dot**2/2", True), ("(x_dot**2 + y_dot**2)/2", False)], ids=["one way", "both ways"]
+)
+def test_zero_roots_of_cyclic_coordinates_are_not_called_negative(rayleigh: str, momenta: bool) -> None:
+    """x'' = 0 or x'' = -x', y'' = -y': the roots are 0 and -1; where nothing brakes x, its velocity stays disturbed."""
+    verdict = mbsym.loads(FREE.replace("RAYLEIGH", rayleigh)).stability.verdict
+    assert "All roots have negative" not in verdict.explanation
+    assert "All roots but the zero ones" in verdict.explanation
+    assert ("all velocities" in verdict.explanation) is not momenta
+    assert ("momenta that differ a little stay different" in verdict.explanation) is momenta
