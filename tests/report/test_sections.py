@@ -6,8 +6,11 @@ from importlib.resources import files
 
 import pytest
 
+import mbsym
 from mbsym.analysis import PROBLEMS, Problem
+from mbsym.report.latex_report import render
 from mbsym.report.sections import section_of
+from mbsym.report.sections.stability import ALONE
 
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=lambda problem: problem.attribute)
@@ -20,3 +23,23 @@ def test_every_problem_has_its_section_lines_and_partials(problem: Problem) -> N
     assert f"{problem.number} in found" in (templates / "wolfram" / f"{problem.attribute}.j2").read_text(
         encoding="utf-8"
     )
+
+
+HAT = """
+mbsym: 1
+name: a ring of rests
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - potential: (x**2 + y**2 - 1)**2/4
+motion: {x: 1, y: 0}
+"""
+
+
+def test_a_subsystem_is_judged_while_the_others_keep_to_the_motion() -> None:
+    """At (1, 0) x'' = -2 x + ... alone is stable; but y drifts round the ring, and takes x along to -1."""
+    analysis = mbsym.loads(HAT)
+    lines = list(section_of(PROBLEMS[6]).lines(analysis.stability, analysis))
+    assert "x: stable (Lagrange-Dirichlet)" in lines
+    assert lines[lines.index("whole system: undecided") - 1] == ALONE
+    assert "while the others keep to the unperturbed motion" in render(analysis, (6,))

@@ -20,6 +20,10 @@ from mbsym.report.plain import LONGEST, Write, polynomial_text, shortened, state
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
+#: A theorem on a subsystem of the first approximation says nothing of its coordinates where others run away: the
+#: nonlinear equations couple them.
+ALONE = "(each of these while the others keep to the unperturbed motion)"
+
 #: More eigenvalues of a subsystem are left to the files.
 MOST_ROOTS = 10
 
@@ -67,6 +71,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         for item in items:
             yield f"  {_condition(item)}"
     if len(found.subsystems) > 1:
+        yield ALONE
         yield f"whole system: {_verdict(found.verdict)}"
     if presumed:
         yield f"all this {presumed}"
