@@ -134,6 +134,8 @@ def _angles(draft: Draft) -> tuple[Node, ...]:
 def _assume_forgotten(draft: Draft, reading: Reading) -> None:
     """Undeclared names that place a body are most likely coordinates that nobody listed: said once, then read so."""
     listed, scope = draft.fields.get("coordinates"), reading.scope
+    if scope.by_use is not None and isinstance(listed, Sequence):
+        return  # what is not in the list is a parameter by its use
     point = draft.fields.get("connection point")
     for node in (*_angles(draft), *(point.items if isinstance(point, Sequence) else ())):
         tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None

@@ -15,7 +15,7 @@ from mbsym.model.system import System
 from mbsym.source.bodies import draft_bodies, read_body
 from mbsym.source.checks import check_body, check_system
 from mbsym.source.claims import read_abbreviations, read_claims
-from mbsym.source.constants import declare_prescribed, read_parameters, read_prescribed, read_values
+from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
 from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.loads import read_loads
 from mbsym.source.placed import Node
@@ -24,10 +24,15 @@ from mbsym.source.scope import Allowed, Scope
 from mbsym.source.settings import read_assumptions, read_initial, read_motion, read_notation, read_relations
 
 
-def build(node: Node, complaints: Complaints) -> System | None:
-    """The system that a placed tree describes, or None if anything in it is wrong."""
+def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | None:
+    """The system that a placed tree describes, or None if anything in it is wrong.
+
+    ``by_use``: where no parameters are declared at all, the names in the bodies, loads and relations are parameters.
+    """
     reading = Reading(complaints, Scope(complaints))
     fields = reading.fields(node, "a description", SYSTEM)
+    if by_use and fields.get("parameters") is None:
+        reading.scope.by_use = {}
     _check_version(fields, reading)
     for key in ("name", "bodies"):
         fields.require(key)
@@ -43,6 +48,7 @@ def build(node: Node, complaints: Complaints) -> System | None:
         bodies.append(read_body(draft, drafts, reading))
         sound.append(draft.whole and complaints.error_count == before)
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
+    parameters += declared_by_use(reading)
     notation = read_notation(fields.get("notation"), reading)
     system = System(
         name=fields.text("name"),

@@ -30,6 +30,17 @@ def read_parameters(node: Node | None, reading: Reading) -> list[Parameter]:
     return parameters
 
 
+def declared_by_use(reading: Reading) -> list[Parameter]:
+    """The parameters that nobody declared but expressions use, with one warning that lists them; none from here on."""
+    used, reading.scope.by_use = reading.scope.by_use, None
+    if not used:
+        return []
+    message = f"parameters are declared by their use, all of them real: {', '.join(used)}"
+    hint = "a section 'Parameters' gives them signs, values and meanings, and slips of the pen are found"
+    reading.complaints.warning("declared-by-use", message, min(used.values(), key=lambda span: span.line), hint)
+    return [Parameter(name, span=span) for name, span in used.items()]
+
+
 def _listed(node: Sequence, reading: Reading) -> list[Parameter]:
     parameters = []
     for item in reading.items(node, "'parameters'"):

@@ -10,7 +10,7 @@ from mbsym.expressions.place import Complaint, Complaints
 from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
-from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
+from mbsym.source.placed import MAX_TEXT, TooManyComplaints
 from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
 from mbsym.source.yaml_reader import has_bodies, has_key, has_yaml_marks, read_yaml
 
@@ -56,8 +56,9 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     system, stopped = None, False
     try:
         if check_characters(text, complaints):
-            node = _placed_tree(text, filename, complaints)
-            system = None if node is None else build(node, complaints)
+            editor = _is_text(text, filename)
+            node = read_text(text, complaints) if editor else read_yaml(text, complaints)
+            system = None if node is None else build(node, complaints, by_use=editor)
     except TooManyComplaints:
         system, stopped = None, True
     return system, Complaints([*complaints.sorted(), *complaints.rest(stopped)])
@@ -82,12 +83,8 @@ def is_description(path: Path) -> bool:
     return b"\0" not in data and (has_key(text) or has_bodies(text) or has_text_marks(text))
 
 
-def _placed_tree(text: str, filename: str, complaints: Complaints) -> Node | None:
-    """One of the two readers, by the look of the text or by the ending of the name."""
-    return read_text(text, complaints) if _is_text(text, filename) else read_yaml(text, complaints)
-
-
 def _is_text(text: str, filename: str) -> bool:
+    """Whether it is the editor's, by the look of the text or by the ending of the name."""
     editor, other = has_text_marks(text), has_yaml_marks(text)
     if editor != other:
         return editor

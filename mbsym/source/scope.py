@@ -68,7 +68,8 @@ class Scope:
 
     ``later`` holds the names of notation (or abbreviations, as ``ordered`` says) that are still to come, ``assumed``
     undeclared names that were complained about and are since taken for whatever their place allows, ``beside`` the keys
-    that stand beside the one that is looked at.
+    that stand beside the one that is looked at.  While ``by_use`` is a dictionary, an unknown name in a place that
+    parameters may take is a parameter by its use; it is kept there with its first place.
     """
 
     complaints: Complaints
@@ -77,6 +78,7 @@ class Scope:
     ordered: str = "notation is"
     assumed: set[str] = field(default_factory=set)
     beside: set[str] = field(default_factory=set)
+    by_use: dict[str, Span] | None = None
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
@@ -130,6 +132,8 @@ class Scope:
         kind = self.kind_of(name)
         if kind == "acceleration" and kind not in allowed.kinds:
             kind = None
+        if kind is None and self._is_parameter_by_use(name, span, allowed):
+            return True
         if kind is None:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
@@ -140,6 +144,16 @@ class Scope:
         else:
             return True
         return False
+
+    def _is_parameter_by_use(self, name: str, span: Span, allowed: Allowed) -> bool:
+        """Whether an unknown name declares itself; one that looks like a slip for a coordinate's does not."""
+        if self.by_use is None or "parameter" not in allowed.kinds or name in self.later or why_no_name(name):
+            return False
+        if slip_of(name, self.of_kind("coordinate", "prescribed")) is not None:
+            return False
+        self.kinds[name] = "parameter"
+        self.by_use[name] = span
+        return True
 
     def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
         if name in self.later:

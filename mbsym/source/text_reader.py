@@ -126,9 +126,9 @@ class _TextReader:
         self.check_numbers(loads)
         self.check_numbers(claims)
         self.check_count(header, len(bodies))
-        self.names = {str(number): _name_in(block) for number, block in enumerate(bodies, start=1)}
+        self.names = {str(number): _name_in(block) or _unnamed(number) for number, block in enumerate(bodies, start=1)}
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
-        entries += _list_entry("bodies", bodies, self.body)
+        entries += _list_entry("bodies", bodies, self.body_form)
         entries += _list_entry("loads", loads, self.load)
         entries += _list_entry("claims", claims, self.claim)
         return Mapping(tuple(entries), start)
@@ -236,6 +236,19 @@ class _TextReader:
 
     # --- bodies ------------------------------------------------------------------------------------------------------
 
+    def body_form(self, block: _Block) -> Mapping:
+        """A body as the paper's Figure 3 has it: without a name it is "Body 2", and its tensor is about O_k."""
+        read = self.body(block)
+        given = {entry.key.text: entry for entry in read.entries}
+        more = []
+        match = _HEADING.match(block.heading.text)
+        if "name" not in given and match is not None:
+            more.append(Entry(_key(block.heading, "name"), _key(block.heading, _unnamed(int(match.group(2))))))
+        if "inertia" in given and "inertia about" not in given:
+            tensor = given["inertia"].key
+            more.append(Entry(_key(tensor, "inertia about"), _key(tensor, "joint")))
+        return Mapping((*read.entries, *more), read.span)
+
     def body(self, block: _Block) -> Mapping:
         """The entries of a body; axes and angles together are its rotation, rows follow their label.
 
@@ -247,11 +260,14 @@ class _TextReader:
         lines = block.lines
         position = 0
         while position < len(lines):
-            found = self.labelled(lines[position], BODY, block.heading.text)
+            found = _bare_label(lines[position], BODY) or self.labelled(lines[position], BODY, block.heading.text)
             position += 1
             if found is None:
                 continue
             label, word, value = found
+            if not value.text and word != "tensor of inertia" and _goes_on(lines, position):
+                value = lines[position]
+                position += 1
             key = _key(label, BODY[word])
             if word == "tensor of inertia" and not value.text:
                 rows = _rows(lines, position)
@@ -286,6 +302,8 @@ class _TextReader:
         if line.text[:1] in _OPENING and line.text[-1:] == _OPENING[line.text[0]] and _encloses(line.text):
             return self.items(line)
         parts = list(_split(line, ","))
+        if len(parts) == 1 and line.text.startswith("|") and line.text.endswith("|") and len(line.text) > 1:
+            parts = list(_split(line.part(1, len(line.text) - 1), "|"))
         if len(parts) == 1 and len(line.text.split()) == 3:
             parts = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]
         return Sequence(tuple(parts), line.span)
@@ -386,6 +404,26 @@ def _name_in(block: _Block) -> str:
         if label is not None and _word(label.text) == "name":
             return " ".join(value.text.split())
     return ""
+
+
+def _unnamed(number: int) -> str:
+    """What a body is called that has only its number."""
+    return f"Body {number}"
+
+
+def _bare_label(line: Scalar, known: Iterable[str]) -> tuple[Scalar, str, Scalar] | None:
+    """A line that is a label and nothing else, as above a field of a form."""
+    word = _word(line.text)
+    end = len(line.text)
+    return (line, word, line.part(end, end)) if word in known else None
+
+
+def _goes_on(lines: list[Scalar], position: int) -> bool:
+    """Whether the next line is the value of the label above it: no label itself."""
+    if position >= len(lines):
+        return False
+    line = lines[position]
+    return _label_of(line)[0] is None and _bare_label(line, BODY) is None
 
 
 def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping | None]) -> list[Entry]:

@@ -1,0 +1,71 @@
+"""The paper's own form, as printed: no body names, tensors about O_k, parameters declared by their use."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mbsym.source.document import load, read
+
+ROOT = Path(__file__).parents[2]
+FORM = ROOT / "tests" / "published" / "figure-3.txt"
+
+
+def test_the_form_is_the_system_of_the_paper() -> None:
+    form, complaints, _ = load(FORM)
+    paper, _, _ = load(ROOT / "systems" / "satellite.yaml")
+    assert form is not None
+    assert paper is not None
+    assert [one.code for one in complaints.items] == ["declared-by-use"]
+    assert [body.name for body in form.bodies] == ["Body 1", "Body 2", "Body 3", "Body 4"]
+    assert {one.name for one in form.parameters} == {one.name for one in paper.parameters}
+    assert {one.sign for one in form.parameters} == {"real"}
+    numbers = {body.name: str(number) for number, body in enumerate(paper.bodies, start=1)}
+    for ours, theirs in zip(form.bodies, paper.bodies, strict=True):
+        attached = numbers.get(theirs.attached_to, theirs.attached_to)
+        assert ours.attached_to in (attached, f"Body {attached}")
+        for field in ("rotation", "connection_point", "mass_centre", "mass", "coordinates"):
+            assert str(getattr(ours, field)) == str(getattr(theirs, field)), (ours.name, field)
+        assert (ours.inertia is None) == (theirs.inertia is None)
+        if ours.inertia is not None and theirs.inertia is not None:
+            assert str(replace(ours.inertia, span=None)) == str(replace(theirs.inertia, span=None))
+
+
+def test_the_warning_lists_what_was_declared_by_use() -> None:
+    _, complaints, _ = load(FORM)
+    (warning,) = complaints.items
+    assert warning.severity == "warning"
+    for name in ("omega0", "R", "M2", "Jx", "Jy", "Jz", "m", "r", "l", "m0", "nu"):
+        assert name in warning.message.replace(",", " ").split()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        (
+            "\nPrescribed motions",
+            "\nParameters\n  R = positive\nPrescribed motions",
+            "unknown-name",
+        ),  # then all are wanted
+        ("(0, l/2, 0)", "(0, l/2*thetta, 0)", "unknown-name"),  # a slip for a coordinate is no parameter
+        ("Previous body number\n1", "Previous body number\nBody mass", "missing-value"),  # a label is no value
+        ("| 0 | Jy | 0 |", "| 0 | Jy |", "wrong-shape"),
+        ("Body mass\nM2", "Body mas\nM2", "unknown-key"),
+    ],
+)
+def test_what_is_wrong_in_the_form_is_still_found(old: str, new: str, code: str) -> None:
+    text = FORM.read_text(encoding="utf-8")
+    assert old in text
+    system, complaints = read(text.replace(old, new, 1), "form.txt")
+    assert system is None
+    assert code in {one.code for one in complaints.items if one.severity == "error"}
+
+
+def test_yaml_declares_its_parameters() -> None:
+    body = "{name: bob, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: m}"
+    text = f"mbsym: 1\nname: P\nbodies:\n  - {body}\n"
+    system, complaints = read(text, "p.yaml")
+    assert system is None
+    assert [one.code for one in complaints.items] == ["unknown-name"]
