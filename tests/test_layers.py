@@ -28,8 +28,10 @@ BELOW = {
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "report": "expressions algebra model mechanics formulas problems analysis numerics simulation",
+    "batch": "expressions algebra model source formulas problems analysis report __init__",
     "__init__": "source analysis numerics simulation",
-    "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report __init__",
+    "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
+    " __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

@@ -1,0 +1,214 @@
+"""What became of the descriptions of a batch, as values: one Row each, together a Summary.
+
+Front ends (tables, summary.json, whatever a CI system reads) are made from these alone.  Only ``seconds`` and
+``cached`` differ between two batches over the same descriptions; the rest of a row is the same wherever it was derived.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+#: The version of the schema of summary.json; another one where a reader would have to be changed.
+FORMAT = 1
+
+#: Exit codes, those of ``mbsym run``; and one more, where a budget of seconds or of memory was met.
+OK, FAILED, BAD_INPUT, BUDGET, INTERRUPTED = 0, 1, 2, 4, 130
+
+
+class Outcome(StrEnum):
+    """What became of one description, in the words of tables and of summary.json."""
+
+    #: All that was asked for is there, or the reason why there is none is an answer; no check failed.
+    DERIVED = "derived"
+    #: The description has errors, or cannot be read; nothing was derived.
+    ERRORS = "description errors"
+    #: Derived and written; but two independent routes to a result disagree.
+    SELF_CHECK = "self-check failed"
+    #: Derived and written; a claim does not hold, and claims had to (``--strict-claims``).
+    CLAIMS = "claim does not hold"
+    #: An internal error cost a result or a file; the others were written.
+    INCOMPLETE = "incomplete"
+    #: Derived, but the files could not be written.
+    NOT_WRITTEN = "not written"
+    #: The process ended by itself: a signal, an abort, somebody's kill.
+    CRASHED = "crashed"
+    TIMEOUT = "timeout"
+    MEMORY = "out of memory"
+    #: Never begun: another one failed and ``--fail-fast`` was given.
+    SKIPPED = "skipped"
+    #: Begun or waiting when the batch was stopped.
+    INTERRUPTED = "interrupted"
+
+    @property
+    def exit_code(self) -> int:
+        """What the batch ends with at least; that of the worst row is its exit code."""
+        return _EXIT_CODES.get(self, FAILED)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the derivation came to its end by itself, so that doing it again would give the same."""
+        return self in (Outcome.DERIVED, Outcome.SELF_CHECK, Outcome.CLAIMS)
+
+    @property
+    def failed(self) -> bool:
+        """Whether something is wrong with it; what was never begun is not."""
+        return self not in (Outcome.DERIVED, Outcome.SKIPPED, Outcome.INTERRUPTED)
+
+
+_EXIT_CODES = {
+    Outcome.DERIVED: OK,
+    Outcome.SKIPPED: OK,
+    Outcome.ERRORS: BAD_INPUT,
+    Outcome.TIMEOUT: BUDGET,
+    Outcome.MEMORY: BUDGET,
+    Outcome.INTERRUPTED: INTERRUPTED,
+}
+
+
+@dataclass(frozen=True)
+class ProblemRow:
+    """One numbered problem.
+
+    ``status`` is ``derived`` or ``none``; of a problem without a result, ``code`` names the reason
+    (``no-closed-form``, ``internal-error``, ``withdrawn``, ...), ``reason`` says it in a sentence, and ``defect`` is
+    true where the program is at fault.  ``verdict`` and ``verdict_at_values`` are the words of problem 6, None elsewhere.
+    """
+
+    number: int
+    name: str
+    title: str
+    status: str
+    code: str | None = None
+    reason: str | None = None
+    hint: str | None = None
+    defect: bool = False
+    verdict: str | None = None
+    verdict_at_values: str | None = None
+
+
+@dataclass(frozen=True)
+class ClaimRow:
+    """One claim: ``word`` is held, refuted or undecided; ``outcome`` says how, ``lines`` by what it differs."""
+
+    place: str
+    title: str
+    word: str
+    outcome: str
+    lines: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """One self-check, of the routes ``first`` and ``second``.
+
+    ``outcome`` is ``exact``, ``verified numerically``, ``undecided`` or ``FAILED``.
+    """
+
+    name: str
+    first: str
+    second: str
+    outcome: str
+    detail: str = ""
+
+    @property
+    def failed(self) -> bool:
+        return self.outcome == "FAILED"
+
+
+@dataclass(frozen=True)
+class ComplaintRow:
+    """One complaint about the description; 1-based ``line`` and ``column``, None where it is about the whole file."""
+
+    severity: str
+    code: str
+    message: str
+    line: int | None = None
+    column: int | None = None
+    length: int | None = None
+    hint: str | None = None
+
+
+@dataclass(frozen=True)
+class FileRow:
+    """A file that was written, by its name in the row's folder."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """One description.
+
+    ``file`` is its path as it was found from the current folder, ``folder`` that of its files inside the batch's; both
+    with ``/`` on every system.  ``message`` says in a sentence what happened where nothing else does (a crash, a
+    budget, a full disk); ``notes`` are further complaints about derivation and writing.
+    """
+
+    file: str
+    folder: str
+    outcome: Outcome
+    name: str = ""
+    problems: tuple[ProblemRow, ...] = ()
+    claims: tuple[ClaimRow, ...] = ()
+    checks: tuple[CheckRow, ...] = ()
+    complaints: tuple[ComplaintRow, ...] = ()
+    files: tuple[FileRow, ...] = ()
+    message: str = ""
+    notes: tuple[str, ...] = ()
+    cached: bool = field(default=False, compare=False)
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def exit_code(self) -> int:
+        return self.outcome.exit_code
+
+    def judged(self, strict_claims: bool) -> Row:
+        """The row, worse by a claim that does not hold where claims have to."""
+        if strict_claims and self.outcome is Outcome.DERIVED and any(claim.word != "held" for claim in self.claims):
+            return replace(self, outcome=Outcome.CLAIMS)
+        return self
+
+
+@dataclass(frozen=True)
+class Summary:
+    """All rows, in the order of their files.
+
+    ``version`` and ``derivation`` are those of mbsym (the second is a digest of its source); ``options`` what was asked
+    of every description, ``budget`` what each was granted (None: no bound); ``shard`` is ``i/n`` where the batch is one
+    of several.
+    """
+
+    rows: tuple[Row, ...]
+    version: str
+    derivation: str
+    problems: tuple[int, ...] | None
+    formats: tuple[str, ...]
+    terms: int
+    shard: str | None = None
+    timeout: float | None = field(default=None, compare=False)
+    memory: int | None = field(default=None, compare=False)
+    seconds: float = field(default=0.0, compare=False)
+
+    @property
+    def totals(self) -> dict[Outcome, int]:
+        """How many rows have each outcome, of those that occur."""
+        count = Counter(row.outcome for row in self.rows)
+        return {outcome: count[outcome] for outcome in Outcome if count[outcome]}
+
+    @property
+    def cached(self) -> int:
+        """How many were up to date."""
+        return sum(row.cached for row in self.rows)
+
+    @property
+    def exit_code(self) -> int:
+        """That of the worst row: 4 above 2 above 1 above 0, and 130 where the batch was stopped."""
+        return worst(row.exit_code for row in self.rows)
+
+
+def worst(codes: Iterable[int]) -> int:
+    return max(codes, default=OK)
