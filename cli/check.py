@@ -3,30 +3,45 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
 from mbsym.expressions.counting import counted
+from mbsym.source import load
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
 from mbsym_cli.options import Options
+
+#: How complaints are written: for people, or for a program that reads them on standard output.
+OUTPUT_FORMATS = ("text", "github", "sarif", "json")
 
 
 @click.command("check")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-def command(files: tuple[Path, ...]) -> None:
+@click.option(
+    "--output-format",
+    type=click.Choice(OUTPUT_FORMATS),
+    default="text",
+    show_default=True,
+    help="github: annotations of a workflow; sarif: a log for code scanning; json: an object a line.",
+)
+def command(files: tuple[Path, ...], output_format: str) -> None:
     """Validate descriptions, those in folders too, without deriving anything.
 
     Prints every complaint with its place; the exit code is 2 if there is an error.
 
     \b
-    Example:
+    Examples:
       mbsym check systems/*.yaml
+      mbsym check systems --output-format sarif > mbsym.sarif
     """
     asked = Options()
     paths = asked.descriptions(files)
     if asked.refused():
         sys.exit(BAD_INPUT)
+    if output_format != "text":
+        sys.exit(_for_programs(paths, output_format))
     worst = OK
     for path in paths:
         try:
@@ -35,6 +50,26 @@ def command(files: tuple[Path, ...]) -> None:
             defect(error, path)
             worst = max(worst, FAILED)
     sys.exit(worst)
+
+
+def _for_programs(paths: Sequence[Path], output_format: str) -> int:
+    """All complaints about all files on standard output, in a format that programs read."""
+    from mbsym.report.findings import Finding, found, github_annotations, json_lines, sarif
+
+    findings: list[Finding] = []
+    worst = OK
+    for path in paths:
+        try:
+            _, complaints, _ = load(path)
+        except Exception as error:
+            defect(error, path)
+            worst = max(worst, FAILED)
+            continue
+        findings += found(printable(path.as_posix()), complaints.sorted())
+        worst = max(worst, BAD_INPUT if complaints.errors else OK)
+    write = {"github": github_annotations, "sarif": sarif, "json": json_lines}[output_format]
+    sys.stdout.write(write(findings))
+    return worst
 
 
 def _check(path: Path) -> int:
