@@ -12,7 +12,6 @@ from rich.text import Text
 from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
-from mbsym.problems.stability.sentences import short
 from mbsym.problems.stability.word import Word
 from mbsym_cli.console import console, printable
 
@@ -63,7 +62,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
         colour = _colour(one.verdict.word)
         cells: list[str | Text] = [str(number), *(_cell(one, name) for name in columns)]
         if judged:
-            cells += [Text(short(one.verdict.word), style=colour), one.verdict.theorem]
+            cells += [Text(str(one.verdict.word), style=colour), one.verdict.theorem]
         cells += [one.proof] if boxes else []
         cells += [one.coordinates_of] if others else []
         table.add_row(*cells)
@@ -97,7 +96,7 @@ def _show_family(number: int, family: EquilibriumFamily) -> None:
         shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
         out.print(Text(f"    {shown} = 0"))
     sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
-    out.print(Text(f"    for example {sample}: {short(family.verdict.word)}"))
+    out.print(Text(f"    for example {sample}: {family.verdict.word}"))
 
 
 def _show_summary(found: Equilibria) -> None:
@@ -105,7 +104,7 @@ def _show_summary(found: Equilibria) -> None:
     out = console()
     count = counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
     words = Counter(one.verdict.word for one in found.equilibria)
-    kinds = "; ".join(f"{n} {short(word)}" for word, n in words.items())
+    kinds = "; ".join(f"{n} {word}" for word, n in words.items())
     families = f", {counted(len(found.families), 'family', 'families')}" if found.families else ""
     out.print(Text.assemble((count + families, "bold"), f": {kinds}" if kinds else ""))
     twice = {one.described for one in found.equilibria if one.described > 1}

@@ -45,7 +45,6 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
     from rich.text import Text
 
     from mbsym.numerics.extremes import sentences
-    from mbsym.problems.stability.sentences import short
     from mbsym.report.extremes_tables import tables
 
     out = console()
@@ -57,7 +56,7 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
         for columns, rows in tables(found):
             # Where nobody's screen is the limit, every line is as long as it must be.
             (out if out.is_terminal else Console(width=WIDE, highlight=False)).print(_table(columns, rows))
-    for sentence in sentences(found, short):
+    for sentence in sentences(found):
         out.print(Text(f"- {sentence}"))
     for reason in found.left_out:
         out.print(Text(f"- left out: {reason}", style="yellow"))

@@ -60,8 +60,8 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if run.dynamics.natural:
         yield "energy", conservation_line(run.conservation)
     else:
-        yield "energy", f"T2 - T0 - U {conservation_line(run.conservation)}"
-        yield "", f"T - U {conservation_line(run.energy_conservation)}"
+        yield "energies", f"generalised, T2 - T0 - U: {conservation_line(run.conservation)}"
+        yield "", f"T - U: {conservation_line(run.energy_conservation)}"
     for kept in run.invariants:
         yield "invariant", invariant_line(kept.conservation)
     for place, text in enumerate(error_lines(run.error)):

@@ -293,8 +293,10 @@ def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:
     """The first integrals of problem 7 but for the energy, and why there are none."""
     if analysis is None:
         return (), ""
+    from mbsym.problems.integrals import ENERGY
+
     try:
-        return tuple(item for item in analysis.integrals if item.kind != "energy"), ""
+        return tuple(item for item in analysis.integrals if item.kind != ENERGY), ""
     except Unavailable as reason:
         return (), str(reason)
 

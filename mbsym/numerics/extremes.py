@@ -8,7 +8,7 @@ said in sentences follows from the rows and from nothing else.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -28,7 +28,6 @@ from mbsym.numerics.digits import FEW, FULL, Arithmetic, Digits, Quantity, Truth
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR, Ladder, Probe, ladders
 from mbsym.numerics.scenario import Scenario
-from mbsym.problems.stability.word import Word
 
 #: Sums are called good where float64 keeps at least so many digits.
 GOOD = 10.0
@@ -252,8 +251,8 @@ def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth
 # --- what follows ---
 
 
-def sentences(found: Extremes, say: Callable[[Word], str] = str) -> Iterator[str]:
-    """Where the model breaks down, in plain words; each follows from the rows.  ``say`` puts a verdict into words."""
+def sentences(found: Extremes) -> Iterator[str]:
+    """Where the model breaks down, in plain words; each follows from the rows."""
     if found.falling is not None:
         yield (
             f"Gravity and the acceleration of {', '.join(found.falling.frames)} are joined before numbers are put in: "
@@ -266,7 +265,7 @@ def sentences(found: Extremes, say: Callable[[Word], str] = str) -> Iterator[str
     yield from _range(found, RATES, "Rates")
     yield from _range(found, EQUILIBRIUM, "States at distances from the unperturbed motion")
     yield from _ratios(found)
-    yield from _verdicts(found, say)
+    yield from _verdicts(found)
     yield from _formulas(found)
 
 
@@ -350,13 +349,13 @@ def _ratios(found: Extremes) -> Iterator[str]:
         )
 
 
-def _verdicts(found: Extremes, say: Callable[[Word], str]) -> Iterator[str]:
+def _verdicts(found: Extremes) -> Iterator[str]:
     borders = [row for row in found.verdicts if row.kind == BORDER]
     subjects = dict.fromkeys(row.subject.rsplit(" from ", 1)[0] for row in borders)
     for subject in subjects:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
         sides = [[row for row in own if row.subject.endswith(f" from {side}")] for side in ("below", "above")]
-        below, above = (_side(rows, say) for rows in sides)
+        below, above = (_side(rows) for rows in sides)
         text = f"{subject}: a border of the first approximation, {below} below and {above} above"
         if all(len({row.judged.exact.word for row in rows}) == 1 for rows in sides):
             text += (
@@ -375,17 +374,17 @@ def _verdicts(found: Extremes, say: Callable[[Word], str]) -> Iterator[str]:
         yield f"float64 eigenvalues contradict the exact verdict for {listed}{more}."
 
 
-def _side(rows: Sequence[VerdictRow], say: Callable[[Word], str]) -> str:
+def _side(rows: Sequence[VerdictRow]) -> str:
     """The verdict on one side of a border; where it varies, all of it."""
     if not rows:
         return "not looked at"
     words = dict.fromkeys(row.judged.exact.word for row in rows)
     if len(words) == 1:
-        return say(rows[0].judged.exact.word)
+        return str(rows[0].judged.exact.word)
     parts = []
     for word in words:
         places = [row.size for row in rows if row.judged.exact.word == word]
-        parts.append(f"{say(word)} {_onward((row.size for row in rows), places)}")
+        parts.append(f"{word} {_onward((row.size for row in rows), places)}")
     return " and ".join(parts)
 
 

@@ -52,6 +52,9 @@ from mbsym.problems.equations import Equations, convective_rate
 
 PROVED, NUMERICAL = "proved", "verified numerically"
 
+#: T_2 - T_0 - U.  The energy T - U is the same where nothing moves as prescribed.
+ENERGY = "generalised energy"
+
 #: Working precision of balls, in bits.
 PRECISION = 256
 #: States at which a candidate must be conserved exactly before it is reported.
@@ -62,7 +65,7 @@ MOST_COORDINATES, MOST_TERMS = 3, 400
 
 @dataclass(frozen=True)
 class Integral:
-    """``kind`` is energy, cyclic momentum, linear momentum or angular momentum; ``of`` a coordinate or an axis."""
+    """``kind`` is generalised energy, cyclic, linear or angular momentum; ``of`` a coordinate or an axis."""
 
     name: str
     kind: str
@@ -75,7 +78,7 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
-    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind != "energy"])
+    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind != ENERGY])
     return tuple(found)
 
 
@@ -129,7 +132,7 @@ def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> I
     for i, speed in enumerate(speeds):
         multiplied = multiplied + speed * residual(scene, equations, i)
     if ring.is_zero(total_rate(scene, integral) - multiplied):
-        yield Integral("generalised energy", "energy", "time", Formula(ring, integral), PROVED)
+        yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), PROVED)
 
 
 def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:

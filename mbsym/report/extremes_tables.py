@@ -12,7 +12,6 @@ from typing import Any
 from mbsym.numerics.digits import FULL
 from mbsym.numerics.extremes import Extremes, Row, sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
-from mbsym.problems.stability.sentences import short
 
 HEADER = (
     "kind",
@@ -132,6 +131,6 @@ def _cell(rows: Sequence[Row]) -> str:
 def _verdicts(own: Sequence[Any]) -> str:
     if not own:
         return ""
-    words = list(dict.fromkeys(short(v.judged.exact.word) for v in own))
+    words = list(dict.fromkeys(str(v.judged.exact.word) for v in own))
     wrong = sum(v.judged.wrong(FLOAT64) for v in own)
     return ", ".join(words) + (f" (float64 wrong {wrong} of {len(own)})" if wrong else "")

@@ -72,7 +72,7 @@ def test_permanent_rotations_are_judged_by_the_reduced_potential(rate: str, expe
     for one in found.equilibria:
         n, w = vertical(one), float(Fraction(rate))
         if least_curvature(n, w) > 1e-5:
-            kind = "stable with respect to the other variables; the cyclic coordinates may drift"
+            kind = "stable but for a drift of cyclic coordinates"
             assert one.verdict.theorem == "Routh"
         elif growth(n, w) > 1e-5:
             kind = "unstable"

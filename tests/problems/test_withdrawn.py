@@ -135,7 +135,7 @@ def test_conserved_falls_with_its_check(monkeypatch: pytest.MonkeyPatch) -> None
     rod = {"name": "rod", "attached to": 0, "rotation": {"axes": [3], "angles": ["q"]}, "mass centre": [1, 0, 0]}
     description = {"mbsym": 1, "name": "torsion", "parameters": ["k"], "bodies": [rod | {"mass": 1}]}
     text = json.dumps(description | {"loads": [{"potential": "k*q**4"}]})
-    assert [item.kind for item in mbsym.loads(text, (7,)).integrals] == ["energy"]
+    assert [item.kind for item in mbsym.loads(text, (7,)).integrals] == ["generalised energy"]
     plant(monkeypatch, wrong)
     assert failures(mbsym.loads(text, (7,))) == {7: "withdrawn"}
 

@@ -89,7 +89,7 @@ def test_equilibrium_needs_the_rotor_along_the_normal(a: Analysis) -> None:
 
 
 def test_the_energy_integral_is_jacobis(a: Analysis) -> None:
-    assert [item.kind for item in a.integrals] == ["energy"]
+    assert [item.kind for item in a.integrals] == ["generalised energy"]
     outcomes = {item.claim.place: item.outcome for item in a.claims}
     assert "holds" in outcomes["Jacobi's integral"]
 

@@ -21,16 +21,13 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
 from flint import arb, fmpq
 
 import mbsym
-import mbsym_cli
 from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Name, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stability.requirements import Case, Requirement
-from mbsym.problems.stability.sentences import SHORT, short
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import Reference, Shown, Statement, cases, statements
 from mbsym.report.latex_description import expression
 from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken, counted
@@ -407,18 +404,6 @@ def test_parts_of_a_condition_have_names_of_their_own():
     assert latex_label("a3 of factor 2, squared factor") == r"a_{3}^{(2)}\text{, squared factor}"
 
 
-def test_a_verdict_has_one_short_form():
-    assert short(Word.STABLE_BUT_CYCLIC) == "stable (cyclic drift)"
-    assert short(Word.ASYMPTOTIC_BUT_CYCLIC) == "asymptotically stable (cyclic drift)"
-    assert len(set(SHORT.values())) == len(SHORT)
-    words = [Word.STABLE, Word.GYROSCOPIC, Word.UNSTABLE, Word.UNDECIDED]
-    assert [short(word) for word in words] == words
-    for name in ("run", "equilibria", "extremes"):
-        assert not [long for long in SHORT if long in (Path(mbsym_cli.__file__).parent / f"{name}.py").read_text()]
-    (line,) = summary(analysis_of("satellite-with-damper.yaml"), (6,), []).problems
-    assert not [text for text in line.lines for long in SHORT if long in text]
-
-
 def test_a_number_stands_in_front_of_a_matrix():
     text = TARGETS["latex"].render(analysis_of("satellite.yaml"), (5,))
     assert r"3 \begin{pmatrix} b - a & f \\ f & f \end{pmatrix}" in text
@@ -708,9 +693,3 @@ def test_a_short_formula_of_many_terms_is_counted() -> None:
         total = total + ring.context.gen(ring.index("parameter", name))
     assert counted(Formula(ring, total**20)).startswith(rf"\text{{({comb(24, 4)} terms, of degree 20;")
     assert counted(Formula(ring, total)) == ""
-
-
-def test_short_verdicts_claim_what_the_long_ones_do() -> None:
-    for long, brief in SHORT.items():
-        assert long.startswith("asymptotically stable") == brief.startswith("asymptotically stable")
-        assert long.startswith("stable with respect") == brief.startswith("stable (")

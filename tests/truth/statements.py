@@ -17,12 +17,12 @@ State = np.ndarray
 #: What may truly be said of a motion of each nature.  The first word is the whole truth, the others say less.
 ASYMPTOTIC = "asymptotically stable"
 STABLE = "stable"
-CRITICAL = "stable in first approximation only, critical"
+CRITICAL = "stable in first approximation only"
 GYROSCOPIC = "gyroscopically stabilised only"
 UNSTABLE = "unstable"
-DRIFTS = "stable with respect to the other variables; the cyclic coordinates may drift"
-ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable with respect to the other variables; the cyclic coordinates may drift"
-TURNED = "asymptotically stable up to a rotation of space"
+DRIFTS = "stable but for a drift of cyclic coordinates"
+ASYMPTOTIC_BUT_DRIFTS = "asymptotically stable but for a drift of cyclic coordinates"
+TURNED = "asymptotically stable but for a rotation of space"
 NOTHING = ("undecided", "depends on the parameters")
 
 TRUE_OF: Mapping[str, tuple[str, ...]] = {

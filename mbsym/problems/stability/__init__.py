@@ -15,7 +15,7 @@ kind it is only this method that needs it, as it needs roots that do not coincid
 K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
-gyroscopically stabilised only; stable in first approximation only, critical; unstable; depends on the parameters (the
+gyroscopically stabilised only; stable in first approximation only; unstable; depends on the parameters (the
 cases say how); undecided (no theorem applies).  At numerical values it is decided exactly (irrational ones by
 enclosures).  A theorem is named where all its hypotheses are shown:
 

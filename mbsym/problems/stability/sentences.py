@@ -6,15 +6,6 @@ from collections.abc import Callable, Iterable
 
 from mbsym.expressions.counting import counted
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.word import Word
-
-#: The same few words in every table and summary, where the long ones do not fit; what is not listed is short enough.
-SHORT = {
-    Word.STABLE_BUT_CYCLIC: f"{Word.STABLE} (cyclic drift)",
-    Word.ASYMPTOTIC_BUT_CYCLIC: f"{Word.ASYMPTOTIC} (cyclic drift)",
-    Word.ASYMPTOTIC_BUT_TURNED: f"{Word.ASYMPTOTIC} (up to rotation)",
-    Word.CRITICAL: "critical (first approximation)",
-}
 
 HIGHER_ORDER = "Terms of higher order decide."
 
@@ -132,11 +123,6 @@ def sentence(reason: Reason) -> str:
 def explanation(reasons: Iterable[Reason]) -> str:
     """The reasons, one sentence after another."""
     return " ".join(map(sentence, reasons))
-
-
-def short(word: Word) -> str:
-    """The word where there is little room."""
-    return SHORT.get(word, word.value)
 
 
 def with_theorem(word: str, theorem: str) -> str:

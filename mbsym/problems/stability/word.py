@@ -6,19 +6,17 @@ from enum import StrEnum
 
 
 class Word(StrEnum):
-    """A verdict in the words that reports print, in the order of lists; ``sentences`` has shorter ones."""
+    """A verdict in the words that every output prints, tables and JSON included, in the order of lists."""
 
     ASYMPTOTIC = "asymptotically stable"
     #: A turned steady spin is a steady spin: it does not come back.
-    ASYMPTOTIC_BUT_TURNED = "asymptotically stable up to a rotation of space"
+    ASYMPTOTIC_BUT_TURNED = "asymptotically stable but for a rotation of space"
     #: With cyclic coordinates nothing better can hold: they drift.
-    ASYMPTOTIC_BUT_CYCLIC = (
-        "asymptotically stable with respect to the other variables; the cyclic coordinates may drift"
-    )
+    ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable but for a drift of cyclic coordinates"
     STABLE = "stable"
-    STABLE_BUT_CYCLIC = "stable with respect to the other variables; the cyclic coordinates may drift"
+    STABLE_BUT_CYCLIC = "stable but for a drift of cyclic coordinates"
     GYROSCOPIC = "gyroscopically stabilised only"
-    CRITICAL = "stable in first approximation only, critical"
+    CRITICAL = "stable in first approximation only"
     #: No theorem applies.
     UNDECIDED = "undecided"
     #: It is different for different parameters: the cases say how.

@@ -9,7 +9,7 @@ from mbsym.formulas.names import free_name
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.requirements import Method
-from mbsym.problems.stability.sentences import short, with_theorem
+from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
@@ -138,7 +138,7 @@ def _heading(theory: Theory) -> str:
 
 
 def _verdict(verdict: Verdict) -> str:
-    return with_theorem(short(verdict.word), verdict.theorem)
+    return with_theorem(verdict.word, verdict.theorem)
 
 
 def _clause(sentence: str) -> str:

@@ -154,7 +154,7 @@ def test_damping_of_unknown_or_wrong_sign_is_no_energy() -> None:
         return mbsym.loads(RING.replace("LOAD", load).replace("VALUE", "3")).stability.verdict.word
 
     assert verdict("rayleigh: b*y_dot**4/4") == "stable"
-    assert verdict("rayleigh: -b*y_dot**4/4") == "stable in first approximation only, critical"
+    assert verdict("rayleigh: -b*y_dot**4/4") == "stable in first approximation only"
     assert verdict("rayleigh: b*(y_dot**2/2 - y_dot**4/4)") == "stable"  # near the motion it takes energy
     assert verdict("rayleigh: b*(y_dot**2/2 - x_dot**4/4)") != "stable"  # but not from x
 
