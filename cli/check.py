@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+import mbsym
 from mbsym.expressions.counting import counted
 from mbsym.source import load
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
@@ -67,8 +68,12 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
             continue
         findings += found(printable(path.as_posix()), complaints.sorted())
         worst = max(worst, BAD_INPUT if complaints.errors else OK)
-    write = {"github": github_annotations, "sarif": sarif, "json": json_lines}[output_format]
-    sys.stdout.write(write(findings))
+    written = {
+        "github": github_annotations,
+        "sarif": lambda found: sarif(found, mbsym.__version__),
+        "json": json_lines,
+    }
+    sys.stdout.write(written[output_format](findings))
     return worst
 
 

@@ -9,23 +9,33 @@ import gc
 import importlib
 import sys
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 import mbsym
 
-#: name -> module of this package that defines ``command``.
+
+class Listed(NamedTuple):
+    """A command: the module of this package that defines ``command``, and what it does in a line."""
+
+    module: str
+    does: str
+
+
 COMMANDS = {
-    "run": "mbsym_cli.run",
-    "simulate": "mbsym_cli.simulate",
-    "tradeoff": "mbsym_cli.tradeoff",
-    "extremes": "mbsym_cli.extremes",
-    "equilibria": "mbsym_cli.equilibria",
-    "check": "mbsym_cli.check",
-    "convert": "mbsym_cli.convert",
-    "schema": "mbsym_cli.schema",
-    "explain": "mbsym_cli.explain",
+    "new": Listed("new", "Begin a description: asks, or takes an example."),
+    "examples": Listed("examples", "List the systems that come with mbsym, or copy them."),
+    "check": Listed("check", "Validate descriptions without deriving anything."),
+    "run": Listed("run", "Derive the numbered problems and write reports."),
+    "watch": Listed("watch", "Derive a description again whenever it is saved."),
+    "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
+    "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
+    "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
+    "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
+    "convert": Listed("convert", "Convert descriptions between YAML and plain text."),
+    "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
+    "explain": Listed("explain", "Tell what a problem computes, what a description holds."),
 }
 
 
@@ -40,10 +50,16 @@ class LazyGroup(click.Group):
             return None
         # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
         gc.set_threshold(200_000, 20, 20)
-        command: click.Command = importlib.import_module(COMMANDS[name]).command
+        command: click.Command = importlib.import_module(f"mbsym_cli.{COMMANDS[name].module}").command
+        command.short_help = COMMANDS[name].does
         if not any(option.name == "debug" for option in command.params):
             command.params.append(_debug())
         return command
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands, for which none of them is imported."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, listed.does) for name, listed in COMMANDS.items()])
 
     def resolve_command(
         self, context: click.Context, args: list[str]

@@ -88,12 +88,10 @@ def json_lines(findings: Iterable[Finding]) -> str:
     return "".join(json.dumps(asdict(finding), sort_keys=True) + "\n" for finding in findings)
 
 
-def sarif(findings: Sequence[Finding]) -> str:
+def sarif(findings: Sequence[Finding], version: str) -> str:
     """A SARIF log (Static Analysis Results Interchange Format, OASIS 2.1.0) with one run."""
-    from mbsym import __version__
-
     codes = sorted({finding.code for finding in findings})
-    driver = {"name": "mbsym", "version": __version__, "rules": [{"id": code} for code in codes]}
+    driver = {"name": "mbsym", "version": version, "rules": [{"id": code} for code in codes]}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",

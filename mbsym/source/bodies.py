@@ -73,11 +73,16 @@ def _draft(number: int, node: Node, reading: Reading) -> Draft:
     if scalar is None:
         return Draft(number, f"body {number}", node.span, fields, [])
     name = " ".join(scalar.text.split())
-    if not _BODY_NAME.match(name) or len(name) > MAX_BODY_NAME:
+    if not is_body_name(name):
         hint = "letters, digits, blanks and . / _ -, beginning with a letter"
         reading.error("bad-name", f"a body cannot be called {ascii_safe(name)}", scalar.span, hint)
     fields.what = f"body {ascii_safe(name)}"
     return Draft(number, name, scalar.span, fields, [])
+
+
+def is_body_name(name: str) -> bool:
+    """Whether a body may be called so."""
+    return _BODY_NAME.match(name) is not None and len(name) <= MAX_BODY_NAME
 
 
 def _check_repeated(drafts: list[Draft], reading: Reading) -> None:

@@ -26,9 +26,9 @@ _DANGEROUS_STARTS = ("- ", "---", "...")
 
 def to_yaml(system: System) -> str:
     """The description of a system; reading it again gives an equal system."""
-    lines = [f"mbsym: {VERSION}", f"name: {_scalar(system.name)}"]
+    lines = [f"mbsym: {VERSION}", f"name: {scalar_text(system.name)}"]
     if system.description:
-        lines.append(f"description: {_scalar(system.description)}")
+        lines.append(f"description: {scalar_text(system.description)}")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
     lines += _bodies(system)
@@ -37,9 +37,9 @@ def to_yaml(system: System) -> str:
     lines += _mapping("motion", {one.coordinate: motion_shape(one) for one in system.motion})
     lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})
     assumptions = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
-    lines += _list("assumptions", [_scalar(one) for one in assumptions])
+    lines += _list("assumptions", [scalar_text(one) for one in assumptions])
     if system.time_scale is not None:
-        lines += ["", f"dimensionless time: {_scalar(text(system.time_scale))}"]
+        lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
     lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
     lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     lines += _list("claims", [_flow(claim_shape(one, system)) for one in system.claims])
@@ -76,10 +76,10 @@ def _flow(value: Shape) -> str:
             return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
         case list():
             return "[" + ", ".join(_flow(item) for item in value) + "]"
-    return _scalar(value)
+    return scalar_text(value)
 
 
-def _scalar(value: str) -> str:
+def scalar_text(value: str) -> str:
     """Plain where every YAML reader agrees on it, else in double quotes."""
     if _PLAIN.match(value) and not value.startswith(_DANGEROUS_STARTS) and value == value.strip() and value != "-":
         return value

@@ -280,7 +280,7 @@ def test_the_explanations_are_doctests(number: int, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "path", sorted(path for path in SYSTEMS.iterdir() if path.is_file()), ids=lambda path: path.name
+    "path", sorted(path for path in SYSTEMS.iterdir() if path.suffix in {".yaml", ".txt"}), ids=lambda path: path.name
 )
 def test_every_shipped_system_runs_and_checks_itself(path: Path, tmp_path: Path) -> None:
     assert path.read_text().startswith("#"), "the first comment says what the system shows"

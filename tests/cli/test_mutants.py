@@ -24,7 +24,7 @@ from mbsym.source import read, render
 
 ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"
-EVERY = sorted(path for path in SYSTEMS.iterdir() if path.is_file())
+EVERY = sorted(path for path in SYSTEMS.iterdir() if path.suffix in {".yaml", ".txt"})
 
 #: Small systems of every kind: rotations, lengths, springs, dampers, orbits, spins, followers.
 SMALL = [

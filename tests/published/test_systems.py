@@ -16,7 +16,7 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check
 from mbsym.report.brief import brief, ranges
 
 ROOT = SHIPPED.parent
-FILES = sorted(path for path in SHIPPED.iterdir() if path.is_file())
+FILES = sorted(path for path in SHIPPED.iterdir() if path.suffix in {".yaml", ".txt"})
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 
 #: What the sources print and is not so, by place; everything else that is claimed holds.

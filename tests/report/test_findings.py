@@ -37,7 +37,7 @@ def test_an_annotation_is_one_line_whatever_it_tells() -> None:
 
 
 def test_a_sarif_log_points_at_the_same_characters() -> None:
-    log = json.loads(sarif([HOSTILE, WHOLE]))
+    log = json.loads(sarif([HOSTILE, WHOLE], "1.0"))
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
     rules = [rule["id"] for rule in run["tool"]["driver"]["rules"]]

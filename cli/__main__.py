@@ -1,0 +1,5 @@
+"""``python -m mbsym_cli``: the command, of the same interpreter."""
+
+from mbsym_cli.main import main
+
+main()

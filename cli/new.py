@@ -1,0 +1,115 @@
+"""``mbsym new``: a commented description that runs."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable
+from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym.source.starter import NewBody
+
+
+@click.command("new")
+@click.argument("name")
+@click.option("--like", metavar="EXAMPLE", help="Begin with one of the shipped systems instead of questions.")
+def command(name: str, like: str | None) -> None:
+    """Write NAME.yaml, a commented description that runs as it is.
+
+    Asks for the bodies and their joints; with --like, or where nobody can answer, it takes a shipped system.  A file
+    that is there already is not replaced.
+
+    \b
+    Examples:
+      mbsym new crane
+      mbsym new my-pendulum --like pendulum
+    """
+    from mbsym.source.examples import example_like, example_names
+    from mbsym_cli.files import write_whole
+
+    asked = Options()
+    path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
+    if not path.stem.strip() or path.is_dir():
+        asked.complain("NAME", "bad-name", f"no file can be called {printable(name)}")
+    elif path.exists():
+        asked.complain("NAME", "exists", f"{printable(path)} is there already", "choose another name")
+    if like is None and not _answers():
+        like = "pendulum"
+    example = None if like is None else example_like(like)
+    if like is not None and example is None:
+        asked.word("--like", like, example_names(), "example")
+    if asked.refused():
+        sys.exit(BAD_INPUT)
+    title = path.stem.replace("-", " ").replace("_", " ").capitalize()
+    text = _interview(title) if example is None else _renamed(example, title)
+    try:
+        write_whole(path, text)
+    except OSError as error:
+        complain(path, f"cannot be written: {error.strerror}")
+        sys.exit(FAILED)
+    shown = printable(path)
+    click.echo(
+        f"{shown}\n  mbsym run {shown}      derives it;  mbsym watch {shown}  derives it again whenever you save"
+    )
+
+
+def _answers() -> bool:
+    """Whether somebody sits at the terminal."""
+    return sys.stdin is not None and sys.stdin.isatty()
+
+
+def _renamed(example: str, title: str) -> str:
+    """The description of a shipped system under a new name, with its comments."""
+    from mbsym.source.examples import example_text
+    from mbsym.source.yaml_writer import scalar_text
+
+    lines = example_text(example).split("\n")
+    index = next(k for k, line in enumerate(lines) if line.startswith("name:"))
+    lines[index] = f"name: {scalar_text(title)}"
+    return "\n".join([f"# Begun with the example {example} of mbsym.", *lines])
+
+
+def _interview(title: str) -> str:
+    """A description from the answers to a few questions."""
+    from mbsym.source.starter import JOINTS, starter
+
+    title = click.prompt("What is the system called", default=title)
+    count = click.prompt("How many bodies", type=click.IntRange(1, 20), default=1)
+    click.echo("Joints:")
+    for joint, (_, _, told) in JOINTS.items():
+        click.echo(f"    {joint:<7} {told}")
+    bodies: list[NewBody] = []
+    for number in range(1, count + 1):
+        bodies.append(_body(number, bodies))
+    return starter(title, bodies, click.confirm("Does gravity act", default=True))
+
+
+def _body(number: int, earlier: list[NewBody]) -> NewBody:
+    from mbsym.source.starter import JOINTS, NewBody
+
+    known = {body.name for body in earlier}
+    while True:
+        name = click.prompt(f"Body {number}: its name", default=f"body {number}")
+        reason = _why_no_body(name, known)
+        if reason is None:
+            break
+        click.echo(f"  {reason}", err=True)
+    carrier = None
+    if earlier:
+        choice = click.Choice(["0", *(body.name for body in earlier)])
+        answer = click.prompt("  attached to (0: the ground)", type=choice, default=earlier[-1].name)
+        carrier = None if answer == "0" else answer
+    return NewBody(name, carrier, click.prompt("  by a joint", type=click.Choice(list(JOINTS)), default="hinge"))
+
+
+def _why_no_body(name: str, known: set[str]) -> str | None:
+    from mbsym.source.bodies import is_body_name
+
+    if name in known:
+        return "another body is called so"
+    return None if is_body_name(name) else "letters, digits, blanks and . / _ -, beginning with a letter"

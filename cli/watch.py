@@ -1,0 +1,97 @@
+"""``mbsym watch``: derives a description again whenever it is saved."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, INTERRUPTED, OutPath, complain, printable
+
+#: Seconds between two looks at the file, and after which a file that is being saved has settled.
+PERIOD = 0.2
+
+Stamp = tuple[int, int]
+
+
+@click.command("watch")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("-p", "--problems", help="As for run.")
+@click.option("-f", "--format", "formats", help="As for run.")
+@click.option("-o", "--out", type=OutPath(path_type=Path), help="As for run.")
+@click.option("-b", "--brief", is_flag=True, help="Print one line a time.")
+@click.option("--simulate", "seconds", metavar="T", help="Simulate from 0 to T as well.")
+def command(
+    file: Path, problems: str | None, formats: str | None, out: Path | None, brief: bool, seconds: str | None
+) -> None:
+    """Derive FILE as run does, now and whenever it is saved; Ctrl-C ends it.
+
+    A derivation that is under way when the file changes is given up and begun again.
+
+    \b
+    Examples:
+      mbsym watch pendulum.yaml
+      mbsym watch pendulum.yaml --format html --brief
+    """
+    if not file.is_file():
+        complain(file, "there is no such file")
+        sys.exit(BAD_INPUT)
+    arguments = [str(file)]
+    for option, value in (("--problems", problems), ("--format", formats), ("--out", out)):
+        arguments += [] if value is None else [option, str(value)]
+    commands = [["run", *arguments, *(["--brief"] if brief else [])]]
+    if seconds is not None:
+        commands.append(["simulate", str(file), "--time", seconds])
+    try:
+        _watch(file, commands)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
+
+
+def _watch(file: Path, commands: list[list[str]]) -> None:
+    """Endless; each round ends when the file has changed since it began."""
+    while True:
+        stamp = _settled(file)
+        changed = any(_ran(file, stamp, command) for command in commands)
+        if not changed:
+            click.echo(f"{printable(file)}: waiting for changes; Ctrl-C ends", err=True)
+        while _stamp(file) in (stamp, None):
+            time.sleep(PERIOD)
+
+
+def _ran(file: Path, stamp: Stamp, command: list[str]) -> bool:
+    """Runs one command to its end, or until the file changes: whether it did."""
+    child = subprocess.Popen([sys.executable, "-m", "mbsym_cli", *command])
+    try:
+        while child.poll() is None:
+            if _stamp(file) not in (stamp, None):
+                return True
+            time.sleep(PERIOD / 4)
+    finally:
+        if child.poll() is None:
+            child.terminate()
+            child.wait()
+    return False
+
+
+def _stamp(file: Path) -> Stamp | None:
+    """When a file was written and how long it is; None while an editor exchanges it."""
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+def _settled(file: Path) -> Stamp:
+    """The stamp of a file that has not changed for a moment."""
+    last = _stamp(file)
+    while True:
+        time.sleep(PERIOD / 2)
+        now = _stamp(file)
+        if now is not None and now == last:
+            return now
+        last = now

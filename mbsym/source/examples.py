@@ -1,0 +1,35 @@
+"""The systems that are installed with the package, by name."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+
+_PACKAGE = "mbsym_systems"
+_SUFFIX = ".yaml"
+
+
+@cache
+def example_names() -> tuple[str, ...]:
+    """The names of the shipped systems, in alphabetical order: those of their files without the ending."""
+    inside = files(_PACKAGE).iterdir()
+    return tuple(sorted(one.name.removesuffix(_SUFFIX) for one in inside if one.name.endswith(_SUFFIX)))
+
+
+def example_text(name: str) -> str:
+    """The description of a shipped system, with its comments.  Raises KeyError where there is none of that name."""
+    if name not in example_names():
+        raise KeyError(name)
+    return files(_PACKAGE).joinpath(name + _SUFFIX).read_text(encoding="utf-8")
+
+
+def example_like(word: str) -> str | None:
+    """The shipped system that a word means: its name, or the shortest name that ends in it or holds it."""
+    wanted = word.strip().lower().replace("_", "-").replace(" ", "-")
+    names = sorted(example_names(), key=lambda name: (len(name), name))
+    if wanted in names:
+        return wanted
+    ending = [name for name in names if name.endswith(f"-{wanted}")]
+    if wanted == "pendulum":
+        return "simple-pendulum"  # the shortest name would be the pendulum on a cart
+    return next(iter(ending or [name for name in names if wanted and wanted in name]), None)

@@ -1,0 +1,159 @@
+"""A new description, commented, that runs as it is: what ``mbsym new`` writes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.source.yaml_writer import scalar_text as quoted
+
+#: Joint -> (axes of its rotations, what it lets move along its first axis, in words).
+JOINTS: dict[str, tuple[tuple[int, ...], tuple[int, ...], str]] = {
+    "hinge": ((3,), (), "one rotation, about the third axis"),
+    "cardan": ((3, 1), (), "two rotations, about the third and then the first axis"),
+    "ball": ((2, 3, 1), (), "three rotations"),
+    "slider": ((), (1,), "one translation, along the first axis"),
+    "free": ((2, 3, 1), (1, 2, 3), "three translations and three rotations"),
+    "fixed": ((), (), "nothing moves"),
+}
+
+
+@dataclass(frozen=True)
+class NewBody:
+    """A body of a new description: its name, the body that carries it (None: the ground), its joint of JOINTS."""
+
+    name: str
+    carrier: str | None = None
+    joint: str = "hinge"
+
+
+def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
+    """A commented description in YAML of bodies with symbols for everything, and numbers so that it can be simulated.
+
+    Body k has mass m_k, its mass centre at the distance l_k below its joint, principal moments of inertia about the
+    mass centre, coordinates q_k1, q_k2, ...; the next body hangs at the distance d_k below the joint of its carrier.
+    Raises ValueError for an unknown joint, or a carrier that does not stand before its body.
+    """
+    _check(bodies)
+    carriers = {body.carrier for body in bodies}
+    return "\n".join(
+        [
+            "# A description for mbsym.  What follows # is a comment; every formula may hold symbols.",
+            "# Derive and write reports:  mbsym run FILE        What can stand here:  mbsym explain",
+            "mbsym: 1",
+            f"name: {quoted(title)}",
+            "description: Replace this by a sentence on the system, and how its coordinates are measured.",
+            "",
+            "# Constants.  A sign lets more be decided: positive, nonnegative, negative, nonpositive, nonzero, real.",
+            "parameters:",
+            *(line for number, body in enumerate(bodies, 1) for line in _parameters(number, body, carriers)),
+            *(["  g: {sign: positive, meaning: acceleration of gravity}"] if gravity else []),
+            "",
+            "# Bodies in a tree, each attached to an earlier one (0: the inertial frame).  Vectors are written in axes",
+            "# 1, 2, 3: a connection point in those of the carrier, a mass centre in those of the body.",
+            "bodies:",
+            *(line for number, body in enumerate(bodies, 1) for line in _body(number, body, bodies)),
+            *(_gravity() if gravity else []),
+            "",
+            "# The motion about which the equations are linearised and its stability is judged.",
+            "motion:",
+            *(f"  {name}: 0" for name in _coordinates(bodies)),
+            "",
+            "# Numbers, for simulations only; results stay in symbols.",
+            f"values: {{{', '.join(_values(bodies, carriers, gravity))}}}",
+            f"initial: {{{', '.join(_initial(bodies))}}}",
+            "",
+        ]
+    )
+
+
+def _check(bodies: Iterable[NewBody]) -> None:
+    known: set[str | None] = {None}
+    for body in bodies:
+        if body.joint not in JOINTS:
+            raise ValueError(f"there is no joint {ascii_safe(body.joint)}")
+        if body.carrier not in known:
+            raise ValueError(f"{ascii_safe(str(body.carrier))} does not stand before {ascii_safe(body.name)}")
+        known.add(body.name)
+
+
+def _parameters(number: int, body: NewBody, carriers: set[str | None]) -> list[str]:
+    name = f"{body.name}"
+    lines = [
+        f"  m{number}: {{sign: positive, meaning: {quoted(f'mass of {name}')}}}",
+        f"  l{number}: {{sign: positive, meaning: {quoted(f'distance from the joint of {name} to its mass centre')}}}",
+        *(
+            f"  J{number}{axis}: {{sign: positive, meaning: {quoted(f'moment of inertia of {name}, axis {axis}')}}}"
+            for axis in (1, 2, 3)
+        ),
+    ]
+    if body.name in carriers:
+        meaning = quoted(f"distance from the joint of {name} to the next one")
+        lines.append(f"  d{number}: {{sign: positive, meaning: {meaning}}}")
+    return lines
+
+
+def _rotations(number: int, body: NewBody) -> list[str]:
+    return [f"q{number}{index}" for index in range(1, len(JOINTS[body.joint][0]) + 1)]
+
+
+def _translations(number: int, body: NewBody) -> list[str]:
+    return [f"x{number}{axis}" for axis in JOINTS[body.joint][1]]
+
+
+def _coordinates(bodies: Sequence[NewBody]) -> list[str]:
+    return [name for k, body in enumerate(bodies, 1) for name in (*_translations(k, body), *_rotations(k, body))]
+
+
+def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
+    axes, slides, told = JOINTS[body.joint]
+    lines = [f"  - name: {quoted(body.name)}", f"    attached to: {quoted(body.carrier) if body.carrier else 0}"]
+    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier), None)
+    point = ["0", "0" if carrier is None else f"-d{carrier}", "0"]
+    for axis in slides:
+        point[axis - 1] = f"x{number}{axis}" + ("" if point[axis - 1] == "0" else f" - d{carrier}")
+    if axes:
+        angles = ", ".join(_rotations(number, body))
+        lines.append(
+            f"    rotation: {{axes: [{', '.join(map(str, axes))}], angles: [{angles}]}} # {body.joint}: {told}"
+        )
+    else:
+        lines[0] += f" # {body.joint}: {told}"
+    if point != ["0", "0", "0"]:
+        lines.append(f"    connection point: [{', '.join(point)}]")
+    names = [*_translations(number, body), *_rotations(number, body)]
+    return [
+        *lines,
+        f"    mass: m{number}",
+        f"    mass centre: [0, -l{number}, 0]",
+        "    inertia about: mass centre # or: joint",
+        f"    inertia: [J{number}1, J{number}2, J{number}3] # or three rows of a symmetric matrix",
+        f"    coordinates: [{', '.join(names)}]",
+        "",
+    ]
+
+
+def _gravity() -> list[str]:
+    return [
+        "# Forces: 'mbsym explain loads' lists springs, dampers, forces, torques, gravity of a centre, ...",
+        "loads:",
+        "  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}",
+    ]
+
+
+def _values(bodies: Sequence[NewBody], carriers: set[str | None], gravity: bool) -> list[str]:
+    """A slender body each: 1 kg, 0.5 m to its mass centre."""
+    values: list[str] = []
+    for number, body in enumerate(bodies, 1):
+        values += [f"m{number}: 1", f"l{number}: 0.5", f"J{number}1: 0.08", f"J{number}2: 0.01", f"J{number}3: 0.08"]
+        values += [f"d{number}: 1"] if body.name in carriers else []
+    return [*values, *(["g: 9.81"] if gravity else [])]
+
+
+def _initial(bodies: Sequence[NewBody]) -> list[str]:
+    return [
+        f"{name}: 0.{index % 9 + 1}"
+        for k, body in enumerate(bodies, 1)
+        for index, name in enumerate(_rotations(k, body), 1)
+    ]

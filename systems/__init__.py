@@ -1,0 +1,1 @@
+"""The systems that come with mbsym: ``mbsym examples`` lists and copies them."""

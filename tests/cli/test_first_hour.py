@@ -1,0 +1,168 @@
+"""From nothing to a derivation: new descriptions run as they are, examples are copied, saving derives again."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym.analysis import Analysis
+from mbsym.source import read
+from mbsym.source.examples import example_like, example_names, example_text
+from mbsym.source.starter import JOINTS, NewBody, starter
+from mbsym_cli import new
+from mbsym_cli.main import COMMANDS, main
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+
+
+def command(*words: str, answers: str | None = None) -> Result:
+    return CliRunner().invoke(main, list(words), input=answers)
+
+
+# --- the list of commands ---------------------------------------------------------------------------------------------
+
+
+def test_no_line_of_help_is_cut() -> None:
+    lines = command("--help").stdout.splitlines()
+    assert not [line for line in lines if line.rstrip().endswith("...") and "COMMAND" not in line]
+    listed = [line.split()[0] for line in lines[lines.index("Commands:") + 1 :] if line.strip()]
+    assert listed == list(COMMANDS)
+
+
+# --- starters ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+def test_a_body_on_any_joint_runs(joint: str) -> None:
+    """The coordinates are those of the joint: rotations and translations; the equations check themselves."""
+    rotations = {"hinge": 1, "cardan": 2, "ball": 3, "slider": 0, "free": 3, "fixed": 0}[joint]
+    translations = {"slider": 1, "free": 3}.get(joint, 0)
+    bodies = [NewBody("base"), NewBody("arm 2", "base", joint), NewBody("tip", "arm 2")]
+    system, complaints = read(starter("A: b # c", bodies), "new.yaml")
+    assert system is not None, [one.message for one in complaints]
+    assert not complaints.items
+    assert system.name == "A: b # c"
+    assert len(system.coordinates) == 2 + rotations + translations
+    analysis = Analysis(system)
+    assert analysis.checks
+    assert not [check for check in analysis.checks if check.failed]
+
+
+def test_a_starter_refuses_what_is_no_tree() -> None:
+    with pytest.raises(ValueError, match="joint"):
+        starter("x", [NewBody("a", None, "weld")])
+    with pytest.raises(ValueError, match="before"):
+        starter("x", [NewBody("a", "b"), NewBody("b")])
+
+
+# --- new --------------------------------------------------------------------------------------------------------------
+
+
+def test_new_where_nobody_answers_takes_the_pendulum(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert command("new", "my-crane").exit_code == 0
+    text = Path("my-crane.yaml").read_text(encoding="utf-8")
+    system, complaints = read(text, "my-crane.yaml")
+    assert system is not None
+    assert not complaints.items
+    assert system.name == "My crane"
+    assert "# " in text
+    again = command("new", "my-crane")
+    assert again.exit_code == 2
+    assert "there already" in again.stderr
+    assert Path("my-crane.yaml").read_text(encoding="utf-8") == text
+
+
+def test_new_asks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(new, "_answers", lambda: True)  # click's own input stands for a terminal
+    done = command("new", "crane", answers="\n3\ncart\nslider\ncart\nhook\ncart\ncardan\nload\n0\nfree\ny\n")
+    assert done.exit_code == 0, done.output
+    assert "another body is called so" in done.stderr
+    system, _ = read(Path("crane.yaml").read_text(encoding="utf-8"), "crane.yaml")
+    assert system is not None
+    assert [(body.name, body.attached_to) for body in system.bodies] == [("cart", "0"), ("hook", "cart"), ("load", "0")]
+    assert len(system.coordinates) == 1 + 2 + 6
+
+
+@pytest.mark.parametrize(
+    ("word", "name"), [("pendulum", "simple-pendulum"), ("top", "heavy-top"), ("arm", "spatial-arm")]
+)
+def test_like_knows_what_is_meant(word: str, name: str) -> None:
+    assert example_like(word) == name
+
+
+def test_like_guesses_at_slips(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = command("new", "x", "--like", "satelite")
+    assert done.exit_code == 2
+    assert "did you mean 'satellite'?" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+# --- examples ---------------------------------------------------------------------------------------------------------
+
+
+def test_examples_are_the_shipped_systems(tmp_path: Path) -> None:
+    assert set(example_names()) == {path.stem for path in SYSTEMS.glob("*.yaml")}
+    listed = command("examples").stdout
+    assert all(name in listed for name in example_names())
+    assert command("examples", "--all", "--out", str(tmp_path / "mine")).exit_code == 0
+    for name in example_names():
+        text = (tmp_path / "mine" / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text == example_text(name) == (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    assert command("examples", "ziegler", "--out", str(tmp_path / "mine")).exit_code == 2  # nothing is replaced
+    assert command("examples", "zigler").exit_code == 2
+
+
+# --- watch ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_watch_derives_again_on_save(tmp_path: Path) -> None:
+    """First run, a save with a mistake, a save that mends it, a save by exchange of the file; Ctrl-C ends it."""
+    file, log = tmp_path / "p.yaml", tmp_path / "log"
+    good = example_text("simple-pendulum")
+    file.write_text(good, encoding="utf-8")
+    words = [
+        sys.executable,
+        "-m",
+        "mbsym_cli",
+        "watch",
+        str(file),
+        "--brief",
+        "-f",
+        "json",
+        "-o",
+        str(tmp_path / "out"),
+    ]
+    with log.open("w") as stream, subprocess.Popen(words, stdout=stream, stderr=stream, cwd=tmp_path) as child:
+        try:
+            _wait(log, "waiting for changes", 1)
+            assert (tmp_path / "out" / "results.json").exists()
+            file.write_text(good.replace("[theta]", "[thetta]"), encoding="utf-8")
+            _wait(log, "waiting for changes", 2)
+            assert "unknown name" in log.read_text()
+            other = tmp_path / "other"
+            other.write_text(good.replace("Simple pendulum", "Renamed pendulum"), encoding="utf-8")
+            other.replace(file)
+            _wait(log, "waiting for changes", 3)
+            assert "Renamed pendulum" in (tmp_path / "out" / "results.json").read_text()
+            child.send_signal(signal.SIGINT)
+            assert child.wait(30) == 130
+        finally:
+            child.kill()
+
+
+def _wait(log: Path, text: str, count: int) -> None:
+    end = time.monotonic() + 120
+    while log.read_text().count(text) < count:
+        assert time.monotonic() < end, log.read_text()
+        time.sleep(0.05)
