@@ -14,7 +14,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.problems.integrals import PROVED, Integral
+from mbsym.problems.integrals import PROVED, Integral, identifiers
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
             node = Carrier(ring, program, environment)(integral.formula.polynomial)
         except Failure:
             continue
-        column = _column(integral, taken)
+        (column,) = identifiers([integral], taken)
         taken.add(column)
         velocities = [program.input(name) for name in system.velocities]
         slopes = gradient(program, node, velocities)
@@ -68,13 +68,3 @@ def values(known: Sequence[Invariant], times: Any, states: Any) -> list[tuple[An
         size = float(np.max(np.sum(np.abs(rows[1:]), axis=0))) or float(np.max(np.abs(rows[0]))) or 1.0
         found.append((rows[0], size))
     return found
-
-
-def _column(integral: Integral, taken: set[str]) -> str:
-    """``momentum_psi``, ``angular_momentum_3``: letters, digits and underscores, none twice."""
-    short = integral.kind.removeprefix("cyclic ")
-    stem = "_".join(part for part in (short, integral.of) if part).replace(" ", "_")
-    column, count = stem, 2
-    while column in taken:
-        column, count = f"{stem}_{count}", count + 1
-    return column

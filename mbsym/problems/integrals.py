@@ -74,6 +74,20 @@ class Integral:
     status: str
 
 
+def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
+    """A name for each in letters, digits and underscores, none twice or ``taken``: ``momentum_psi``, ``energy_time``."""
+    used, named = set(taken), []
+    for integral in found:
+        short = integral.kind.removeprefix("cyclic ")
+        stem = "_".join(part for part in (short, integral.of) if part).replace(" ", "_")
+        name, count = stem, 2
+        while name in used:
+            name, count = f"{stem}_{count}", count + 1
+        used.add(name)
+        named.append(name)
+    return named
+
+
 def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Programs) -> tuple[Integral, ...]:
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
@@ -179,7 +193,7 @@ def _momenta(
     if not conserved:
         return found
     try:
-        for kind, axis, formula in _candidates(scene):
+        for kind, axis, formula in whole_momenta(scene):
             others = [*known, *(item.formula.polynomial for item in found)]
             wanted = (kind, axis) in conserved and _is_new(formula, others)
             if wanted and is_conserved(scene, equations, formula):
@@ -191,13 +205,15 @@ def _momenta(
     return found
 
 
-def _candidates(scene: Scene) -> list[tuple[str, int, Polynomial]]:
-    """Components along the inertial axes of sum m V_C and of sum (r_C x m V_C + Theta_C omega + h).
+def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
+    """(kind, axis, component) of sum m V_C and of sum (r_C x m V_C + Theta_C omega + h), over the scene's algebra.
+
+    The components are those along the inertial axes 1, 2, 3, angular momenta about the inertial origin.
 
     Axes are turned outwards to the bodies, so that nothing is turned inwards: P.e = sum m V_C.e_k, and
     H.e = sum m (e_k x r_k).V_C + omega.Theta_C e_k with r_k the mass centre from the inertial origin.
     """
-    algebra = scene.ring
+    algebra = scene.algebra
     found = []
     for axis in (3, 1, 2):
         direction = {INERTIAL: axis_vector(algebra, axis, algebra.one)}

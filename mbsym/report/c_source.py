@@ -3,29 +3,28 @@
 Mass matrix, forcing, accelerations by factorisation (never an inverse), right-hand side, energy, generalised energy,
 and the Jacobian of the right-hand side by differentiating the program.  What divides by pivots returns a status: not
 zero where a result is not a finite number, as where the mass matrix is singular.
+
+Every name that the linker or the preprocessor sees begins with the system's (``double_pendulum_mass_matrix``), so that
+two models can be parts of one program.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import fill
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
-from mbsym.algebra.derivative import jacobian
-from mbsym.algebra.failures import Failure, Limit, NoClosedForm
-from mbsym.algebra.program import Node
+from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.programs import generalized_energy
-from mbsym.model.system import velocity_name
 from mbsym.numerics.scenario import exact
 from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.identifiers import prefix_of
+from mbsym.report.model_code import solved
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -48,14 +47,17 @@ _WORDS = """
     j0 j1 jn y0 y1 yn main
     math_errhandling MATH_ERRNO MATH_ERREXCEPT FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FLT_EVAL_METHOD
     SNAN SNANF SNANL FP_LLOGB0 FP_LLOGBNAN X_TLOSS
-    t q qd qdd x xd p M f J MODEL_H MODEL_OK MODEL_NOT_FINITE status slopes
+    t q qd qdd x xd p M f J i status slopes
 """
 RESERVED = frozenset(_WORDS.split())
+#: What the file itself declares, with the prefix of the system in front; those in capitals are constants.
+DECLARED = """
+    parameters defaults coordinate_names parameter_names mass_matrix forcing energy generalized_energy accelerations
+    right_hand_side jacobian H OK NOT_FINITE COORDINATES STATES PARAMETERS
+"""
 
 #: What has a body of its own; the generalised energy has none where it is the energy.
 FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian")
-#: A Jacobian that takes about more operations than this is left out.
-LARGEST_JACOBIAN = 100_000
 
 
 def number(value: Fraction) -> str:
@@ -93,13 +95,13 @@ def header(analysis: Analysis, problems: Sequence[int]) -> str:
 def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
     system, (code, no_code) = analysis.system, programs_of(analysis)
     n = len(system.coordinates)
-    members = injective(system.parameter_names, proposed, taken=RESERVED)
-    writer = Functions(system, DIALECT, RESERVED, proposed, "3.14159265358979323846")
+    prefix = prefix_of(system.name)
+    reserved = RESERVED | declared(prefix)
+    members = injective(system.parameter_names, proposed, taken=reserved)
+    writer = Functions(system, DIALECT, reserved, proposed, "3.14159265358979323846")
     upper = [(i, j) for i in range(n) for j in range(i, n)]
-    if analysis not in _KNOWN:
-        _KNOWN[analysis] = _solved(analysis) if code else _Solved(None, "", None, "")
-    known = _KNOWN[analysis]
-    solved, slopes = known.forward, known.slopes
+    known = solved(analysis)
+    forward, slopes = known.forward, known.slopes
     functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []
     if bodies and code:
@@ -109,17 +111,21 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         generalized = generalized_energy(code, system)
         if generalized is not code.energy:
             functions["generalized"] = writer.function(code.program, [generalized])
-    if bodies and solved:
-        functions["accelerations"] = writer.function(solved.program, solved.accelerations)
+    if bodies and forward:
+        functions["accelerations"] = writer.function(forward.program, forward.accelerations)
     if slopes:
-        assert solved is not None
-        entries = [(i, j) for i, row in enumerate(slopes) for j, node in enumerate(row) if not _zero(solved, node)]
+        assert forward is not None
+        entries = [
+            (i, j) for i, row in enumerate(slopes) for j, node in enumerate(row) if not forward.program.vanishes(node)
+        ]
         if bodies:
-            functions["jacobian"] = writer.function(solved.program, [slopes[i][j] for i, j in entries])
+            functions["jacobian"] = writer.function(forward.program, [slopes[i][j] for i, j in entries])
     return rendered(
         template,
         {},
         system=system,
+        prefix=prefix,
+        capitals=prefix.upper(),
         title=comment(system.name),
         description=fill(comment(system.description), 110),
         n=n,
@@ -131,7 +137,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         no_code=comment(no_code),
         no_solution=comment(known.no_forward),
         no_slopes=comment(known.no_slopes),
-        has={"code": code is not None, "solved": solved is not None, "slopes": slopes is not None},
+        has={"code": code is not None, "solved": forward is not None, "slopes": slopes is not None},
         functions=functions,
         upper=upper,
         entries=entries,
@@ -146,45 +152,15 @@ def proposed(name: str) -> str:
     return plain + "_" if plain in RESERVED else plain
 
 
+def declared(prefix: str) -> frozenset[str]:
+    """The identifiers that the file declares under a prefix."""
+    words = DECLARED.split()
+    return frozenset(f"{prefix.upper() if word.isupper() else prefix}_{word}" for word in words)
+
+
 def comment(words: str) -> str:
     """Text that may stand in a comment: nothing in it ends the comment or continues a line."""
     return " ".join(words.replace("\\", "/").replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").split())
-
-
-@dataclass(frozen=True)
-class _Solved:
-    """Accelerations and their derivatives, or the reasons why there are none."""
-
-    forward: ForwardDynamics | None
-    no_forward: str
-    slopes: tuple[tuple[Node, ...], ...] | None
-    no_slopes: str
-
-
-#: Source and header are written one after the other, from the same program.
-_KNOWN: WeakKeyDictionary[Analysis, _Solved] = WeakKeyDictionary()
-
-
-def _solved(analysis: Analysis) -> _Solved:
-    try:
-        forward = forward_dynamics(analysis.system, analysis.ring)
-    except Failure as reason:
-        return _Solved(None, str(reason), None, "")
-    return _Solved(forward, "", *_slopes(analysis, forward))
-
-
-def _slopes(analysis: Analysis, solved: ForwardDynamics) -> tuple[tuple[tuple[Node, ...], ...] | None, str]:
-    """d q'' / d (q, q'), n rows; or why it is left out."""
-    system = analysis.system
-    names_ = [*system.coordinates, *(velocity_name(name) for name in system.coordinates)]
-    estimate = solved.program.operations(solved.accelerations) * len(names_)
-    if estimate > LARGEST_JACOBIAN:
-        return None, f"it would take some {estimate} operations"
-    return jacobian(solved.program, solved.accelerations, [solved.environment[name] for name in names_]), ""
-
-
-def _zero(solved: ForwardDynamics, node: Node) -> bool:
-    return solved.program.vanishes(node)
 
 
 def _default(value: Expression | None) -> str:

@@ -41,6 +41,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.c_source import RESERVED, proposed
+from mbsym.report.identifiers import prefix_of
 from mbsym.report.targets import TARGETS
 
 BITS = {FLOAT32: 24, FLOAT64: 53, EXTENDED: 64}
@@ -472,7 +473,17 @@ def test_any_precision_agrees_with_balls() -> None:
 COMPILER = shutil.which("cc")
 
 
-def compiled(analysis: Any, folder: Path) -> Any:
+class Compiled:
+    """A shared library: ``mass_matrix`` is its function of that name after the prefix of the system."""
+
+    def __init__(self, path: Path, prefix: str) -> None:
+        self.library, self.prefix = ctypes.CDLL(str(path)), prefix
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.library, f"{self.prefix}_{name}")
+
+
+def compiled(analysis: Any, folder: Path) -> Compiled:
     target = TARGETS["c"]
     for part in (target, *target.companions):
         (folder / part.filename).write_text(part.render(analysis, ()), encoding="utf-8")
@@ -483,7 +494,7 @@ def compiled(analysis: Any, folder: Path) -> Any:
         [COMPILER, *options, "-o", str(library), str(folder / "model.c"), "-lm"], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
-    return ctypes.CDLL(str(library))
+    return Compiled(library, prefix_of(analysis.system.name))
 
 
 def call(function: Any, t: float, arguments: Sequence[Any], parameters: Any, count: int) -> Any:
@@ -527,22 +538,22 @@ def test_c_source_is_within_the_bound(path: Path, tmp_path: Path) -> None:
             assert ball.is_finite()
             assert abs(arb(float(value)) - middle) <= 2 * arb(ball.rad()) + arb(2) ** -1000
 
-    check(programs.program, sum(programs.mass_matrix, ()), call(library.model_mass_matrix, t, [q], values, n * n))
-    check(programs.program, programs.forcing, call(library.model_forcing, t, [q, qd], values, n))
-    check(solved.program, solved.accelerations, call(library.model_accelerations, t, [q, qd], values, n))
-    slope = call(library.model_right_hand_side, t, [x], values, 2 * n)
+    check(programs.program, sum(programs.mass_matrix, ()), call(library.mass_matrix, t, [q], values, n * n))
+    check(programs.program, programs.forcing, call(library.forcing, t, [q, qd], values, n))
+    check(solved.program, solved.accelerations, call(library.accelerations, t, [q, qd], values, n))
+    slope = call(library.right_hand_side, t, [x], values, 2 * n)
     assert list(slope[:n]) == list(qd)
     check(solved.program, solved.accelerations, slope[n:])
-    library.model_energy.restype = ctypes.c_double
+    library.energy.restype = ctypes.c_double
     pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in (q, qd, values)]
-    check(programs.program, [programs.energy], [library.model_energy(ctypes.c_double(t), *pointers)])
+    check(programs.program, [programs.energy], [library.energy(ctypes.c_double(t), *pointers)])
 
-    jacobian = call(library.model_jacobian, t, [x], values, 4 * n * n).reshape(2 * n, 2 * n)
+    jacobian = call(library.jacobian, t, [x], values, 4 * n * n).reshape(2 * n, 2 * n)
     assert np.array_equal(jacobian[:n], np.hstack((np.zeros((n, n)), np.eye(n))))
     for j in range(2 * n):  # central differences of the same function
         step = np.zeros(2 * n)
         step[j] = 1e-5
-        ends = [call(library.model_right_hand_side, t, [x + s * step], values, 2 * n) for s in (1, -1)]
+        ends = [call(library.right_hand_side, t, [x + s * step], values, 2 * n) for s in (1, -1)]
         difference = (ends[0] - ends[1]) / 2e-5
         assert np.allclose(jacobian[:, j], difference, rtol=1e-6, atol=1e-6 * max(1, np.abs(jacobian).max()))
 
@@ -581,9 +592,9 @@ bodies:
 @pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 def test_names_that_c_reserves_compile(tmp_path: Path) -> None:
     library = compiled(mbsym.loads(NASTY), tmp_path)
-    defaults = (ctypes.c_double * 11).in_dll(library, "model_defaults")
+    defaults = (ctypes.c_double * 11).in_dll(library.library, f"{library.prefix}_defaults")
     assert list(defaults) == [1, 2, 3, 4, 5, 6, 7, 8, pytest.approx(3**0.5 * np.pi, rel=1e-15), 2, 1]
-    names = (ctypes.c_char_p * 11).in_dll(library, "model_parameter_names")
+    names = (ctypes.c_char_p * 11).in_dll(library.library, f"{library.prefix}_parameter_names")
     assert [name.decode() for name in names][:3] == ["int", "register", "y0"]
 
 
@@ -611,4 +622,4 @@ bodies:
     for part in (target, *target.companions):
         written = part.render(analysis, ())
         assert "There is no code for the equations of motion: the power 1/3" in written
-        assert "model_mass_matrix" not in written
+        assert "_mass_matrix" not in written
