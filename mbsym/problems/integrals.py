@@ -75,11 +75,14 @@ class Integral:
 
 
 def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
-    """A name for each in letters, digits and underscores, none twice or ``taken``: ``momentum_psi``, ``energy_time``."""
+    """A name for each in letters, digits, underscores, none twice: ``momentum_psi``, ``generalized_energy``.
+
+    None of them is ``taken``.
+    """
     used, named = set(taken), []
     for integral in found:
         short = integral.kind.removeprefix("cyclic ")
-        stem = "_".join(part for part in (short, integral.of) if part).replace(" ", "_")
+        stem = f"{short}_{integral.of}".replace(" ", "_") if integral.kind != ENERGY else "generalized_energy"
         name, count = stem, 2
         while name in used:
             name, count = f"{stem}_{count}", count + 1

@@ -21,7 +21,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import generalized_energy, momenta, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL
-from mbsym.problems.integrals import Integral, identifiers, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, identifiers, whole_momenta
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
     found: Sequence[Integral] = stage.value
     named = [NamedIntegral(name, item.name, item.status) for item, name in zip(found, identifiers(found), strict=True)]
     system = analysis.system
-    lagrangian: dict[tuple[str, str], Node] = {("energy", "time"): generalized_energy(code, system)}
+    lagrangian: dict[tuple[str, str], Node] = {(ENERGY, "time"): generalized_energy(code, system)}
     for name, node in zip(system.coordinates, momenta(code, system), strict=True):
         lagrangian["cyclic momentum", name] = node
     keys = [(item.kind, item.of) for item in found]
