@@ -6,7 +6,7 @@ from typing import Any
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.formulas.python import declared_name
-from mbsym.formulas.shape import Product, Sum, present
+from mbsym.formulas.shape import Product, Sum, Wave, present
 
 
 def to_sympy(ring: Ring, polynomial: Polynomial) -> Any:
@@ -31,9 +31,14 @@ class _Translation:
         under = [self.base(f.base) ** -f.exponent for f in product.under]
         return self.sympy.Mul(coefficient, *over, *under)
 
-    def base(self, base: int | Sum) -> Any:
+    def base(self, base: int | Wave | Sum) -> Any:
         if isinstance(base, Sum):
             return self.sum(base)
+        if isinstance(base, Wave):
+            angle = self.sympy.Add(
+                *(self.sympy.Rational(n.numerator, n.denominator) * self.sympy.Symbol(name) for name, n in base.angle)
+            )
+            return self.sympy.sin(angle) if base.kind == "sine" else self.sympy.cos(angle)
         if base not in self._atoms:
             self._atoms[base] = self._atom(self.ring.generators[base])
         return self._atoms[base]

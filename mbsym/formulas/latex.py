@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
-from mbsym.formulas.shape import Factor, Product, Sum, present
+from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, present
 
 _VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
 #: Greek letters that LaTeX has no command for: they look Latin.
@@ -32,7 +32,7 @@ _NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan"}
 
 def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
     """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus."""
-    return LatexPrinter(ring, breaks).sum(present(ring, polynomial))
+    return LatexPrinter(ring, breaks).sum(present(ring, polynomial, angles_or("shorter")))
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,6 +166,8 @@ class LatexPrinter:
         return sorted(factors, key=self._is_sine)
 
     def _is_sine(self, factor: Factor) -> bool:
+        if isinstance(factor.base, Wave):
+            return True
         return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _COMMANDS
 
     def _is_parameter(self, index: int) -> bool:
@@ -181,6 +183,8 @@ class LatexPrinter:
     def factor(self, factor: Factor, depth: int = 0) -> str:
         if isinstance(factor.base, int):
             return self.atom(factor.base, factor.exponent)
+        if isinstance(factor.base, Wave):
+            return self.wave(factor.base, factor.exponent)
         opening, closing = _BRACKETS[min(self._height(factor.base), len(_BRACKETS)) - 1]
         raised = f"^{{{factor.exponent}}}" if factor.exponent != 1 else ""
         return f"{opening}{self.sum(factor.base, depth + 1)}{closing}{raised}"
@@ -212,6 +216,18 @@ class LatexPrinter:
             return self.names[g.name].accented(_DOTS[g.kind]), ""
         return str(self.names[g.name]), ""
 
+    def wave(self, wave: Wave, exponent: int = 1) -> str:
+        """``\\cos(q_1 - 2 q_2)``, ``\\sin^{2} 2 q``."""
+        pieces: list[str] = []
+        for name, n in wave.angle:
+            pieces.append((" - " if n < 0 else " + ") if pieces else ("-" if n < 0 else ""))
+            symbol, top = str(self.names[name]), abs(n.numerator)
+            times = "" if top == 1 else f"{top} "
+            pieces.append(f"{times}{symbol}" if n.denominator == 1 else f"\\frac{{{times}{symbol}}}{{{n.denominator}}}")
+        raised = f"^{{{exponent}}}" if exponent != 1 else ""
+        angle = "".join(pieces)
+        return f"{_COMMANDS[wave.kind]}{raised}" + (f" {angle}" if len(wave.angle) == 1 else f"({angle})")
+
     def _angle(self, g: Generator) -> str:
         if g.argument is not None:
             return f"({self._quiet(g.argument)})"
@@ -219,7 +235,7 @@ class LatexPrinter:
         return " " + symbol if g.denominator == 1 else f"\\frac{{{symbol}}}{{{g.denominator}}}"
 
     def _quiet(self, argument: Any) -> str:
-        return LatexPrinter(self.ring).sum(present(self.ring, argument))
+        return LatexPrinter(self.ring).sum(present(self.ring, argument, angles_or("shorter")))
 
 
 def _joined(factors: Sequence[str]) -> str:

@@ -6,14 +6,14 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 from __future__ import annotations
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.formulas.shape import Factor, Product, Sum, present
+from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, present
 
 _SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
 
 
 def python_text(ring: Ring, polynomial: Polynomial) -> str:
-    """The polynomial as one line of Python."""
-    return _PythonPrinter(ring).sum(present(ring, polynomial))
+    """The polynomial as one line of Python, in products of sines and cosines unless sums were asked for."""
+    return _PythonPrinter(ring).sum(present(ring, polynomial, angles_or("products")))
 
 
 def declared_name(generator: Generator) -> str:
@@ -61,7 +61,10 @@ class InfixPrinter:
         return "*".join(over) + quotient
 
     def factor(self, factor: Factor) -> str:
-        base = self.atom(factor.base) if isinstance(factor.base, int) else f"({self.sum(factor.base)})"
+        if isinstance(factor.base, int):
+            base = self.atom(factor.base)
+        else:
+            base = self.wave(factor.base) if isinstance(factor.base, Wave) else f"({self.sum(factor.base)})"
         return base if factor.exponent == 1 else f"{base}{self.power}{factor.exponent}"
 
     def atom(self, index: int) -> str:
@@ -72,13 +75,28 @@ class InfixPrinter:
     def _atom(self, g: Generator) -> str:
         if g.kind not in FUNCTION_OF_KIND:
             return self.symbol(g)
-        argument = self._angle(g) if g.argument is None else self.sum(present(self.ring, g.argument))
+        if g.argument is None:
+            return self.call(FUNCTION_OF_KIND[g.kind], self._angle(g))
+        argument = self.sum(present(self.ring, g.argument, angles_or("products")))
         return self.call(FUNCTION_OF_KIND[g.kind] or g.name, argument)
+
+    def wave(self, wave: Wave) -> str:
+        """``cos(q1 - 2*q2)``."""
+        pieces: list[str] = []
+        for name, n in wave.angle:
+            pieces.append((" - " if n < 0 else " + ") if pieces else ("-" if n < 0 else ""))
+            times = "" if abs(n.numerator) == 1 else f"{abs(n.numerator)}*"
+            pieces.append(times + self._named(name) + ("" if n.denominator == 1 else f"/{n.denominator}"))
+        return self.call(FUNCTION_OF_KIND[wave.kind], "".join(pieces))
+
+    def _named(self, name: str) -> str:
+        """A coordinate, prescribed quantity, parameter or the time as it stands under a sine."""
+        kind = next(k for k in ("coordinate", "prescribed", "parameter", "time") if self.ring.has(k, name))
+        return self.atom(self.ring.index(kind, name))
 
     def _angle(self, g: Generator) -> str:
         """What stands under the sine of a named angle."""
-        kind = next(k for k in ("coordinate", "prescribed", "parameter", "time") if self.ring.has(k, g.name))
-        angle = self.atom(self.ring.index(kind, g.name))
+        angle = self._named(g.name)
         return angle if g.denominator == 1 else f"{angle}/{g.denominator}"
 
 

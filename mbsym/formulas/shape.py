@@ -3,7 +3,8 @@
 The tree is made once per polynomial and every printer walks it.  A polynomial is collected by accelerations and
 velocities first, then by coordinates and their sines and cosines; what stands before these monomials, a polynomial in
 the parameters, is factored, and collected further where that makes it shorter: ``Jx + m*r*(l + r) + m*l**2/3``.
-Rational content and common factors stand in front, reciprocals in denominators.
+Rational content and common factors stand in front, reciprocals in denominators.  Sines and cosines of several angles
+stand as products, as the ring has them, or as waves of sums of angles where that is shorter (``angle_sums``).
 
 The order is fixed and human: declared order, highest degree first, and no sum starts with a minus sign if it can be
 helped.  Factoring is for people; polynomials too long for them are only grouped, which is linear in their length.
@@ -13,9 +14,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from fractions import Fraction
 from math import gcd, lcm, prod
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
@@ -24,6 +28,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas import angle_sums
 from mbsym.formulas.numerals import writable
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
@@ -42,6 +47,13 @@ FACTOR_COEFFICIENTS = 3000
 COLLECT = 40
 #: Beyond so many terms only the variable that occurs most often is tried.
 COLLECT_BEST = 14
+#: Both forms of shorter polynomials are made and compared; of longer ones only the counts of terms are.
+COMPARED = 60
+#: A longer polynomial stands in sums of angles if that leaves at most this share of its terms.
+WORTH_SUMS = Fraction(3, 4)
+
+#: Sines and cosines as products of those of single angles, as waves of sums of angles, or what is shorter to read.
+Angles = Literal["products", "sums", "shorter"]
 
 Rational = Any  # flint.fmpq
 #: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
@@ -51,10 +63,17 @@ Terms = dict[Monomial, int]
 Split = Callable[[Monomial], tuple[Monomial, Monomial]]
 
 
-class Factor(NamedTuple):
-    """``base ** exponent``; the base is the number of a generator (never a reciprocal) or a sum."""
+class Wave(NamedTuple):
+    """sin or cos (``kind`` sine or cosine) of ``q1 + 2*q2 - q3/2``: (name, coefficient) in reading order."""
 
-    base: int | Sum
+    kind: str
+    angle: tuple[tuple[str, Fraction], ...]
+
+
+class Factor(NamedTuple):
+    """``base ** exponent``; the base is the number of a generator (never a reciprocal), a wave or a sum."""
+
+    base: int | Wave | Sum
     exponent: int = 1
 
 
@@ -80,12 +99,30 @@ class Sum:
     terms: tuple[Product, ...]
 
 
-def present(ring: Ring, polynomial: Polynomial) -> Sum:
+_ASKED: ContextVar[Angles | None] = ContextVar("angles", default=None)
+
+
+@contextmanager
+def angles_as(choice: Angles | None) -> Iterator[None]:
+    """Within this block every formula that is written has its angles so; None leaves it to each kind of text."""
+    token = _ASKED.set(choice)
+    try:
+        yield
+    finally:
+        _ASKED.reset(token)
+
+
+def angles_or(usual: Angles) -> Angles:
+    """What was asked for, else what a kind of text usually has."""
+    return _ASKED.get() or usual
+
+
+def present(ring: Ring, polynomial: Polynomial, angles: Angles = "products") -> Sum:
     """The shape of a polynomial in normal form."""
     presenter = _PRESENTERS.get(ring)
     if presenter is None:
         presenter = _PRESENTERS[ring] = _Presenter(ring)
-    return presenter(polynomial)
+    return presenter(polynomial, angles)
 
 
 def leaves(shape: Sum) -> int:
@@ -96,7 +133,7 @@ def leaves(shape: Sum) -> int:
 def _product_leaves(product: Product) -> int:
     number = 0 if abs(product.coefficient) == 1 else 1
     factors = (*product.over, *product.under)
-    inner = sum(1 if isinstance(f.base, int) else leaves(f.base) for f in factors)
+    inner = sum(leaves(f.base) if isinstance(f.base, Sum) else 1 for f in factors)
     return max(number + inner, 1)
 
 
@@ -107,7 +144,9 @@ _MOTION = {"velocity": _VELOCITY, "acceleration": 4}
 _PLACE = ("coordinate", "prescribed", "time", "sine", "cosine")
 #: Numbers that order by level, place and exponent: (level, adjoined, declared, within) and, in keys, the exponent.
 _PLACES, _EXPONENTS = 1 << 24, 1 << 32
-_END = 1 << 80
+#: Within the place of its first angle a wave is placed by its other angles, up to so many bits.
+_WITHIN = 240
+_END = 1 << 512
 
 
 class _Presenter:
@@ -121,31 +160,43 @@ class _Presenter:
         self._places: dict[int, int] = {}
         self._inverted: dict[int, Polynomial | None] = {}
         self._pairs: dict[tuple[int, int], int] = {}
-        self._shapes: dict[int, tuple[Polynomial, Sum]] = {}
+        self._shapes: dict[tuple[int, Angles], tuple[Polynomial, Sum]] = {}
         self._factored: dict[frozenset[Any], Product] = {}
         self._brackets: dict[frozenset[Any], Sum] = {}
         self._negatives: dict[Sum, Sum] = {}
         self._ranks: dict[Sum, int] = {}
+        self._lengths: dict[Sum, int] = {}
+        self._waves = _Waves(self)
 
-    def __call__(self, polynomial: Polynomial) -> Sum:
-        known = self._shapes.get(id(polynomial))
+    def __call__(self, polynomial: Polynomial, angles: Angles = "products") -> Sum:
+        known = self._shapes.get((id(polynomial), angles))
         if known is None:
             # The polynomial is kept with its shape, so that its id stays its own.
-            known = self._shapes[id(polynomial)] = (polynomial, self._present(polynomial))
+            known = self._shapes[id(polynomial), angles] = (polynomial, self._present(polynomial, angles))
         return known[1]
 
-    def _present(self, polynomial: Polynomial) -> Sum:
-        numerator, under = self._as_fraction(polynomial)
+    def _present(self, polynomial: Polynomial, angles: Angles) -> Sum:
+        numerator, under = self._as_fraction(polynomial, angles)
         scale, terms = self._terms(numerator)
         if not terms:
             return Sum(())
+        joined = None if angles == "products" else self._waves.joined(terms)
+        if joined is None:
+            return self._shape(scale, terms, under)
+        if angles == "sums":
+            return self._shape(scale * joined[0], joined[1], under)
+        if len(terms) > COMPARED and len(joined[1]) > WORTH_SUMS * len(terms):
+            return self(polynomial)
+        return min(self(polynomial), self._shape(scale * joined[0], joined[1], under), key=self.length)
+
+    def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
         product = product._replace(coefficient=product.coefficient / scale)
         if under:
             return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
         return _opened(product)
 
-    def _as_fraction(self, polynomial: Polynomial) -> tuple[Polynomial, list[Factor]]:
+    def _as_fraction(self, polynomial: Polynomial, angles: Angles) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
         long = (
             [k for k in occurring([polynomial]) if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
@@ -157,7 +208,7 @@ class _Presenter:
             except NoClosedForm:  # nothing that gets shorter: term by term it is written all the same
                 return polynomial, []
             if len(numerator) < len(polynomial):
-                return numerator, [Factor(self(p), exponent) for p, exponent in denominators]
+                return numerator, [Factor(self(p, angles), exponent) for p, exponent in denominators]
         return polynomial, []
 
     def _terms_of_denominator(self, polynomial: Polynomial, reciprocals: Sequence[int]) -> int:
@@ -194,7 +245,7 @@ class _Presenter:
             g = self.ring.generators[index]
             within = ("sine", "cosine").index(g.kind) + 1 if g.kind in ("sine", "cosine") else 0
             declared = self._declared[g.name] if g.argument is None else _PLACES - index
-            self._places[index] = ((5 - self.level(index)) * 2 * _PLACES + declared) * 4 + within
+            self._places[index] = (((5 - self.level(index)) * 2 * _PLACES + declared) * 4 + within) << _WITHIN
         return self._places[index]
 
     def _inverse_of(self, index: int) -> Polynomial | None:
@@ -290,6 +341,8 @@ class _Presenter:
     ) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """(cos x - 1)*(cos x + 1) is -sin(x)**2."""
         for index in sorted({k for part, _ in parts for m in part for k, _ in m}, key=self.place):
+            if index >= self._waves.first:
+                continue
             g = self.ring.generators[index]
             if g.kind != "cosine" or g.argument is not None:
                 continue
@@ -327,7 +380,7 @@ class _Presenter:
         for index, exponent in monomial:
             inverted = self._inverse_of(index)
             if inverted is None:
-                over.append(Factor(index, exponent))
+                over.append(Factor(index if index < self._waves.first else self._waves[index], exponent))
             else:
                 under += _powers(self(inverted), exponent)
         for terms, exponent in brackets:
@@ -423,11 +476,126 @@ class _Presenter:
         """The highest level of anything in a factor."""
         if isinstance(factor.base, int):
             return self.level(factor.base)
+        if isinstance(factor.base, Wave):
+            return self.level(self._waves.index(factor.base))
         known = self._ranks.get(factor.base)
         if known is None:
             inner = (self.rank(f) for term in factor.base.terms for f in (*term.over, *term.under))
             known = self._ranks[factor.base] = max(inner, default=0)
         return known
+
+    def length(self, shape: Sum) -> int:
+        """How much is read: names, numbers, functions, signs; brackets and fractions."""
+        if shape not in self._lengths:
+            self._lengths[shape] = sum(map(self._length_of_product, shape.terms))
+        return self._lengths[shape]
+
+    def _length_of_product(self, product: Product) -> int:
+        written = 1 + (abs(product.coefficient.p) != 1) + (product.coefficient.q != 1) + bool(product.under)
+        for factor in (*product.over, *product.under):
+            written += factor.exponent != 1
+            if isinstance(factor.base, Sum):
+                written += 1 + self.length(factor.base)
+            elif isinstance(factor.base, Wave):
+                written += 2 * len(factor.base.angle) + sum(abs(n) != 1 for _, n in factor.base.angle)
+            else:
+                written += 2 if self.ring.generators[factor.base].kind in ("sine", "cosine") else 1
+        return written
+
+
+class _Waves:
+    """Sines and cosines of sums of angles in the part of generators, numbered from ``first`` on."""
+
+    def __init__(self, presenter: _Presenter) -> None:
+        ring = presenter.ring
+        self.presenter = proxy(presenter)
+        self.first = len(ring.generators)
+        self.names = [name for name in presenter._declared if name in ring.angles]
+        self._numbers = {name: ring.angles[name] for name in self.names}
+        self._atoms = [(ring.index("sine", name), ring.index("cosine", name)) for name in self.names]
+        self._codes: dict[int, tuple[int, int]] = {}  # of a generator: its angle, its weight in a code
+        for angle, (sine, cosine) in enumerate(self._atoms):
+            self._codes[sine], self._codes[cosine] = (angle, 1 << 8 * angle), (angle, 2 << 8 * angle)
+        self._made: list[Wave] = []
+        self._indices: dict[Wave, int] = {}
+        self._known: dict[angle_sums.Wave, tuple[int, int]] = {}
+
+    def __getitem__(self, index: int) -> Wave:
+        return self._made[index - self.first]
+
+    def index(self, wave: Wave) -> int:
+        return self._indices[wave]
+
+    def joined(self, terms: Terms) -> tuple[int, Terms] | None:
+        """(a whole number, the terms times it) with waves where they are shorter, term by term of all else; or None."""
+        beside: dict[Monomial, dict[int, int]] = {}
+        codes = self._codes
+        for monomial, coefficient in terms.items():
+            code, rest = 0, []
+            for pair in monomial:
+                known = codes.get(pair[0])
+                if known is None:
+                    rest.append(pair)
+                elif pair[1] > angle_sums.MOST_POWER:
+                    return None
+                else:
+                    code += known[1] * pair[1]
+            beside.setdefault(tuple(rest), {})[code] = coefficient
+        if len(beside) == len(terms):
+            return None
+        found: list[tuple[Monomial, int, tuple[angle_sums.Part, ...]]] = []
+        below, any_joined = 1, False
+        for outside, products in beside.items():
+            content = gcd(*products.values())
+            parts = None
+            if len(products) > 1:
+                parts = angle_sums.joined(frozenset([(code, c // content) for code, c in products.items()]))
+            if parts is None:
+                parts = tuple([angle_sums.Part(Fraction(c // content), (), code) for code, c in products.items()])
+            else:
+                any_joined = True
+                below = lcm(below, *(part.weight.denominator for part in parts))
+            found.append((outside, content, parts))
+        if not any_joined:
+            return None
+        result: Terms = {}
+        for outside, content, parts in found:
+            for part in parts:
+                weight = part.weight * content * below
+                monomial = self._monomial(outside, part)
+                result[monomial] = result.get(monomial, 0) + weight.numerator
+        return below, result
+
+    def _monomial(self, outside: Monomial, part: angle_sums.Part) -> Monomial:
+        pairs = list(outside)
+        for wave in part.waves:
+            pairs.append((self._generator(wave), wave.power))
+        for angle, sine, cosine in angle_sums.unpacked(part.code):
+            pairs += [(self._atoms[angle][0], 1)] * sine
+            if cosine:
+                pairs.append((self._atoms[angle][1], cosine))
+        return tuple(sorted(pairs, key=lambda pair: self.presenter.place(pair[0])))
+
+    def _generator(self, wave: angle_sums.Wave) -> int:
+        """The number that stands for a wave: a generator's own for sin and cos of a single angle."""
+        if len(wave.combination) == 1 and wave.combination[0][1] == 1:
+            return self._atoms[wave.combination[0][0]][0 if wave.sine else 1]
+        ordered = sorted(wave.combination, key=lambda item: item[1] < 0)
+        angle = tuple((self.names[k], Fraction(n, self._numbers[self.names[k]])) for k, n in ordered)
+        made = Wave("sine" if wave.sine else "cosine", angle)
+        if made not in self._indices:
+            index = self._indices[made] = self.first + len(self._made)
+            self._made.append(made)
+            presenter = self.presenter
+            presenter._inverted[index] = None
+            presenter._levels[index] = max(presenter.level(self._atoms[k][0]) for k, _ in wave.combination)
+            place = 0
+            for k, n in wave.combination[:11]:
+                place = (place << 20) + (k << 8) + 128 + n
+            place <<= 20 * (11 - min(len(wave.combination), 11))
+            first = presenter.place(self._atoms[wave.combination[0][0]][1])
+            presenter._places[index] = first + (1 << _WITHIN) + 2 * place + wave.sine
+        return self._indices[made]
 
 
 def _by(variable: int) -> Split:
@@ -491,12 +659,14 @@ def _ordered(presenter: _Presenter, factors: Sequence[Factor]) -> tuple[Factor, 
     """Parameters, then motion, then angles; long brackets in the motion come before what multiplies them."""
     if len(factors) < 2:
         return tuple(factors)
-    mixed = any(not isinstance(f.base, int) and presenter.rank(f) for f in factors)
+    mixed = any(isinstance(f.base, Sum) and presenter.rank(f) for f in factors)
 
     def key(factor: Factor) -> tuple[Any, ...]:
         rank = presenter.rank(factor)
-        if not isinstance(factor.base, int):
+        if isinstance(factor.base, Sum):
             return (4 if rank else 1,)
+        if isinstance(factor.base, Wave):
+            return (3 if rank else 0, 0, presenter.place(presenter._waves.index(factor.base)))
         if rank >= _VELOCITY:
             return (5 if mixed else 2, -rank, presenter.place(factor.base))
         return (3 if rank else 0, 0, presenter.place(factor.base))
@@ -525,7 +695,7 @@ def _opened(product: Product) -> Sum:
     if product.under or len(product.over) != 1:
         return Sum((product,))
     (factor,) = product.over
-    if isinstance(factor.base, int) or factor.exponent != 1:
+    if not isinstance(factor.base, Sum) or factor.exponent != 1:
         return Sum((product,))
     content = product.coefficient
     terms = [Product(content * term.coefficient, term.over, term.under) for term in factor.base.terms]

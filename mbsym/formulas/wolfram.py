@@ -14,7 +14,7 @@ from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
-from mbsym.formulas.shape import present
+from mbsym.formulas.shape import angles_or, present
 
 _PRIMES = {"velocity": "'", "acceleration": "''"}
 _FUNCTIONS = {"sqrt": "Sqrt", "atan": "ArcTan"}
@@ -24,7 +24,7 @@ _SHORT_SYMBOLS = ("Do", "If", "In", "Im", "Re", "Or", "On", "Tr", "Pi", "Up", "B
 
 def wolfram_text(ring: Ring, polynomial: Polynomial, functions_of_time: bool = True) -> str:
     """The polynomial on one line; coordinates as functions of t, or as plain symbols (``\\[Theta]dot``)."""
-    return WolframPrinter(ring, functions_of_time).sum(present(ring, polynomial))
+    return WolframPrinter(ring, functions_of_time).sum(present(ring, polynomial, angles_or("products")))
 
 
 def wolfram_name(name: str) -> str:

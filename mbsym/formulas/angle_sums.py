@@ -1,0 +1,312 @@
+"""Polynomials in sines and cosines of several angles as sums of waves, where that is shorter to read.
+
+``sin q1 cos q2 + cos q1 sin q2`` is ``sin(q1 + q2)``.  The ring keeps products of sines and cosines of single angles.
+A polynomial in these is, exactly, a Fourier polynomial: each term an amplitude times cos or sin of n1 q1 + n2 q2 + ...
+The angles that are joined are chosen by the length of what is read: all of a linked set, some of them, or none; what
+is joined in one part may stand as products in another.  1 and cos(2 u) of equal weight are a square of cos u or sin u.
+
+Monomials are packed: angle k has the byte 2*(power of its cosine) + (power of its sine, 0 or 1), as normal forms have.
+Waves are packed too: the sum of n_k * 256**k, and whether it is a sine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from itertools import combinations
+from math import comb, gcd, lcm
+from typing import NamedTuple
+
+#: A packed product of sines and cosines.
+Code = int
+#: Multiples of the angles; the first that is not zero is positive.
+Combination = tuple[tuple[int, int], ...]
+
+#: More angles than this, or products than this, are not joined at once: 2**angles waves may come of each.
+MOST_ANGLES, MOST_PRODUCTS = 6, 64
+#: Higher powers of one cosine are left alone.
+MOST_POWER = 8
+#: Sets of linked angles with more members are tried whole and in pairs only.
+_ALL_SUBSETS = 4
+
+_BITS = 8
+_BYTE = (1 << _BITS) - 1
+
+
+class Wave(NamedTuple):
+    """cos or sin of a combination of angles, to a power (2 at most)."""
+
+    sine: bool
+    combination: Combination
+    power: int = 1
+
+
+class Part(NamedTuple):
+    """weight * waves * (what stays a product of sines and cosines)."""
+
+    weight: Fraction
+    waves: tuple[Wave, ...]
+    code: Code
+
+
+def packed(exponents: Iterable[tuple[int, int, int]]) -> Code:
+    """From (angle, power of its sine, power of its cosine)."""
+    return sum((2 * cosine + sine) << (_BITS * angle) for angle, sine, cosine in exponents)
+
+
+def unpacked(code: Code) -> Iterator[tuple[int, int, int]]:
+    """(angle, power of its sine, power of its cosine)."""
+    angle = 0
+    while code:
+        byte = code & _BYTE
+        if byte:
+            yield angle, byte & 1, byte >> 1
+        code >>= _BITS
+        angle += 1
+
+
+@lru_cache(maxsize=1 << 14)
+def joined(products: frozenset[tuple[Code, int]]) -> tuple[Part, ...] | None:
+    """The shortest presentation found of the sum of weight * product; None where nothing is shorter than products.
+
+    The same value, exactly.  Depends on the products only, and not on their order.
+    """
+    if len(products) < 2 or len(products) > MOST_PRODUCTS:
+        return None
+    found = _shortest(dict(products))
+    return None if found is None else tuple(sorted(found, key=_order))
+
+
+def may_join(products: Mapping[Code, int]) -> bool:
+    """Whether there is anything to look for: two products that differ as the parts of a sum of angles do."""
+    return bool(_linked(products)) or bool(_squared(products))
+
+
+def _order(part: Part) -> tuple[object, ...]:
+    return (part.waves, part.code)
+
+
+def _shortest(products: Mapping[Code, int]) -> list[Part] | None:
+    best: list[Part] | None = None
+    least = length_of_parts([Part(Fraction(weight), (), code) for code, weight in products.items()])
+    for block in _candidates(products):
+        parts = _over(products, block)
+        length = length_of_parts(parts)
+        if length < least:
+            best, least = parts, length
+    if best is None:
+        return None
+    # What stands beside each wave is a polynomial in the angles that are left.
+    beside: dict[tuple[Wave, ...], dict[Code, Fraction]] = {}
+    for part in best:
+        beside.setdefault(part.waves, {})[part.code] = part.weight
+    found: list[Part] = []
+    for waves, rest in beside.items():
+        found += _further(waves, rest)
+    return found
+
+
+def _further(waves: tuple[Wave, ...], rest: dict[Code, Fraction]) -> list[Part]:
+    if len(rest) > 1:
+        below = max(weight.denominator for weight in rest.values())  # powers of two
+        again = _shortest({code: int(weight * below) for code, weight in rest.items()})
+        if again is not None:
+            return [Part(part.weight / below, tuple(sorted((*waves, *part.waves))), part.code) for part in again]
+    return [Part(weight, waves, code) for code, weight in rest.items()]
+
+
+# --- which angles to join ---------------------------------------------------------------------------------------------
+
+
+def _candidates(products: Mapping[Code, int]) -> Iterator[tuple[int, ...]]:
+    for angle in _squared(products):
+        yield (angle,)
+    links = _linked(products)
+    for whole in _components(links):
+        if len(whole) > MOST_ANGLES:
+            yield from (pair for pair in links if set(pair) <= set(whole))
+            continue
+        yield whole
+        sizes = range(len(whole) - 1, 1, -1) if len(whole) <= _ALL_SUBSETS else (2,) if len(whole) > 2 else ()
+        for size in sizes:
+            yield from combinations(whole, size)
+
+
+def _linked(products: Mapping[Code, int]) -> list[tuple[int, int]]:
+    """Pairs of angles with ``X sin a sin b`` and ``X cos a cos b``, or ``X sin a cos b`` and ``X cos a sin b``.
+
+    Their weights are equal up to sign: only then does a sum of angles replace two products by one wave.
+    """
+    found: set[tuple[int, int]] = set()
+    for code, weight in products.items():
+        sines, cosines, rest, angle = [], [], code, 0
+        while rest:
+            byte = rest & _BYTE
+            if byte & 1:
+                sines.append(angle)
+            if byte > 1:
+                cosines.append(angle)
+            rest >>= _BITS
+            angle += 1
+        for place, a in enumerate(sines):
+            one = 1 << (_BITS * a)
+            for b in sines[place + 1 :]:
+                if abs(products.get(code + one + (1 << (_BITS * b)), 0)) == abs(weight):
+                    found.add((a, b))
+            for b in cosines:
+                if b != a and abs(products.get(code + one - (1 << (_BITS * b)), 0)) == abs(weight):
+                    found.add((a, b) if a < b else (b, a))
+    return sorted(found)
+
+
+def _squared(products: Mapping[Code, int]) -> list[int]:
+    """Angles with ``X cos^2`` beside X, of weights that leave one of 1, sin^2, cos(2 a)."""
+    found: set[int] = set()
+    for code, weight in products.items():
+        rest, angle = code, 0
+        while rest:
+            if rest & _BYTE >= 4:
+                below = products.get(code - (4 << (_BITS * angle)), 0)
+                if below and (weight == -below or weight == -2 * below):
+                    found.add(angle)
+            rest >>= _BITS
+            angle += 1
+    return sorted(found)
+
+
+def _components(links: Iterable[tuple[int, int]]) -> list[tuple[int, ...]]:
+    sets: list[set[int]] = []
+    for pair in links:
+        touching = [group for group in sets if group & set(pair)]
+        sets = [group for group in sets if group not in touching] + [set(pair).union(*touching)]
+    return sorted(tuple(sorted(group)) for group in sets)
+
+
+# --- Fourier ----------------------------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1 << 10)
+def _single(byte: int) -> tuple[tuple[int, int], ...]:
+    """2**(i + j) * s**i * c**j, but for a factor (-i)**i, as (multiple, weight) over exp(i n x)."""
+    j = byte >> 1
+    spectrum = {j - 2 * k: comb(j, k) for k in range(j + 1)}
+    if byte & 1:
+        spectrum = {n: spectrum.get(n - 1, 0) - spectrum.get(n + 1, 0) for n in range(-j - 1, j + 2) if (n - j) % 2}
+    return tuple((n, weight) for n, weight in spectrum.items() if weight)
+
+
+def _over(products: Mapping[Code, int], block: tuple[int, ...]) -> list[Part]:
+    """Waves in the angles of the block, where they are shorter; beside them what the other angles leave."""
+    mask = sum(_BYTE << (_BITS * angle) for angle in block)
+    beside: dict[Code, dict[Code, int]] = {}
+    for code, weight in products.items():
+        beside.setdefault(code & ~mask, {})[code & mask] = weight
+    found: list[Part] = []
+    for outside, inner in beside.items():
+        waves = _waves(inner, block)
+        as_products = [Part(Fraction(weight), (), code) for code, weight in inner.items()]
+        if waves is None or length_of_parts(waves) >= length_of_parts(as_products):
+            waves = as_products
+        found += [part._replace(code=part.code | outside) for part in waves]
+    return found
+
+
+def _waves(inner: Mapping[Code, int], block: tuple[int, ...]) -> list[Part] | None:
+    """The Fourier polynomial; None where a power is too high."""
+    cosines: dict[int, Fraction] = {}
+    sines: dict[int, Fraction] = {}
+    for code, weight in inner.items():
+        spectrum, odd, degree = {0: weight}, 0, 0
+        for angle in block:
+            byte = (code >> (_BITS * angle)) & _BYTE
+            if not byte:
+                continue
+            if byte >> 1 > MOST_POWER:
+                return None
+            odd, degree = odd + (byte & 1), degree + (byte & 1) + (byte >> 1)
+            shift = 1 << (_BITS * angle)
+            product: dict[int, int] = {}
+            for place, value in spectrum.items():
+                for n, factor in _single(byte):
+                    key = place + n * shift
+                    product[key] = product.get(key, 0) + value * factor
+            spectrum = product
+        sign = -1 if odd & 2 else 1  # (-i)**odd is this sign, times -i where odd is odd
+        target = sines if odd & 1 else cosines
+        for key, value in spectrum.items():
+            if key > 0 or (key == 0 and not odd & 1):  # the other half is its mirror image
+                weight_here = Fraction(sign * value * (2 if key else 1), 1 << degree)
+                target[key] = target.get(key, Fraction(0)) + weight_here
+    return [*_folded(cosines), *(part for key, weight in sines.items() if weight for part in _wave(True, key, weight))]
+
+
+def _folded(cosines: dict[int, Fraction]) -> list[Part]:
+    """1 + cos(2 u) is 2 cos(u)**2, 1 - cos(2 u) is 2 sin(u)**2."""
+    constant = cosines.pop(0, Fraction(0))
+    found: list[Part] = []
+    for key in sorted(cosines):
+        weight = cosines[key]
+        if constant and abs(weight) == abs(constant):
+            half = _multiples(key)
+            if all(n % 2 == 0 for _, n in half):
+                wave, _ = _oriented(weight != constant, tuple((angle, n // 2) for angle, n in half))
+                found.append(Part(2 * constant, (wave._replace(power=2),), 0))
+                constant = Fraction(0)
+                continue
+        if weight:
+            found += _wave(False, key, weight)
+    if constant:
+        found.append(Part(constant, (), 0))
+    return found
+
+
+def _wave(sine: bool, key: int, weight: Fraction) -> list[Part]:
+    wave, sign = _oriented(sine, _multiples(key))
+    return [Part(weight * sign, (wave,), 0)]
+
+
+def _multiples(key: int) -> Combination:
+    """(angle, multiple) from the sum of multiple * 256**angle."""
+    found, angle = [], 0
+    while key:
+        n = ((key + 128) & _BYTE) - 128
+        if n:
+            found.append((angle, n))
+        key = (key - n) >> _BITS
+        angle += 1
+    return tuple(found)
+
+
+def _oriented(sine: bool, combination: Combination) -> tuple[Wave, int]:
+    """The wave with its first angle positive, and the sign that this costs."""
+    if combination[0][1] > 0:
+        return Wave(sine, combination), 1
+    return Wave(sine, tuple((angle, -n) for angle, n in combination)), -1 if sine else 1
+
+
+# --- lengths ----------------------------------------------------------------------------------------------------------
+
+
+def length_of_code(code: Code) -> int:
+    """What is read of a product of sines and cosines: functions, names, powers."""
+    return sum(2 * sine + (0 if not cosine else 2 if cosine == 1 else 3) for _, sine, cosine in unpacked(code))
+
+
+def length_of_wave(wave: Wave) -> int:
+    """``cos``, and of each angle its name, its sign and its multiple."""
+    inside = sum(1 if abs(n) == 1 else 2 for _, n in wave.combination) + len(wave.combination) - 1
+    return 1 + inside + (wave.power != 1)
+
+
+def length_of_parts(parts: Sequence[Part]) -> int:
+    """The parts as a sum, their common number in front."""
+    if not parts:
+        return 0
+    below = lcm(*(part.weight.denominator for part in parts))
+    content = gcd(*(part.weight.numerator * (below // part.weight.denominator) for part in parts))
+    common = Fraction(content, below)
+    written = 0 if common.denominator == 1 else 1
+    for waves, code in ((part.waves, part.code) for part in parts):
+        written += 1 + sum(map(length_of_wave, waves)) + length_of_code(code)
+    return written + sum(abs(part.weight) != common for part in parts)
