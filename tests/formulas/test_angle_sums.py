@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
-from mbsym.formulas.shape import Factor, Product, Sum, Wave, present
+from mbsym.formulas.shape import Factor, Sum, Wave, present
 
 NAMES = ("q1", "q2", "q3")
 #: sin(q3/2) makes the angle of q3 a half.
