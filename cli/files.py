@@ -124,6 +124,13 @@ def delivered(folder: Path, command: str) -> dict[str, str]:
     }
 
 
+def recover(folder: Path) -> None:
+    """Completes a set that was committed by a delivery that was killed."""
+    if (folder / _READY).is_dir():
+        with alone(folder) as locked, suppress(OSError):
+            _recover(folder, locked)
+
+
 def _merged(old: Sets, command: str, digests: dict[str, str], gone: Collection[str] | None) -> Sets:
     """The sets after this delivery: what is replaced or goes is in no older set any more."""
     merged: Sets = []
@@ -172,7 +179,7 @@ def _install(folder: Path) -> None:
         staying = {name for _, files in _read_sets(ready / MANIFEST) for name in files}
         for _, files in read_manifest(folder):
             for name, digest in files.items():
-                if name not in staying and _digest(folder / name) == digest:
+                if name not in staying and digest_of(folder / name) == digest:
                     (folder / name).unlink(missing_ok=True)
         for name in waiting:
             (folder / name).unlink(missing_ok=True)
@@ -212,7 +219,7 @@ def _fill(stream, content: str | bytes) -> bytes:  # type: ignore[no-untyped-def
     return data
 
 
-def _digest(path: Path) -> str:
+def digest_of(path: Path) -> str:
     """The SHA-256 of a plain file; "" for anything else."""
     if path.is_symlink() or not path.is_file():
         return ""

@@ -28,6 +28,7 @@ COMMANDS = {
     "examples": Listed("examples", "List the systems that come with mbsym, or copy them."),
     "check": Listed("check", "Validate descriptions without deriving anything."),
     "run": Listed("run", "Derive the numbered problems and write reports."),
+    "batch": Listed("batch", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),

@@ -6,11 +6,11 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.report.whole_run import derive_all, lost, rendered_all
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
@@ -75,8 +75,8 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     analysis = Analysis(system, request.problems, request.terms)
     found = None
     with status(request.quiet) as say:
-        _derive_all(analysis, request, lambda text: say(f"{path.name}: {text}"))
-        files = list(_rendered(analysis, request, lambda text: say(f"{path.name}: {text}")))
+        derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))
+        files = list(rendered_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}")))
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:
             say(f"{path.name}: ledger")
@@ -88,32 +88,6 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     written = deliver(folder, texts, "run", gone=missing)
     _show(analysis, path, written, request, time.perf_counter() - started, found)
     return FAILED if _complaints(analysis, path, files, request) else OK
-
-
-def _derive_all(analysis: Analysis, request: Request, say: Callable[[str], None]) -> None:
-    """Everything that the files and the terminal will show, in order."""
-    from mbsym.analysis import PROBLEMS
-    from mbsym.report.targets import TARGETS
-
-    for number in analysis.problems:
-        say(f"problem {number}, {PROBLEMS[number].title}")
-        analysis.stage(number)
-    if any(TARGETS[name].program for name in request.formats):
-        analysis.optional("programs")
-    if analysis.system.claims:
-        say("claims")
-        _ = analysis.claims
-    say("self-check")
-    _ = analysis.checks
-
-
-def _rendered(analysis: Analysis, request: Request, say: Callable[[str], None]) -> Iterator[Rendered]:
-    from mbsym.report.rendering import rendered
-    from mbsym.report.targets import TARGETS
-
-    for name in request.formats:
-        say(f"writing {TARGETS[name].filename}")
-        yield from rendered(TARGETS[name], analysis, analysis.problems)
 
 
 def _ledger(analysis: Analysis, texts: dict[str, str]) -> Ledger:
@@ -155,13 +129,8 @@ def _show(
 
 def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: Request) -> bool:
     """What went wrong, on standard error; whether anything did."""
-    failures = [(f"problem {number}", analysis.stage(number).failure) for number in analysis.problems]
-    lost = [(where, failure) for where, failure in failures if failure is not None and failure.error is not None]
-    for file in files:
-        if file.failure is not None:
-            lost.append((f"{file.filename} cannot be written", file.failure))
-        lost += [(f"{file.filename}: problem {number} cannot be written", failure) for number, failure in file.withheld]
-    for where, failure in lost:
+    defects = lost(analysis, files)
+    for where, failure in defects:
         complain(path, f"{where}: {failure.reason}" + (f"; {failure.hint}" if failure.hint else ""))
     open_claims = [result for result in analysis.claims if not result.holds] if request.strict_claims else []
     for result in open_claims:
@@ -172,4 +141,4 @@ def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: 
         complain(path, f"SELF-CHECK FAILED: {check.name}: {check.detail}")
     for error in {described(error): error for error in analysis.defects}.values():
         defect(error, path)
-    return bool(lost or open_claims or failed or analysis.defects)
+    return bool(defects or open_claims or failed or analysis.defects)

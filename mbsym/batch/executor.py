@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Protocol
 
+from mbsym.batch.isolation import Processes, isolated
 from mbsym.batch.task import Budget, Finished, Task
 
 
@@ -24,3 +25,19 @@ class Executor(Protocol):
     def close(self) -> None:
         """What still runs is killed, what waits is forgotten; returns when no process is left."""
         ...
+
+
+class Local:
+    """Processes of this machine, ``jobs`` at a time."""
+
+    def __init__(self, jobs: int) -> None:
+        self.width = jobs
+        self._threads = ThreadPoolExecutor(jobs, thread_name_prefix="mbsym-batch")
+        self._processes = Processes()
+
+    def submit(self, task: Task, budget: Budget) -> Future[Finished]:
+        return self._threads.submit(isolated, task, budget, self._processes)
+
+    def close(self) -> None:
+        self._processes.close()
+        self._threads.shutdown(wait=True, cancel_futures=True)

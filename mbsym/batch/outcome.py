@@ -74,7 +74,8 @@ class ProblemRow:
 
     ``status`` is ``derived`` or ``none``; of a problem without a result, ``code`` names the reason
     (``no-closed-form``, ``internal-error``, ``withdrawn``, ...), ``reason`` says it in a sentence, and ``defect`` is
-    true where the program is at fault.  ``verdict`` and ``verdict_at_values`` are the words of problem 6, None elsewhere.
+    true where the program is at fault.  ``verdict`` and ``verdict_at_values`` are the words of problem 6, None
+    elsewhere.
     """
 
     number: int

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from mbsym.expressions.place import Complaint, Complaints
 from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
-from mbsym.source.placed import MAX_TEXT, TooManyComplaints
+from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
 from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
 from mbsym.source.yaml_reader import has_bodies, has_key, has_yaml_marks, read_yaml
 
@@ -56,12 +57,29 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     system, stopped = None, False
     try:
         if check_characters(text, complaints):
-            editor = _is_text(text, filename)
-            node = read_text(text, complaints) if editor else read_yaml(text, complaints)
+            node, editor = _placed_tree(text, filename, complaints)
             system = None if node is None else build(node, complaints, by_use=editor)
     except TooManyComplaints:
         system, stopped = None, True
     return system, Complaints([*complaints.sorted(), *complaints.rest(stopped)])
+
+
+def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, bool]:
+    """What a description says, before anything of it is understood: its tree of keys and values, or None.
+
+    And whether it is in the spelling of the editor, in which some things go without saying.
+    """
+    text = normalised(text)
+    complaints = _BoundedComplaints()
+    with suppress(TooManyComplaints):
+        if check_characters(text, complaints):
+            return _placed_tree(text, filename, complaints)
+    return None, False
+
+
+def _placed_tree(text: str, filename: str, complaints: Complaints) -> tuple[Node | None, bool]:
+    editor = _is_text(text, filename)
+    return (read_text if editor else read_yaml)(text, complaints), editor
 
 
 def is_description(path: Path) -> bool:
@@ -94,20 +112,30 @@ def _is_text(text: str, filename: str) -> bool:
 
 def load(path: str | Path) -> tuple[System | None, Complaints, str]:
     """Read a file: the system or None, the complaints, and the text that they point into."""
-    text, complaint = _file_text(Path(path))
+    data, complaint = file_bytes(Path(path))
+    return (None, Complaints([complaint]), "") if complaint is not None else load_bytes(data, str(path))
+
+
+def load_bytes(data: bytes, filename: str) -> tuple[System | None, Complaints, str]:
+    """What ``load`` gives of a file with this content."""
+    text, complaint = _decoded(data)
     if complaint is not None:
         return None, Complaints([complaint]), text
-    system, complaints = read(text, str(path))
+    system, complaints = read(text, filename)
     return system, complaints, text
 
 
-def _file_text(path: Path) -> tuple[str, Complaint | None]:
+def file_bytes(path: Path) -> tuple[bytes, Complaint | None]:
+    """The content of a file (no more of it than shows that it is too large), or why it cannot be read."""
     try:
         with path.open("rb") as file:
-            data = file.read(4 * MAX_TEXT + 1)
+            return file.read(4 * MAX_TEXT + 1), None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        return "", Complaint("unreadable", f"the file cannot be read: {reason}")
+        return b"", Complaint("unreadable", f"the file cannot be read: {reason}")
+
+
+def _decoded(data: bytes) -> tuple[str, Complaint | None]:
     if len(data) > 4 * MAX_TEXT:
         return "", Complaint("too-large", f"a description has at most {MAX_TEXT} characters")
     if b"\0" in data:

@@ -172,14 +172,14 @@ def test_a_file_that_would_not_be_read_is_not_delivered(
 def test_in_one_file_of_a_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from mbsym_cli import reports
 
-    honest = reports._derive_all
+    honest = reports.derive_all
 
     def derive(analysis: Any, *others: Any) -> None:
         if analysis.system.name == "first":
             broken()
         honest(analysis, *others)
 
-    monkeypatch.setattr(reports, "_derive_all", derive)
+    monkeypatch.setattr(reports, "derive_all", derive)
     for name in ("first", "second"):
         (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text().replace("Simple pendulum", name))
     done = run(tmp_path, "-o", tmp_path / "out", "-f", "json", "-p", "1")

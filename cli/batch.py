@@ -1,0 +1,133 @@
+"""``mbsym batch``: every description in some folders, each in a process of its own; what is up to date is left."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym_cli.console import BAD_INPUT, OutPath
+from mbsym_cli.options import Options
+
+_MEGABYTE = 2**20
+
+
+@click.command("batch")
+@click.argument("folders", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FOLDER...")
+@click.option("--out", "-o", default="build", show_default=True, type=OutPath(path_type=Path), help="Where results go.")
+@click.option("--jobs", "-j", metavar="N", help="Processes at a time.  [default: as many as there are processors]")
+@click.option(
+    "--timeout", default="600", show_default=True, metavar="SECONDS", help="For one description; 0: no bound."
+)
+@click.option("--memory", metavar="MB", help="For one description; 0: no bound.  [default: what there is, shared out]")
+@click.option("--filter", "patterns", multiple=True, metavar="GLOB", help="Only files like this; may be repeated.")
+@click.option("--shard", metavar="I/N", help="Only the I-th of N parts, for job arrays.")
+@click.option("--fail-fast", is_flag=True, help="Begin nothing new after a failure.")
+@click.option("--changed", is_flag=True, help="Print only what was not up to date.")
+@click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show]")
+@click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
+@click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
+@click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
+@click.option("--quiet", "-q", is_flag=True, help="Print only complaints.")
+def command(
+    folders: tuple[Path, ...],
+    out: Path,
+    jobs: str | None,
+    timeout: str,
+    memory: str | None,
+    patterns: tuple[str, ...],
+    shard: str | None,
+    fail_fast: bool,
+    changed: bool,
+    problems: str | None,
+    formats: str,
+    terms: str,
+    strict_claims: bool,
+    quiet: bool,
+) -> None:
+    """Derive every description in each FOLDER, and in the folders in it, and write a summary.
+
+    Of a folder those files are taken that say they are descriptions; hidden folders, links to folders and the folder
+    of results are not looked into.  Each description has a folder of its own in --out, as deep as it lies itself, and
+    a process of its own: one that runs too long, wants too much memory or crashes costs its row only.
+
+    What is up to date is not derived again: the same description (comments and layout do not matter), options and
+    version of mbsym, and every file as it was written.  A batch that was stopped or killed goes on where it was.
+
+    OUT/summary.json has what became of everything: outcomes, verdicts, claims, self-checks, complaints with their
+    places, digests of the files.  Exit code, that of the worst: 0 everything holds, 1 a self-check failed, or an
+    internal error or a crash, 2 a description has errors, 4 a budget was met, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym batch systems/
+      mbsym batch systems/ --out build --jobs 4 --timeout 60 --memory 2000
+      mbsym batch systems/ --filter '*pendulum*' --format json --changed
+      mbsym batch systems/ --shard 3/8
+    """
+    from mbsym.batch.task import Asked, Budget
+
+    asked = Options()
+    for path in folders:
+        if not path.exists():
+            asked.complain(str(path), "missing", "there is no such file or folder")
+    kinds = _formats(asked, formats)
+    numbers = None if problems is None else asked.problems(problems)
+    bound = asked.whole("--terms", terms, 1, 10**12)
+    width = asked.whole("--jobs", jobs, 1, 1024)
+    seconds = _seconds(asked, timeout)
+    megabytes = asked.whole("--memory", memory, 0, 10**9)
+    part = _part(asked, shard)
+    if asked.refused() or bound is None:
+        sys.exit(BAD_INPUT)
+    from mbsym_cli.batch_machine import processors, shared_memory
+    from mbsym_cli.batch_run import Request, run
+
+    width = width or processors()
+    limit = shared_memory(width) if megabytes is None else megabytes * _MEGABYTE or None
+    request = Request(
+        folders=folders,
+        out=out,
+        asked=Asked(kinds, numbers, bound),
+        budget=Budget(seconds, limit),
+        jobs=width,
+        patterns=patterns,
+        shard=part,
+        fail_fast=fail_fast,
+        strict_claims=strict_claims,
+        changed=changed,
+        quiet=quiet,
+    )
+    sys.exit(run(request))
+
+
+def _formats(asked: Options, text: str) -> tuple[str, ...]:
+    from mbsym.report.targets import TARGETS
+
+    return asked.words("--format", text, tuple(TARGETS), "format", every="all")
+
+
+def _seconds(asked: Options, text: str) -> float | None:
+    """A positive number of seconds; 0 is no bound."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < 1e9:
+        asked.complain("--timeout", "bad-number", f"a number of seconds is wanted, not {ascii_safe(text)}")
+    return value or None
+
+
+def _part(asked: Options, text: str | None) -> tuple[int, int] | None:
+    """``3/8`` as the third of eight parts."""
+    if text is None:
+        return None
+    first, slash, second = text.partition("/")
+    if slash and all(one.isascii() and one.isdigit() and len(one) < 7 for one in (first, second)):
+        part, parts = int(first), int(second)
+        if 1 <= part <= parts:
+            return part, parts
+    asked.complain("--shard", "bad-shard", f"a part like 3/8 is wanted, not {ascii_safe(text)}", "they count from 1")
+    return None

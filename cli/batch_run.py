@@ -1,0 +1,149 @@
+"""What ``mbsym batch`` does once its options are read: finds, looks what is up to date, derives the rest, sums up."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mbsym
+from mbsym.batch.coordinator import Batch, Place
+from mbsym.batch.digests import derivation
+from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
+from mbsym.batch.summary_json import FILENAME, summary_text
+from mbsym.batch.task import Asked, Budget
+from mbsym.expressions.counting import counted
+from mbsym_cli.batch_folders import Found, chosen, found_in, share
+from mbsym_cli.batch_machine import memory_is_bounded
+from mbsym_cli.batch_store import FolderStore
+from mbsym_cli.batch_table import complaints, totals, watcher
+from mbsym_cli.console import BAD_INPUT, INTERRUPTED, printable
+from mbsym_cli.files import obstacle, write_whole
+from mbsym_cli.options import SUFFIXES
+
+if TYPE_CHECKING:
+    from mbsym.batch.executor import Executor
+
+
+@dataclass(frozen=True)
+class Request:
+    """A batch as it was asked for."""
+
+    folders: tuple[Path, ...]
+    out: Path
+    asked: Asked
+    budget: Budget
+    jobs: int
+    patterns: tuple[str, ...] = ()
+    shard: tuple[int, int] | None = None
+    fail_fast: bool = False
+    strict_claims: bool = False
+    changed: bool = False
+    quiet: bool = False
+
+
+def run(request: Request) -> int:
+    """The whole batch; its exit code."""
+    started = time.monotonic()
+    reason = obstacle(request.out)
+    if reason:
+        print(f"the results cannot be written: {reason}", file=sys.stderr)
+        return BAD_INPUT
+    found = found_in(request.folders, request.out)
+    places = chosen(found.places, request.patterns)
+    if not places and not found.unreadable:
+        print(_nothing(request, found), file=sys.stderr)
+        return BAD_INPUT
+    if request.shard is not None:
+        places = share(places, *request.shard)
+    if request.budget.memory and not memory_is_bounded():
+        print("--memory has no effect here: this system has no such bound", file=sys.stderr)
+    summary, stopped = _summed_up(request, places, found, started)
+    write_files(request, summary)
+    if not request.quiet:
+        where = printable(request.out / summary_name(request))
+        print(f"{totals(summary)}; {summary.seconds:.2f} s; {where}")
+    if stopped:
+        print("interrupted; what was finished is kept", file=sys.stderr)
+        return INTERRUPTED
+    return summary.exit_code
+
+
+def _summed_up(request: Request, places: list[Place], found: Found, started: float) -> tuple[Summary, bool]:
+    """Every row, and whether the batch was stopped."""
+    version = derivation()
+    refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
+    width = max((len(printable(place.file)) for place in places), default=0)
+    told = watcher(len(places), width, request.quiet, request.changed)
+    store = FolderStore(request.out, request.asked, version)
+    batch = Batch(places, store, told, request.budget, request.fail_fast, request.strict_claims)
+    stopped = False
+    for row in refused:
+        for text in complaints(row):
+            told.complain(text)
+    try:
+        batch.run(lambda: _executor(request))
+    except KeyboardInterrupt:
+        stopped = True
+    finally:
+        told.close()
+    rows = [*(batch.rows[place.file] for place in places), *refused]
+    asked = request.asked
+    summary = Summary(
+        rows=tuple(sorted(rows, key=lambda row: row.file)),
+        version=mbsym.__version__,
+        derivation=version,
+        problems=asked.problems,
+        formats=asked.formats,
+        terms=asked.terms,
+        shard=None if request.shard is None else "{}/{}".format(*request.shard),
+        timeout=request.budget.seconds,
+        memory=request.budget.memory,
+        seconds=time.monotonic() - started,
+    )
+    return summary, stopped
+
+
+def _executor(request: Request) -> Executor:
+    from mbsym.batch.executor import Local
+
+    return Local(request.jobs)
+
+
+def summary_name(request: Request) -> str:
+    """``summary.json``; of one of several parts ``summary-3-of-8.json``."""
+    if request.shard is None:
+        return FILENAME
+    stem, dot, ending = FILENAME.partition(".")
+    return "{}-{}-of-{}{}{}".format(stem, *request.shard, dot, ending)
+
+
+def summary_files(request: Request, summary: Summary) -> Mapping[str, str]:
+    """The files about the whole batch, by their names in its folder."""
+    return {summary_name(request): summary_text(summary)}
+
+
+def write_files(request: Request, summary: Summary) -> None:
+    """Each of them whole.  Raises OSError where one cannot be written."""
+    for name, text in summary_files(request, summary).items():
+        write_whole(request.out / name, text)
+
+
+def _unreadable(folder: str, reason: str) -> Row:
+    complaint = ComplaintRow("error", "unreadable", f"the folder cannot be read: {reason}")
+    return Row(folder, "", Outcome.ERRORS, complaints=(complaint,))
+
+
+def _nothing(request: Request, found: Found) -> str:
+    """What to say where there is nothing to do."""
+    where = ", ".join(map(printable, request.folders))
+    if found.places:
+        asked = ", ".join(map(printable, request.patterns))
+        there = counted(len(found.places), "description is", "descriptions are")
+        return f"{where}: no description fits --filter {asked} ({there} there)"
+    passed = f" ({counted(found.others, 'other file was', 'other files were')} passed over)" if found.others else ""
+    hint = f"a description has the key 'mbsym', and its name ends in {', '.join(SUFFIXES)}"
+    return f"{where}: there are no descriptions here{passed}\n  hint: {hint}"

@@ -1,0 +1,204 @@
+"""What a batch shows while it runs: a live table on a terminal, a line for each description elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
+from mbsym.expressions.counting import counted
+from mbsym_cli.console import console, printable
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+#: Seconds between two pictures of the live table.
+_FRAME = 0.1
+
+#: So many running descriptions have a line of their own.
+_MOST_LINES = 16
+
+
+class Lines:
+    """The ``Watcher`` that prints a line when a description is finished."""
+
+    def __init__(self, total: int, width: int, quiet: bool, changed: bool) -> None:
+        self.total, self.width = total, width
+        self.quiet, self.changed = quiet, changed
+        self.finished = 0
+
+    def began(self, file: str) -> None:
+        """Nothing to show yet."""
+
+    def ended(self, row: Row) -> None:
+        self.finished += 1
+        if not (self.quiet or (self.changed and row.cached)):
+            self.say(f"[{str(self.finished).rjust(len(str(self.total)))}/{self.total}] {line(row, self.width)}", row)
+        for text in complaints(row):
+            self.complain(text)
+
+    def tick(self) -> None:
+        """Nothing moves."""
+
+    def close(self) -> None:
+        """Nothing to take away."""
+
+    def say(self, text: str, row: Row) -> None:
+        print(text, flush=not row.cached)
+
+    def complain(self, text: str) -> None:
+        print(text, file=sys.stderr)
+
+
+class Live(Lines):
+    """The same lines, and under them what runs, for how long, and how long the rest may take."""
+
+    def __init__(self, total: int, width: int, quiet: bool, changed: bool) -> None:
+        super().__init__(total, width, quiet, changed)
+        self._running: dict[str, float] = {}
+        self._began: float | None = None
+        self._derived = 0
+        self._drawn = 0.0
+        self._live: object | None = None
+
+    def began(self, file: str) -> None:
+        now = time.monotonic()
+        self._began = self._began or now
+        self._running[file] = now
+
+    def ended(self, row: Row) -> None:
+        if self._running.pop(row.file, None) is not None:
+            self._derived += 1
+        super().ended(row)
+
+    def say(self, text: str, row: Row) -> None:
+        from rich.text import Text
+
+        console().print(Text(text, style=_STYLES.get(row.outcome, "dim" if row.cached else "")))
+
+    def complain(self, text: str) -> None:
+        if self._live is None:
+            super().complain(text)
+        else:  # on the same console, above the table
+            from rich.text import Text
+
+            console().print(Text(text))
+
+    def tick(self) -> None:
+        from rich.live import Live as Screen
+
+        now = time.monotonic()
+        if now - self._drawn < _FRAME:
+            return
+        self._drawn = now
+        if self._live is None:
+            self._live = Screen(self._picture(now), console=console(), auto_refresh=False, transient=True)
+            self._live.start()
+        assert isinstance(self._live, Screen)
+        self._live.update(self._picture(now), refresh=True)
+
+    def close(self) -> None:
+        from rich.live import Live as Screen
+
+        if isinstance(self._live, Screen):
+            self._live.stop()
+        self._live = None
+
+    def _picture(self, now: float) -> RenderableType:
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table.grid(padding=(0, 2))
+        for file, since in list(self._running.items())[:_MOST_LINES]:
+            table.add_row(Text("running", style="cyan"), Text(printable(file)), Text(f"{now - since:.0f} s"))
+        if len(self._running) > _MOST_LINES:
+            table.add_row(Text(""), Text(f"and {len(self._running) - _MOST_LINES} more"), Text(""))
+        left = self.total - self.finished
+        table.add_row(Text(f"{self.finished}/{self.total}", style="bold"), Text(self._remaining(now, left)), Text(""))
+        return table
+
+    def _remaining(self, now: float, left: int) -> str:
+        """How long the rest may take, going by those that were derived."""
+        if not self._derived or self._began is None:
+            return f"{left} to go"
+        seconds = (now - self._began) / self._derived * left
+        return f"{left} to go, about {_duration(seconds)}"
+
+
+_STYLES = {outcome: "red" for outcome in Outcome if outcome.failed} | {Outcome.SKIPPED: "dim"}
+
+
+def watcher(total: int, width: int, quiet: bool, changed: bool) -> Lines:
+    """The one that suits standard output."""
+    kind = Live if sys.stdout.isatty() and not quiet else Lines
+    return kind(total, width, quiet, changed)
+
+
+def line(row: Row, width: int) -> str:
+    """A row on one line: file, outcome, seconds, what is to be known of it."""
+    pieces = [printable(row.file).ljust(width), _word(row)]
+    if not row.cached and row.seconds:
+        pieces.append(f"{row.seconds:.2f} s")
+    pieces.append(_said(row))
+    return "  ".join(piece for piece in pieces if piece)
+
+
+def _word(row: Row) -> str:
+    return "up to date" if row.cached and row.outcome is Outcome.DERIVED else row.outcome.value
+
+
+def _said(row: Row) -> str:
+    """The verdict, what is missing, claims that do not hold."""
+    if row.message:
+        return row.message
+    said = []
+    errors = sum(one.severity == "error" for one in row.complaints)
+    if errors:
+        said.append(counted(errors, "error", "errors"))
+    for problem in row.problems:
+        if problem.verdict_at_values is not None:
+            said.append(f"at the values {problem.verdict_at_values}")
+        elif problem.verdict is not None:
+            said.append(problem.verdict)
+    missing = [str(problem.number) for problem in row.problems if problem.status == "none"]
+    if missing:
+        said.append(f"no result: {', '.join(missing)}")
+    said += [f"SELF-CHECK FAILED: {check.name}" for check in row.checks if check.failed]
+    refuted = sum(claim.word == "refuted" for claim in row.claims)
+    if refuted:
+        said.append(f"{counted(refuted, 'claim', 'claims')} refuted")
+    return "; ".join(said)
+
+
+def complaints(row: Row) -> list[str]:
+    """What is complained about, for standard error, each with its place."""
+    name = printable(row.file)
+    return [_complaint(name, one) for one in row.complaints] + [f"{name}: {note}" for note in row.notes]
+
+
+def _complaint(name: str, one: ComplaintRow) -> str:
+    place = name if one.line is None else f"{name}:{one.line}:{one.column}"
+    hint = "" if one.hint is None else f"\n  hint: {printable(one.hint)}"
+    return f"{place}: {one.severity}[{one.code}]: {printable(one.message)}{hint}"
+
+
+def totals(summary: Summary) -> str:
+    """The last line: how many of what, in how many seconds."""
+    parts = []
+    for outcome, count in summary.totals.items():
+        word = outcome.value
+        if outcome is Outcome.DERIVED:
+            kept = sum(row.cached for row in summary.rows if row.outcome is outcome)
+            parts += [f"{count - kept} derived"] if count > kept else []
+            parts += [f"{kept} up to date"] if kept else []
+        else:
+            parts.append(f"{count} {word}")
+    return f"{counted(len(summary.rows), 'system', 'systems')}: {', '.join(parts) or 'nothing to do'}"
+
+
+def _duration(seconds: float) -> str:
+    whole = round(seconds)
+    if whole < 90:
+        return f"{whole} s"
+    return f"{whole // 60} min" if whole < 5400 else f"{whole / 3600:.1f} h"

@@ -1,0 +1,74 @@
+"""Tasks and what becomes of them as JSON: what goes through a pipe, and rows as they are kept in files."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
+from mbsym.batch.task import Asked, Finished, Task
+
+#: What a reader of foreign data has to expect.
+MALFORMED = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
+
+
+def task_text(task: Task) -> str:
+    return json.dumps(asdict(task) | {"data": base64.b64encode(task.data).decode()})
+
+
+def read_task(text: str) -> Task:
+    found = json.loads(text)
+    asked = found["asked"]
+    problems = None if asked["problems"] is None else tuple(asked["problems"])
+    return Task(
+        found["file"],
+        found["folder"],
+        base64.b64decode(found["data"]),
+        Asked(tuple(asked["formats"]), problems, asked["terms"]),
+        found["known"],
+    )
+
+
+def finished_text(finished: Finished) -> str:
+    return json.dumps(
+        {
+            "row": row_data(finished.row),
+            "files": dict(finished.files),
+            "meaning": finished.meaning,
+            "same": finished.same,
+        }
+    )
+
+
+def read_finished(text: str | bytes) -> Finished:
+    """Raises one of MALFORMED where it is something else."""
+    found = json.loads(text)
+    files = {str(name): str(content) for name, content in found["files"].items()}
+    return Finished(read_row(found["row"]), files, str(found["meaning"]), bool(found["same"]))
+
+
+def row_data(row: Row) -> dict[str, Any]:
+    """A row without what differs from batch to batch: its seconds, and whether it was up to date."""
+    found = asdict(row)
+    del found["seconds"], found["cached"]
+    return found
+
+
+def read_row(found: Mapping[str, Any]) -> Row:
+    """The row of ``row_data``.  Raises one of MALFORMED where it is something else."""
+    return Row(
+        file=str(found["file"]),
+        folder=str(found["folder"]),
+        outcome=Outcome(found["outcome"]),
+        name=str(found["name"]),
+        problems=tuple(ProblemRow(**item) for item in found["problems"]),
+        claims=tuple(ClaimRow(**item | {"lines": tuple(item["lines"])}) for item in found["claims"]),
+        checks=tuple(CheckRow(**item) for item in found["checks"]),
+        complaints=tuple(ComplaintRow(**item) for item in found["complaints"]),
+        files=tuple(FileRow(**item) for item in found["files"]),
+        message=str(found["message"]),
+        notes=tuple(map(str, found["notes"])),
+    )

@@ -1,0 +1,139 @@
+"""One description, in the process that calls: read, derived, rendered; nothing is written.
+
+``work`` is a pure function of its task.  It ends with a row whatever the description is; what ends the process itself
+(an abort, a signal, no end at all) is met by ``isolation``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
+from mbsym.batch.task import Finished, Task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.stages import NoResult
+    from mbsym.expressions.place import Complaint
+    from mbsym.model.system import System
+
+
+def work(task: Task) -> Finished:
+    """What becomes of a description.  Raises nothing but MemoryError and what is our own mistake."""
+    from mbsym.source.document import load_bytes
+
+    system, complaints, text = load_bytes(task.data, task.file)
+    told = tuple(map(complaint_row, complaints.sorted()))
+    if system is None:
+        return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=told))
+    from mbsym.batch import digests
+
+    meaning = digests.of_meaning(text, task.file)
+    if meaning and meaning == task.known:
+        row = Row(task.file, task.folder, Outcome.DERIVED, name=system.name, complaints=told)
+        return Finished(row, meaning=meaning, same=True)
+    row, files = _derived(task, system)
+    return Finished(replace(row, complaints=told), files, meaning)
+
+
+def complaint_row(complaint: Complaint) -> ComplaintRow:
+    """A complaint of :mod:`mbsym.source` as a row."""
+    span = complaint.span
+    row = ComplaintRow(complaint.severity, complaint.code, complaint.message, hint=complaint.hint)
+    return row if span is None else replace(row, line=span.line, column=span.column, length=span.length)
+
+
+def _derived(task: Task, system: System) -> tuple[Row, dict[str, str]]:
+    from mbsym.analysis import Analysis
+    from mbsym.report.targets import shown_by
+    from mbsym.report.whole_run import derive_all, lost, rendered_all
+
+    asked = task.asked
+    problems = shown_by(asked.formats) if asked.problems is None else asked.problems
+    analysis = Analysis(system, problems, asked.terms)
+    derive_all(analysis, asked.formats, _silent)
+    rendered = list(rendered_all(analysis, asked.formats, _silent))
+    files = {file.filename: file.text for file in rendered if file.text is not None}
+    defects = lost(analysis, rendered)
+    outcome = _outcome(analysis, defects)
+    row = Row(
+        task.file,
+        task.folder,
+        outcome,
+        name=system.name,
+        problems=tuple(_problem_row(analysis, number) for number in analysis.problems),
+        claims=tuple(_claim_rows(analysis)),
+        checks=tuple(
+            CheckRow(check.name, check.first, check.second, check.outcome, check.detail) for check in analysis.checks
+        ),
+        files=tuple(FileRow(name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(files.items())),
+        message="there was not enough memory for a part of it" if outcome is Outcome.MEMORY else "",
+        notes=tuple(_notes(analysis, defects)),
+    )
+    return row, files
+
+
+def _silent(_: str) -> None:
+    """Nobody is watching."""
+
+
+def _outcome(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Outcome:
+    """The worst that can be said: memory that ran out, a defect, a failed check."""
+    from mbsym.algebra.failures import Limit, Severity
+
+    missing = [failure for _, failure in defects]
+    if any(failure.severity is Severity.DEFECT and failure.limit is Limit.MEMORY for failure in missing):
+        return Outcome.MEMORY
+    if any(isinstance(error, MemoryError) for error in analysis.defects):
+        return Outcome.MEMORY
+    if any(check.failed for check in analysis.checks):
+        return Outcome.SELF_CHECK
+    if missing or analysis.defects:
+        return Outcome.INCOMPLETE
+    return Outcome.DERIVED
+
+
+def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
+    from mbsym.algebra.failures import Severity
+    from mbsym.analysis import PROBLEMS
+    from mbsym.problems.stability import Stability
+
+    problem, stage = PROBLEMS[number], analysis.stage(number)
+    row = ProblemRow(number, problem.attribute, problem.title, "derived")
+    if stage.failure is not None:
+        why = stage.failure
+        return replace(
+            row,
+            status="none",
+            code=why.code,
+            reason=why.reason,
+            hint=why.hint or None,
+            defect=why.severity is Severity.DEFECT,
+        )
+    if isinstance(stage.value, Stability):
+        at_values = stage.value.numerical
+        return replace(
+            row,
+            verdict=stage.value.verdict.word.value,
+            verdict_at_values=None if at_values is None else at_values.word.value,
+        )
+    return row
+
+
+def _claim_rows(analysis: Analysis) -> Iterable[ClaimRow]:
+    from mbsym.report.claims import claim_line
+
+    for result in analysis.claims:
+        line = claim_line(result)
+        yield ClaimRow(line.place, line.title, line.word, line.outcome, line.lines)
+
+
+def _notes(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Iterable[str]:
+    """What the program is at fault for, each once."""
+    told = [f"{where}: {why.reason}" for where, why in defects]
+    told += [f"internal error: {type(error).__name__}: {error}".removesuffix(": ") for error in analysis.defects]
+    return dict.fromkeys(told)

@@ -1,0 +1,72 @@
+"""The process of one description: ``python -m mbsym.batch.worker MEMORY LIFELINE``.
+
+A task comes on standard input, what became of it goes to standard output, both as JSON.  MEMORY is a bound in bytes, or
+0; LIFELINE the number of a pipe whose other end the batch holds: when the batch is gone, however it went, this process
+ends, too.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+
+#: The exit code of a process that met its bound on memory.
+OUT_OF_MEMORY = 75
+
+
+def main() -> None:
+    memory, lifeline = map(int, sys.argv[1:])
+    _hang_on(lifeline)
+    _bounded(memory)
+    # What a library prints must not come between: the result has a way of its own.
+    with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
+        os.dup2(2, 1)
+        try:
+            from mbsym.batch.transport import finished_text, read_task
+            from mbsym.batch.work import work
+
+            answer.write(finished_text(work(read_task(sys.stdin.read()))))
+            answer.flush()
+        except MemoryError:
+            os._exit(OUT_OF_MEMORY)
+    # What is left is to take down what was built up, for nobody.
+    os._exit(0)
+
+
+def _bounded(memory: int) -> None:
+    """No more than so many bytes, where the system has such a bound; and no core dumps."""
+    try:
+        import resource
+    except ImportError:
+        return
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if memory:
+        # The data segment: what is allocated.  The whole address space would count libraries that are only mapped.
+        with suppress(ValueError, OSError):
+            resource.setrlimit(resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS, (memory,) * 2)
+
+
+def _hang_on(lifeline: int) -> None:
+    """A signal that ends this process comes from the system itself when the other end is closed.
+
+    A thread that waits would have to wait for the algebra, too, which does not let others run while it multiplies.
+    """
+    try:
+        import fcntl
+        import select
+        import signal
+
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(lifeline, fcntl.F_SETFL, fcntl.fcntl(lifeline, fcntl.F_GETFL) | os.O_ASYNC)
+        gone, _, _ = select.select([lifeline], [], [], 0)
+    except (ImportError, AttributeError, OSError):
+        return
+    if gone:  # it was closed before anybody listened
+        os._exit(1)
+
+
+if __name__ == "__main__":
+    main()
