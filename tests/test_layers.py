@@ -52,6 +52,8 @@ def imported(tree: ast.AST) -> Iterator[str]:
             names = [f"{node.module}.{alias.name}" if node.module == "mbsym" else node.module for alias in node.names]
         for name in names:
             top, *rest = name.split(".")
+            if name == "mbsym.__version__":  # known before anything is imported
+                continue
             if top == "mbsym":
                 yield rest[0] if rest and rest[0] in BELOW else "__init__"
             elif top in ("mbsym_cli", "cli"):

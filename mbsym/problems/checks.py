@@ -51,13 +51,17 @@ PRECISION = 256
 
 @dataclass(frozen=True)
 class Check:
-    """``first`` and ``second`` name the routes; ``outcome`` is exact, verified numerically, undecided or FAILED."""
+    """``first`` and ``second`` name the routes; ``outcome`` is exact, verified numerically, undecided or FAILED.
+
+    ``states``: at how many states they agree, where they are compared at states.
+    """
 
     name: str
     first: str
     second: str
     outcome: str
     detail: str = ""
+    states: int | None = None
 
     @property
     def failed(self) -> bool:
@@ -117,16 +121,16 @@ def compare(
 
 def _compared(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs, states: int) -> Check:
     try:
-        outcome, detail = _compare(truth.rational, pairs, states)
-        return Check(name, *routes, outcome, detail)
+        outcome, detail, done = _compare(truth.rational, pairs, states)
+        return Check(name, *routes, outcome, detail, done)
     except NotRational:
         pass
     with ctx.workprec(PRECISION):
-        outcome, detail = _compare(truth.balls, pairs, states)
-    return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail)
+        outcome, detail, done = _compare(truth.balls, pairs, states)
+    return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail, done)
 
 
-def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, str]:
+def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, str, int]:
     done = 0
     for oracle in truth:
         try:
@@ -135,11 +139,11 @@ def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, s
             continue
         outcome, detail = _verdict(found)
         if outcome == FAILED:
-            return outcome, detail
+            return outcome, detail, done
         done += outcome == EXACT
         if done == wanted:
-            return EXACT, f"{done} state{'s' * (done > 1)}"
-    return UNDECIDED, f"only {done} of {wanted} states without a singularity were found"
+            return EXACT, f"{done} state{'s' * (done > 1)}", done
+    return UNDECIDED, f"only {done} of {wanted} states without a singularity were found", done
 
 
 def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[bool], list[Pair]]) -> Check:

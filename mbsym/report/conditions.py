@@ -95,9 +95,14 @@ class CaseStatement:
     all_of: tuple[Statement, ...]
     any_of: tuple[Statement, ...]
     word: str
-    theorem: str
+    theorems: tuple[str, ...]
     explanation: str
     otherwise: bool = False
+
+    @property
+    def theorem(self) -> str:
+        """The names of the theorems, or nothing."""
+        return ", ".join(self.theorems)
 
 
 def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
@@ -110,7 +115,7 @@ def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
             if any(r.always for r in case.any_of)
             else tuple(_alternative(ring, r) for r in case.any_of if not r.never),
             case.verdict.word,
-            case.verdict.theorem,
+            case.verdict.theorems,
             case.verdict.explanation,
             case.always and any(not other.never for other in found[:k]),
         )

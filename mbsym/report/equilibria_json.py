@@ -9,12 +9,18 @@ from typing import Any
 
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
-from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.schemas import version
+from mbsym.report.sections.stability import verdict_data
+
+#: The version of ``schemas/equilibria.json`` that it follows.
+FORMAT = 1
 
 
 def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equilibria) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data = {
+        "format": FORMAT,
+        "mbsym": version(),
         "system": system.name,
         "values": {name: str(value) for name, value in values.items()},
         "turning": dict(found.turning),
@@ -28,9 +34,9 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
                 "dimension": family.dimension,
                 "equations": list(family.equations),
                 "free": list(family.free),
-                "angles of": family.coordinates_of or None,
+                "angles_of": family.coordinates_of or None,
                 "sample": [_coordinate(item) for item in family.sample],
-                "stability of the sample": _verdict(family.verdict),
+                "stability_of_the_sample": verdict_data(family.verdict),
             }
             for family in found.families
         ],
@@ -41,17 +47,13 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
 def _equilibrium(one: RelativeEquilibrium) -> dict[str, Any]:
     return {
         "coordinates": [_coordinate(item) for item in one.values],
-        "angles of": one.coordinates_of or None,
+        "angles_of": one.coordinates_of or None,
         "arbitrary": list(one.free),
         "descriptions": one.described,
         "proof": one.proof,
-        "stability": _verdict(one.verdict),
+        "stability": verdict_data(one.verdict),
     }
 
 
 def _coordinate(item: CoordinateValue) -> dict[str, Any]:
     return {"name": item.name, "value": item.text, "exact": item.exact, "number": item.value}
-
-
-def _verdict(verdict: Verdict) -> dict[str, str]:
-    return {"verdict": verdict.word, "theorem": verdict.theorem, "explanation": verdict.explanation}

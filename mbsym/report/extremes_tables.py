@@ -12,6 +12,10 @@ from typing import Any
 from mbsym.numerics.digits import FULL
 from mbsym.numerics.extremes import Extremes, Row, sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.report.schemas import version
+
+#: The version of ``schemas/extremes.json`` that it follows.
+FORMAT = 1
 
 HEADER = (
     "kind",
@@ -71,13 +75,15 @@ def extremes_json(found: Extremes) -> str:
             "subject": item.subject,
             "size": item.size,
             "exact": item.judged.exact.word,
-            "theorem": item.judged.exact.theorem,
+            "theorems": list(item.judged.exact.theorems),
             "floats": dict(item.judged.floats),
             "floats_wrong": {scalar: item.judged.wrong(scalar) for scalar in FULL},
         }
         for item in found.verdicts
     ]
     whole: dict[str, Any] = {
+        "format": FORMAT,
+        "mbsym": version(),
         "system": found.system.name,
         "sentences": list(sentences(found)),
         "left_out": list(found.left_out),

@@ -2,37 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from typing import Any
 
 from mbsym.expressions.counting import counted
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.report.conditions import Statement
 
-#: The text of a formula, or its length.
-Write = Callable[[Formula], str]
+#: The text of a formula; of one that is not written out, its length and a digest of it.
+Written = str | dict[str, Any]
+Write = Callable[[Formula], Written]
 
 
 #: Conditions longer than this are counted, not printed.
 LONGEST = 100
 
 
-def column_text(values: Column, write: Write) -> list[str]:
+def column_text(values: Column, write: Write) -> list[Written]:
     return [write(x) for x in values]
 
 
-def matrix_text(values: Matrix, write: Write) -> list[list[str]]:
+def matrix_text(values: Matrix, write: Write) -> list[list[Written]]:
     return [column_text(row, write) for row in values]
-
-
-def polynomial_text(coefficients: Sequence[Formula], variable: str) -> str:
-    """sum of coefficient*variable**k, highest power first; the coefficients stay factored."""
-    written = []
-    for power, coefficient in reversed(list(enumerate(coefficients))):
-        if coefficient.is_zero:
-            continue
-        bare = variable if power == 1 else f"{variable}**{power}"
-        written.append(f"({coefficient})" if power == 0 else bare if coefficient == 1 else f"({coefficient})*{bare}")
-    return " + ".join(written) or "0"
 
 
 def statement_text(statement: Statement) -> str:

@@ -1,7 +1,11 @@
-"""``results.json``: every asked-for result as strings in Python syntax with the declared names."""
+"""``results.json``: every asked-for result; formulas are strings in Python syntax with the declared names.
+
+``schemas/results.json`` says what each property is.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,11 +16,17 @@ from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.inertias import accepted_inertias
-from mbsym.report.lengths import COUNTED, FILE, not_printed, withheld
+from mbsym.report.lengths import COUNTED, FILE, withheld
+from mbsym.report.plain import Written
+from mbsym.report.schemas import version
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.stages import NoResult
+
+#: The version of ``schemas/results.json`` that the file follows.
+FORMAT = 1
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -25,29 +35,34 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
-    """The file as nested lists and dictionaries of strings."""
+    """The file as nested lists and dictionaries, as ``schemas/results.json`` describes them."""
     from mbsym.analysis import PROBLEMS
 
     system = analysis.system
     found: dict[str, Any] = {
+        "format": FORMAT,
+        "mbsym": version(),
+        "problems": sorted(problems),
+        "terms": analysis.terms,
         "system": {"name": system.name, "description": system.description},
         "coordinates": list(system.coordinates),
+        "prescribed": {item.name: text(item.rate) for item in system.prescribed},
         "parameters": _parameters(system),
         "checks": [vars(check) for check in analysis.checks],
     }
-    unavailable: dict[str, str] = {}
+    unavailable: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
     long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
 
-    def write(formula: Formula) -> str:
-        return not_printed(formula) if id(formula) in long else str(formula)
+    def write(formula: Formula) -> Written:
+        return counted(formula) if id(formula) in long else str(formula)
 
     for number, stage in stages.items():
         key = PROBLEMS[number].attribute
         if stage.failure is None:
             found[key] = section_of(PROBLEMS[number]).data(stage.value, system, write)
         else:
-            unavailable[key] = stage.failure.reason
+            unavailable[key] = _failure(stage.failure)
     accepted = accepted_inertias(system)
     if accepted:
         found["accepted_inertias"] = [{"body": name, "violation": reason} for name, reason in accepted.items()]
@@ -56,10 +71,41 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     return found | {"unavailable": unavailable}
 
 
+def counted(formula: Formula) -> dict[str, Any]:
+    """What stands for a formula that is not written out: its length, and a digest of its normal form.
+
+    Equal digests mean equal formulas; unequal ones say nothing where the descriptions differ.
+    """
+    digest = hashlib.sha256()
+    generators = [(g.kind, g.name, g.denominator, str(g.argument)) for g in formula.ring.generators]
+    digest.update(repr([g for g in generators if g[0] != "spare"]).encode())
+    for monomial, coefficient in formula.polynomial.terms():
+        digest.update(f"{coefficient}{tuple(map(int, monomial))}".encode())
+    return {"terms": formula.terms, "sha256": digest.hexdigest()}
+
+
+def _failure(failure: NoResult) -> dict[str, Any]:
+    return {
+        "code": failure.code,
+        "limit": None if failure.limit is None else failure.limit.value,
+        "severity": failure.severity.value,
+        "reason": failure.reason,
+        "hint": failure.hint,
+    }
+
+
 def _claim(result: ClaimResult, system: System) -> dict[str, Any]:
     """One claim; what does not concern it is left out."""
-    shape = {key: value for key, value in vars(claim_line(result)).items() if key in ("place", "title", "word")}
-    found: dict[str, Any] = {**shape, "outcome": result.outcome}
+    claim, line = result.claim, claim_line(result)
+    found: dict[str, Any] = {
+        "kind": claim.kind,
+        "of": claim.of,
+        "entry": list(claim.entry),
+        "place": line.place,
+        "title": line.title,
+        "word": line.word,
+        "outcome": result.outcome,
+    }
     claimed = result.claim.printed or text(result.claim.equals)
     if result.claim.right is None:
         found["claimed"] = claimed

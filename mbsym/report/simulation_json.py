@@ -17,6 +17,9 @@ from mbsym.numerics.simulate import Trajectory
 from mbsym.report.simulation_words import conservation_json, error_json
 from mbsym.simulation import Simulation
 
+#: The version of ``schemas/simulation.json`` that it follows.
+FORMAT = 1
+
 PACKAGES = ("mbsym", "numpy", "scipy", "llvmlite", "python-flint", "heyoka")
 
 
@@ -26,6 +29,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
     state = [float(x) for x in scenario.state]
     traits = chosen.method.traits
     content: dict[str, Any] = {
+        "format": FORMAT,
         "system": system.name,
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),

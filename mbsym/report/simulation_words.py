@@ -81,7 +81,7 @@ def conservation_json(found: Conservation) -> dict[str, Any]:
     return {
         "conserved": found.standing.conserved,
         "how": found.standing.value,
-        "doubt": found.doubt.value if found.doubt is not None else None,
+        "doubt": found.doubt.name.lower() if found.doubt is not None else None,
         "largest_relative_drift": found.change,
         "relative_to": found.scale,
     }
@@ -90,13 +90,13 @@ def conservation_json(found: Conservation) -> dict[str, Any]:
 def error_json(found: ErrorEstimate | NoEstimate) -> dict[str, Any]:
     """The estimate with what it was made of, or why there is none."""
     if isinstance(found, NoEstimate):
-        return {"available": False, "why": found.why.value}
+        return {"available": False, "why": found.why.name.lower()}
     against = found.against
     return {
         "available": True,
         "final": found.final,
         "largest": found.largest,
-        "how": "difference from a better run, each quantity relative to its scale",
+        "how": "better run",
         "against": {
             "method": against.method,
             "arithmetic": against.scalar,

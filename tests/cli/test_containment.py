@@ -61,7 +61,9 @@ def test_in_a_problem(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert names(tmp_path) == FILES | {MANIFEST}
     results = json.loads((tmp_path / "results.json").read_text())
     lost = results["unavailable"]
-    assert lost[PLACES[number].split(".")[0]] == "internal error: OverflowError: planted"
+    found = lost[PLACES[number].split(".")[0]]
+    assert (found["code"], found["severity"]) == ("internal-error", "defect")
+    assert found["reason"] == "internal error: OverflowError: planted"
     independent = {"kinematics", "energy"} - set(PLACES[number].split("."))
     assert independent <= set(results) or number == 2
     for name in FILES:
@@ -135,7 +137,8 @@ def test_in_a_section_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert done.exit_code == 1
     assert "results.json: problem 5 cannot be written: internal error: OverflowError: planted" in done.stderr
     results = json.loads((tmp_path / "results.json").read_text())
-    assert results["unavailable"] == {"linearisation": "internal error: OverflowError: planted"}
+    assert list(results["unavailable"]) == ["linearisation"]
+    assert results["unavailable"]["linearisation"]["reason"] == "internal error: OverflowError: planted"
     assert {"kinematics", "energy", "equations", "equilibrium", "stability", "integrals"} <= set(results)
     assert names(tmp_path) == FILES | {MANIFEST}
 

@@ -183,7 +183,7 @@ def test_a_free_coordinate_that_a_force_of_higher_order_drives_does_not_coast() 
     free = point(spring=False)
     assert free.balance.ignorable == ("x", "y")
     assert free.balance.driven == ()
-    assert all(word.startswith("stable with respect") for word in words(free))
+    assert all(word.startswith("stable but for a drift") for word in words(free))
 
 
 def test_a_force_that_holds_a_cyclic_coordinate_takes_it_off_the_cyclic_ones() -> None:

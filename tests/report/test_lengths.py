@@ -68,11 +68,11 @@ def test_reports_of_a_long_chain_are_short_and_whole(long: Analysis) -> None:
     assert "dynamics[t_" in wolfram  # equations that are not whole are none: the program takes their place
     assert "equations = Thread" not in wolfram
     found = json.loads(TARGETS["json"].render(long, long.problems))
-    assert found["energy"]["kinetic_energy"] == f"{length} terms, not printed"
+    assert found["energy"]["kinetic_energy"]["terms"] == length
     for i, row in enumerate(long.equations.mass_matrix):
         for j, entry in enumerate(row):
             written = found["equations"]["mass_matrix"][i][j]
-            assert written in (str(entry), f"{entry.terms} terms, not printed")
+            assert written == str(entry) or written["terms"] == entry.terms
             assert (entry.terms <= FILE.longest) or written != str(entry)
 
 

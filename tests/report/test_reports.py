@@ -173,6 +173,7 @@ def test_results_hold_what_was_asked_for():
     analysis = analysis_of("satellite.yaml")
     found = json.loads(TARGETS["json"].render(analysis, (1, 2, 3, 4, 5, 6, 7)))
     assert set(found) == {
+        "format", "mbsym", "problems", "terms", "prescribed",
         "system", "coordinates", "parameters", "kinematics", "energy", "equations", "equilibrium", "linearisation",
         "stability", "integrals", "claims", "checks", "unavailable",
     }  # fmt: skip
@@ -187,8 +188,9 @@ def test_results_hold_what_was_asked_for():
     assert pitch["M"] == [["c", "f"], ["f", "d"]]
     assert pitch["K"] == [["3*(b - a)", "3*f"], ["3*f", "3*f"]]
     assert yaw["K"] == [["c - b", "0", "0"], ["0", "4*(c - a)", "4*f"], ["0", "4*f", "d + 3*f"]]
-    assert "lam**4" in found["stability"]["characteristic_polynomials"][1]
-    assert "gamma - p2 > 0" in found["stability"]["conditions"]
+    pitch = found["stability"]["subsystems"][1]
+    assert (pitch["variable"], pitch["characteristic_polynomial"][4]) == ("lam", "p1 - p2")
+    assert ("gamma - p2", ">", "necessary") in [(x["formula"], x["relation"], x["place"]) for x in pitch["conditions"]]
     assert {check["outcome"] for check in found["checks"]} == {"exact"}
     few = json.loads(TARGETS["json"].render(analysis, (1, 4)))
     assert "energy" not in few
@@ -315,8 +317,9 @@ def test_long_conditions_are_shown_once():
     assert r"\longformula{v_{4} < 0}" in text
     assert r"\text{minor 3 of K} \colon\quad v_{0} < 0" in text
     assert "of the last" not in text
-    unstable = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]["cases"][0][-1]
-    assert unstable["any_of"] == ["v4 < 0", "v2 < 0", "v0 < 0", "discriminant < 0"]
+    unstable = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]["subsystems"][0]["cases"][-1]
+    assert [item["listed"] for item in unstable["any_of"]] == ["v4", "v2", "v0", "discriminant"]
+    assert {item["relation"] for item in unstable["any_of"]} == {"<"}
 
 
 def test_what_was_shown_is_recognised_with_either_sign():
@@ -362,7 +365,7 @@ def test_very_long_conditions_are_counted_and_are_in_the_other_files():
     text = TARGETS["latex"].render(analysis, (6,)).replace("\n", " ")
     assert len(text) < 20_000
     found = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]
-    where = dict(zip(found["condition_labels"][0], found["conditions"], strict=True))
+    where = {item["label"]: item["formula"] for item in found["subsystems"][0]["conditions"]}
     for label in ("Hurwitz minor 5", "Hurwitz minor 3"):
         (requirement,) = [r for r in part.theory.requirements if r.label == label]
         size = len(requirement.condition.polynomial)
@@ -459,7 +462,7 @@ def test_without_closed_form_reports_give_the_reason_and_the_program(tmp_path):
     analysis = Analysis(analysis_of("satellite.yaml").system, terms=60)
     reason = analysis.stage(3).failure.reason
     texts = {name: target.render(analysis, analysis.problems) for name, target in TARGETS.items()}
-    assert json.loads(texts["json"])["unavailable"]["equations"] == reason
+    assert json.loads(texts["json"])["unavailable"]["equations"]["reason"] == reason
     assert reason in texts["latex"]
     assert "s_{1} = " in texts["latex"]
     assert "dynamics[t_" in texts["wolfram"]
@@ -674,7 +677,7 @@ def test_without_any_code_reports_say_why(tmp_path):
     assert not hasattr(loaded(texts["python"], tmp_path), "mass_matrix")
     assert "the power 1/3" in texts["latex"]
     assert "the power 1/3" in texts["wolfram"]
-    assert "the power 1/3" in json.loads(texts["json"])["unavailable"]["equations"]
+    assert "the power 1/3" in json.loads(texts["json"])["unavailable"]["equations"]["reason"]
 
 
 def test_an_alternative_is_one_inequality() -> None:

@@ -47,7 +47,7 @@ STRONGER = {STABLE: ASYMPTOTIC, CRITICAL: STABLE, GYROSCOPIC: STABLE, DRIFTS: AS
 def word_of(found: dict[str, Any]) -> str:
     """The verdict of results.json: at the values if there are any; where there is none, nothing is said."""
     told = found.get("stability")
-    return NOTHING[0] if told is None else str(told["verdict_at_values"] or told["verdict"])
+    return NOTHING[0] if told is None else str((told["at_values"] or told)["verdict"])
 
 
 def said_of(known: Known) -> tuple[Analysis, dict[str, Any]]:

@@ -17,6 +17,7 @@ def data(found: Equilibrium, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     return {
         "satisfied": found.satisfied,
+        "impossible": bool(found.impossible),
         "conditions": column_text(found.conditions, write),
         "solved": {name: str(value) for name, value in found.solved},
     }

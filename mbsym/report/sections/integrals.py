@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mbsym.model.system import System
 from mbsym.problems.integrals import Integral
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: tuple[Integral, ...], system: System, write: Write) -> list[dict[str, str]]:
+def data(found: tuple[Integral, ...], system: System, write: Write) -> list[dict[str, Any]]:
     """The section of results.json."""
     return [
         {"name": item.name, "kind": item.kind, "of": item.of, "formula": write(item.formula), "status": item.status}

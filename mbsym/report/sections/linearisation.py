@@ -9,7 +9,7 @@ from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Matrix
 from mbsym.model.system import System
 from mbsym.problems.linearisation import Linearisation
-from mbsym.report.plain import Write, matrix_text
+from mbsym.report.plain import Write, Written, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -33,7 +33,7 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
         yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
 
 
-def _five(found: Any, write: Write) -> dict[str, list[list[str]]]:
+def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:
     return {name: matrix_text(getattr(found, name), write) for name in "MDGKN"}
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from mbsym.formulas.names import free_name
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
+from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.requirements import Method
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
@@ -15,7 +16,7 @@ from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, provided, statements
-from mbsym.report.plain import LONGEST, Write, polynomial_text, shortened, statement_text
+from mbsym.report.plain import LONGEST, Write, shortened, statement_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -31,21 +32,11 @@ MOST_ROOTS = 10
 def data(found: Stability, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
-    lam = free_name("lam", taken)
-    parts = found.subsystems
-    wanted = [list(statements(part.ring, part.theory.requirements)) for part in parts]
+    variable = free_name("lam", taken)
     return {
-        "characteristic_polynomials": [polynomial_text(part.characteristic, lam) for part in parts],
-        "conditions": [statement_text(item) for items in wanted for item in items],
-        "condition_labels": [[item.label for item in items] for items in wanted],
-        "condition_places": [[item.place for item in items] for items in wanted],
-        "cases": [
-            [_case(case, items) for case in cases(part.ring, part.theory.cases)]
-            for part, items in zip(parts, wanted, strict=True)
-        ],
-        "verdict": found.verdict.word,
-        "theorem": found.verdict.theorem,
-        "verdict_at_values": None if found.numerical is None else found.numerical.word,
+        **verdict_data(found.verdict),
+        "at_values": None if found.numerical is None else verdict_data(found.numerical),
+        "subsystems": [_subsystem(part, variable) for part in found.subsystems],
         "eigenvalues_at_values": [
             {
                 "coordinates": list(part.coordinates),
@@ -55,6 +46,63 @@ def data(found: Stability, system: System, write: Write) -> dict[str, Any]:
             }
             for part in found.spectra
         ],
+    }
+
+
+def verdict_data(found: Verdict) -> dict[str, Any]:
+    """A verdict in every JSON file: its word, its theorems and reasons as codes, the reasons in sentences beside."""
+    return {
+        "verdict": found.word,
+        "theorems": list(found.theorems),
+        "reasons": [{"code": item.code.name.lower(), "data": [_datum(x) for x in item.data]} for item in found.reasons],
+        "explanation": found.explanation,
+    }
+
+
+def _datum(value: object) -> int | str:
+    return value if isinstance(value, int) else str(value)
+
+
+def _subsystem(part: SubsystemStability, variable: str) -> dict[str, Any]:
+    listed = list(statements(part.ring, part.theory.requirements))
+    shown = Shown()
+    for item in listed:
+        shown.show(item)
+    return {
+        "coordinates": list(part.coordinates),
+        "variable": variable,
+        "characteristic_polynomial": [str(coefficient) for coefficient in part.characteristic],
+        "method": part.theory.method.name.lower(),
+        **verdict_data(part.theory.verdict),
+        "conditions": [_statement(item) | {"place": item.place.name.lower()} for item in listed],
+        "cases": [_case(case, shown) for case in cases(part.ring, part.theory.cases)],
+    }
+
+
+def _statement(item: Statement) -> dict[str, Any]:
+    """``formula`` ``relation`` 0; null for a formula that is too long to be written out."""
+    formula = item.formula if item.never is None else item.never
+    return {
+        "label": item.label,
+        "formula": None if formula is None else str(formula),
+        "relation": item.relation,
+        "never": item.never is not None,
+    }
+
+
+def _case(case: CaseStatement, shown: Shown) -> dict[str, Any]:
+    """Conditions that the list already holds, or holds reversed, are named by their labels there."""
+
+    def named(item: Statement) -> dict[str, Any]:
+        found = shown.reference(item)
+        return _statement(item) if found is None else {"listed": found.under, "relation": found.relation}
+
+    return {
+        "all_of": [named(item) for item in case.all_of],
+        "any_of": [named(item) for item in case.any_of],
+        "otherwise": case.otherwise,
+        "verdict": case.word,
+        "theorems": list(case.theorems),
     }
 
 
@@ -80,24 +128,6 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
-
-
-def _case(case: CaseStatement, listed: Sequence[Statement]) -> dict[str, Any]:
-    """Conditions that the list already holds, or holds reversed, are named by their labels."""
-    shown = Shown()
-    for item in listed:
-        shown.show(item)
-
-    def short(item: Statement) -> str:
-        found = shown.reference(item)
-        return statement_text(item) if found is None else f"{found.under} {found.relation} 0"
-
-    return {
-        "all_of": [short(item) for item in case.all_of],
-        "any_of": [short(item) for item in case.any_of],
-        "verdict": case.word,
-        "theorem": case.theorem,
-    }
 
 
 def _roots(spectrum: Spectrum) -> str:

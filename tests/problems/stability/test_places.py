@@ -45,8 +45,10 @@ def test_a_lamina_spins_stably_about_its_largest_axis() -> None:
     ]
     assert "(needed by this method only)" in TARGETS["latex"].render(a, (6,))
     told = json.loads(TARGETS["json"].render(a, (6,)))["stability"]
-    assert told["condition_places"][-1] == ["necessary, but for the case of equality", "needed by this method only"]
-    assert [list(map(len, told[key])) for key in ("condition_labels", "condition_places")] == [[0, 2], [0, 2]]
+    assert [[item["place"] for item in part["conditions"]] for part in told["subsystems"]] == [
+        [],
+        ["necessary", "method"],
+    ]
 
 
 def test_squared_factors_of_discriminants_are_no_conditions_of_stability() -> None:
