@@ -27,6 +27,7 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
+from mbsym.model.units import Units
 
 Vector = tuple[Expression, Expression, Expression]
 Tensor = tuple[Vector, Vector, Vector]
@@ -348,6 +349,7 @@ class System:
     initial: tuple[InitialValue, ...] = ()
     abbreviations: tuple[Abbreviation, ...] = ()
     claims: tuple[Claim, ...] = ()
+    units: Units = Units()
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -76,7 +76,18 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         hint = "a coordinate is an undeclared name used as an angle, or is listed in a body: 'coordinates: [x]'"
         reading.error("no-coordinates", "nothing moves: there are no coordinates", fields.key_span("bodies"), hint)
     check_system(system, reading)
+    system = _with_units(system, fields, reading)
     return None if complaints.error_count else system
+
+
+def _with_units(system: System, fields: Fields, reading: Reading) -> System:
+    """The system with its units; where there are any, every expression was checked for its dimension."""
+    if not reading.units and fields.get("units") is None:
+        return system
+    from mbsym.source.units import checked_units, read_units  # pint takes its time, and few descriptions need it
+
+    declared = read_units(fields.get("units"), reading.units, reading)
+    return system if reading.errors else replace(system, units=checked_units(system, declared, reading))
 
 
 def _check_version(fields: Fields, reading: Reading) -> None:

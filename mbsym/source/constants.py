@@ -10,6 +10,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
 from mbsym.model.comparison import has_sign
 from mbsym.model.system import Parameter, Prescribed, rational
+from mbsym.model.units import Declared
 from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGNS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading, keys_of
@@ -84,10 +85,18 @@ def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parame
     if reading.errors != errors:
         value = None
     sign = _sign(fields, reading) or _sign_of(value)
+    _note_unit(name, fields, reading)
     parameter = Parameter(name, sign, value, fields.text("meaning"), span)
     if value is not None:
         _check_sign(parameter, fields.key_span("value"), reading)
     return parameter
+
+
+def _note_unit(name: str, fields: Fields, reading: Reading) -> None:
+    node = fields.get("unit")
+    scalar = None if node is None else reading.scalar(node, f"the unit of {ascii_safe(name)}")
+    if scalar is not None:
+        reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
 
 
 def _sign(fields: Fields, reading: Reading) -> str | None:
@@ -149,5 +158,6 @@ def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
         return Prescribed(name, reading.expression(entry.value, allowed), span=entry.key.span)
     fields = reading.fields(entry.value, f"the prescribed motion {ascii_safe(name)}", PRESCRIBED)
     rate = fields.required_expression("rate", allowed)
+    _note_unit(name, fields, reading)
     initial: Expression | None = fields.expression("initial", Allowed("an initial value"))
     return Prescribed(name, rate, None if initial == ZERO else initial, fields.text("meaning"), entry.key.span)

@@ -23,6 +23,7 @@ SYSTEM = {
     "values": "numerical values of parameters: {l: 2}",
     "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0)",
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
+    "units": "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
     "claims": "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
 }
 
@@ -30,12 +31,14 @@ PARAMETER = {
     "sign": f"one of {', '.join(SIGNS)} (or positive: true); when left out, the sign of the value, or real without one",
     "value": "a numerical value, used where numbers are wanted",
     "meaning": "what it is, for reports",
+    "unit": "its unit, such as kg*m^2; every formula is then checked for its dimension",
 }
 
 PRESCRIBED = {
     "rate": "its constant rate of change",
     "initial": "its value at t = 0 (0 when left out)",
     "meaning": "what it is, for reports",
+    "unit": "its unit, such as rad or m",
 }
 
 BODY = {

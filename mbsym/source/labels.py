@@ -29,6 +29,7 @@ BODY = {
 SECTIONS: dict[str, tuple[str, str | None]] = {
     "parameters": ("parameters", "sign"),
     "prescribed motions": ("prescribed", "rate"),
+    "units": ("units", None),
     "relations": ("relations", None),
     "unperturbed motion": ("motion", "value"),
     "notation": ("notation", None),

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from mbsym.expressions.parser import ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Vector
+from mbsym.model.units import Declared
 from mbsym.source import placed
 from mbsym.source.keys import ALIASES, UNSUPPORTED
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
@@ -88,10 +89,11 @@ def _is_empty(node: Node) -> bool:
 
 @dataclass(slots=True)
 class Reading:
-    """The complaints and the declared names of one description."""
+    """The complaints and the declared names of one description; ``units`` are those that stand in records."""
 
     complaints: Complaints
     scope: Scope
+    units: list[Declared] = field(default_factory=list)
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self.complaints.error(code, message, span, hint)

@@ -79,11 +79,13 @@ def _system_values() -> dict[str, Schema]:
         "values": _named(expression),
         "initial": _named({"anyOf": [expression, _record(INITIAL, {})]}),
         "abbreviations": _named(expression),
+        "units": _named(_UNIT),
         "claims": {"type": "array", "items": _reference("claim")},
     }
 
 
-_TEXTS: dict[str, Schema] = {"meaning": {"type": "string"}}
+_UNIT: Schema = {"type": ["string", "integer"]}
+_TEXTS: dict[str, Schema] = {"meaning": {"type": "string"}, "unit": _UNIT}
 _BODY_NAME: Schema = {"type": ["string", "integer"]}
 
 

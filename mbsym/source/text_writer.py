@@ -30,6 +30,7 @@ def to_text(system: System) -> str:
     lines += _section("Parameters", {one.name: _record(parameter_shape(one), "sign") for one in system.parameters})
     motions = {one.name: _record(prescribed_shape(one), "rate") for one in system.prescribed}
     lines += _section("Prescribed motions", motions)
+    lines += _section("Units", {one.name: one.text for one in system.units.declared})
     numbers = {"0": "0", **{body.name: str(number) for number, body in enumerate(system.bodies, start=1)}}
     for number, body in enumerate(system.bodies, start=1):
         lines += ["", f"Body description ({number})", *_body(body, numbers)]

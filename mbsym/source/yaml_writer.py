@@ -31,6 +31,7 @@ def to_yaml(system: System) -> str:
         lines.append(f"description: {scalar_text(system.description)}")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _mapping("units", {one.name: one.text for one in system.units.declared})
     lines += _bodies(system)
     lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
     lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})

@@ -1,0 +1,35 @@
+"""What was printed has a dimension, too: that of the quantity, where claims are no equations up to a factor."""
+
+from __future__ import annotations
+
+from mbsym.model.claims import CLAIMS, Claim
+from mbsym.model.units import ENERGY, LENGTH, NONE, RATE, SPEED, Dimension
+from mbsym.source.units.expressions import Dimensions
+from mbsym.source.units.inference import Form
+
+#: Claims whose dimension is fixed.  Those in notation and dimensionless time, and those that hold up to a factor, are
+#: only asked to add like to like.
+_FIXED: dict[str, tuple[Dimension, str]] = {
+    "kinetic energy": (ENERGY, "a kinetic energy"),
+    "force function": (ENERGY, "a force function"),
+    "potential energy": (ENERGY, "a potential energy"),
+    "lagrangian": (ENERGY, "a Lagrangian"),
+    "angular velocity": (RATE, "an angular velocity"),
+    "relative angular velocity": (RATE, "an angular velocity"),
+    "direction cosine": (NONE, "a direction cosine"),
+    "position": (LENGTH, "a position"),
+    "velocity": (SPEED, "a velocity"),
+}
+
+
+def check_claim(claim: Claim, dimensions: Dimensions) -> None:
+    """Complains where what was printed cannot be the quantity that it is said to be."""
+    if claim.right is not None:
+        dimensions.alike(claim.equals, claim.right, "compared")
+    elif claim.kind in _FIXED:
+        wanted, what = _FIXED[claim.kind]
+        dimensions.expect(claim.equals, Form(wanted), what)
+    elif claim.of_expression is not None:
+        dimensions.alike(claim.of_expression, claim.equals, "equal")
+    elif not claim.variable and claim.kind in CLAIMS:
+        dimensions.of(claim.equals)

@@ -1,0 +1,132 @@
+"""The dimension of an expression; what is added or compared must be alike, what a function takes must be a number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, text
+from mbsym.model.system import rational
+from mbsym.model.units import LENGTH, MASS, NONE, TIME, Dimension, times, written
+from mbsym.source.units.inference import Form, Inference
+
+_MOST = 40
+
+#: Said instead of exponents.
+_NAMED = {NONE: "a pure number", MASS: "a mass (kg)", LENGTH: "a length (m)", TIME: "a time (s)"}
+
+Complain = Callable[[str, Span | None, str | None], None]
+
+
+@dataclass
+class Dimensions:
+    """Reads expressions; complains where dimensions do not agree."""
+
+    inference: Inference
+    name_form: Callable[[str], Form]
+    complain: Complain
+    fresh: int = 0
+
+    def expect(self, expression: Expression, wanted: Form, what: str) -> None:
+        """An expression must have a dimension.  A number alone may stand for anything, in the units of the rest."""
+        if not names(expression):
+            return
+        found = self.of(expression)
+        if found is not None and not self.inference.equate(found, wanted):
+            message = f"{_shown(expression)} is {self.told(found)}, and {what} is {self.told(wanted)}"
+            self.complain(message, _place(expression), None)
+
+    def alike(self, left: Expression, right: Expression, how: str) -> None:
+        """Two expressions must have the same dimension; a number alone goes with anything."""
+        one, other = (self.of(side) if names(side) else None for side in (left, right))
+        if one is not None and other is not None and not self.inference.equate(one, other):
+            message = f"{_shown(left)} is {self.told(one)}, {_shown(right)} is {self.told(other)}: they cannot be {how}"
+            self.complain(message, _place(right) or _place(left), None)
+
+    def of(self, expression: Expression) -> Form | None:
+        """The dimension; None of a zero, which goes with every one."""
+        match expression:
+            case Number(value):
+                return None if value == 0 else Form()
+            case Name(name):
+                return Form() if name == "pi" else self.name_form(name)
+            case Negative(operand):
+                return self.of(operand)
+            case Call("sqrt", argument):
+                inner = self.of(argument)
+                return None if inner is None else inner.to_the(Fraction(1, 2))
+            case Call(function, argument):
+                self._number(argument, f"{function} takes a pure number, such as an angle in radians")
+                return Form()
+            case Operation("**", base, exponent):
+                return self._power(base, exponent)
+            case Operation("*", left, right):
+                return self._product(left, right, 1)
+            case Operation("/", left, right):
+                return self._product(left, right, -1)
+            case Operation(_, left, right):
+                return self._sum(expression, left, right)
+        raise TypeError(expression)
+
+    def _product(self, left: Expression, right: Expression, power: int) -> Form | None:
+        one, other = self.of(left), self.of(right)
+        return None if one is None or other is None else one.times(other, power)
+
+    def _power(self, base: Expression, exponent: Expression) -> Form | None:
+        inner, power = self.of(base), rational(exponent)
+        if power is not None:
+            return Form() if power == 0 else None if inner is None else inner.to_the(power)
+        self._number(exponent, "an exponent is a pure number")
+        self._number(base, "what has a symbol for its exponent is a pure number")
+        return Form()
+
+    def _sum(self, whole: Operation, left: Expression, right: Expression) -> Form | None:
+        one, other = self.of(left), self.of(right)
+        if one is None or other is None:
+            return other if one is None else one
+        if self.inference.equate(one, other):
+            return one
+        how = "added" if whole.operator == "+" else "subtracted"
+        message = f"{_shown(left)} is {self.told(one)}, {_shown(right)} is {self.told(other)}: they cannot be {how}"
+        number = next((side for side in (left, right) if not names(side)), None)
+        hint = None if number is None else "give the number a name and a unit under 'parameters'"
+        self.complain(message, _place(right) or whole.span, hint)
+        self.fresh += 1
+        return Form(NONE, ((f" {self.fresh}", Fraction(1)),))  # one complaint about it is enough
+
+    def _number(self, expression: Expression, rule: str) -> None:
+        found = self.of(expression)
+        if found is not None and not self.inference.equate(found, Form()):
+            message = f"{_shown(expression)} is {self.told(found)}; {rule}"
+            self.complain(message, _place(expression), None)
+
+    def told(self, form: Form) -> str:
+        """A dimension in words and SI units."""
+        known = self.inference.reduced(form)
+        unknown = " times ".join(f"[{name}]" + ("" if power == 1 else f"^{power}") for name, power in known.unknown)
+        base = in_words(known.known)
+        return base if not unknown else unknown if not known.known else f"{base} times {unknown}"
+
+
+def in_words(dimension: Dimension) -> str:
+    """``a length (m)``, ``kg*m^2/s^2``, ``a pure number``."""
+    return _NAMED.get(dimension) or written(times(NONE, dimension))
+
+
+def _shown(expression: Expression) -> str:
+    written_out = text(expression)
+    return f"'{written_out}'" if len(written_out) <= _MOST else f"'{written_out[:_MOST]}...'"
+
+
+def _place(expression: Expression) -> Span | None:
+    """The place of an expression: its own, or that of its first part that has one."""
+    if expression.span is not None:
+        return expression.span
+    match expression:
+        case Negative(operand) | Call(_, operand):
+            return _place(operand)
+        case Operation(_, left, right):
+            return _place(left) or _place(right)
+    return None

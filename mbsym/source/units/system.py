@@ -1,0 +1,229 @@
+"""The dimensions of a whole description: what each place demands, and what then follows for every name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import Expression
+from mbsym.model.system import (
+    Body,
+    CoordinateDamper,
+    CoordinateSpring,
+    ForceFunction,
+    GeneralizedForce,
+    IsotropicDamper,
+    Load,
+    NewtonianGravity,
+    Point,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    Rayleigh,
+    System,
+    Torque,
+    UniformGravity,
+    Vector,
+)
+from mbsym.model.units import (
+    ACCELERATION,
+    BASES,
+    ENERGY,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    NONE,
+    RATE,
+    SPEED,
+    TIME,
+    Declared,
+    Dimension,
+    Units,
+    times,
+)
+from mbsym.source.reading import Reading
+from mbsym.source.units.claims import check_claim
+from mbsym.source.units.expressions import Dimensions
+from mbsym.source.units.inference import Form, Inference
+from mbsym.source.units.reading import Unit, unit
+
+#: What multiples of base units are called.
+_NAMES: dict[str, dict[float, str]] = {
+    "kg": {1: "kg", 1e-3: "g", 1e3: "t", 1e-6: "mg"},
+    "m": {1: "m", 1e-3: "mm", 1e-2: "cm", 1e3: "km", 1e-6: "um"},
+    "s": {1: "s", 1e-3: "ms", 60: "min", 3600: "h", 86400: "day", 1e-6: "us"},
+}
+_EXACT = 1e-9
+
+
+def checked_units(system: System, declared: tuple[Declared, ...], reading: Reading) -> Units:
+    """The units of a system after every expression in it was checked for its dimension.
+
+    Without declared units nothing is checked, and there are none.
+    """
+    known = {one.name: found for one in declared if isinstance(found := unit(one.text), Unit)}
+    if len(known) < len(declared) or not declared:
+        return Units(declared)
+    base = _base_units(declared, known, reading)
+
+    def complain(message: str, span: Span | None, hint: str | None) -> None:
+        reading.error("dimension", message, span, hint)
+
+    inference = Inference({name: Form(found.dimension) for name, found in known.items()})
+    _System(system, Dimensions(inference, _form_of(system), complain)).check()
+    names = (*system.coordinates, *system.parameter_names, *(one.name for one in system.prescribed))
+    more = (*(one.name for one in system.notation), *(one.name for one in system.abbreviations))
+    follows = ((name, inference.dimension(name)) for name in (*names, *more))
+    inferred = tuple((name, found) for name, found in follows if found is not None)
+    return Units(declared, inferred, base)
+
+
+def _form_of(system: System) -> Callable[[str], Form]:
+    """The dimension of a name, that of its rates included."""
+    rates = {f"{name}_dot": (name, 1) for name in system.coordinates}
+    rates |= {f"{name}_ddot": (name, 2) for name in system.coordinates}
+
+    def form(name: str) -> Form:
+        if name == "t":
+            return Form(TIME)
+        name, order = rates.get(name, (name, 0))
+        return Form(times(NONE, TIME, -order), ((name, Fraction(1)),))
+
+    return form
+
+
+def _base_units(
+    declared: tuple[Declared, ...], known: dict[str, Unit], reading: Reading
+) -> tuple[tuple[str, str], ...]:
+    """What the base units are called; complains about a unit that is no product of those before it.
+
+    With base units of sizes b_i a unit of dimension (d_i) has the size prod b_i^d_i: linear in logarithms, solved by
+    elimination; a pure number has size one.
+    """
+    rows: list[tuple[str, Dimension, float]] = []  # the pivot, with exponent one, and what it stands with
+    for one in declared:
+        left, size = known[one.name].dimension, math.log(known[one.name].factor)
+        for pivot, row, value in rows:
+            power = dict(left).get(pivot, Fraction(0))
+            left, size = times(left, row, -power), size - float(power) * value
+        if left:
+            pivot, power = left[0]
+            row, value = times(NONE, left, 1 / power), size / float(power)
+            rows = [
+                (p, times(r, row, -dict(r).get(pivot, Fraction(0))), v - float(dict(r).get(pivot, 0)) * value)
+                for p, r, v in rows
+            ]
+            rows.append((pivot, row, value))
+        elif abs(size) > _EXACT:
+            reading.error("incoherent-units", *_incoherent(one, known[one.name], math.exp(size)))
+    alone = {row[0][0]: math.exp(value) for _, row, value in rows if len(row) == 1}
+    return tuple((base, name) for base in BASES if base in alone and (name := _called(base, alone[base])) is not None)
+
+
+def _incoherent(one: Declared, found: Unit, factor: float) -> tuple[str, Span | None, str]:
+    if not found.dimension:
+        hint = f"numbers are taken as they stand: multiply them by {factor:.6g}, and write rad or 1"
+        return f"angles are in radians, and pure numbers without a factor: '{one.text}' is neither", one.span, hint
+    message = f"'{one.text}' does not belong to the system of units of the names before"
+    return message, one.span, f"in their units the numbers of '{one.name}' are {factor:.6g} times as large"
+
+
+def _called(base: str, size: float) -> str | None:
+    """The name of a multiple of a base unit, if it has one."""
+    table = _NAMES.get(base, {1: base})
+    return next((name for known, name in table.items() if abs(math.log(size / known)) < _EXACT), None)
+
+
+class _System:
+    """Walks through a system and says what each place holds."""
+
+    def __init__(self, system: System, dimensions: Dimensions) -> None:
+        self.system = system
+        self.dimensions = dimensions
+
+    def expect(self, expression: Expression | None, wanted: Dimension | Form, what: str) -> None:
+        if expression is not None:
+            form = wanted if isinstance(wanted, Form) else Form(wanted)
+            self.dimensions.expect(expression, form, what)
+
+    def vector(self, vector: Vector | None, wanted: Dimension, what: str) -> None:
+        for component in vector or ():
+            self.expect(component, wanted, what)
+
+    def of(self, name: str) -> Form:
+        return self.dimensions.name_form(name)
+
+    def check(self) -> None:
+        system = self.system
+        for motion in system.prescribed:
+            self.expect(motion.rate, self.of(motion.name).times(Form(RATE)), f"the rate of '{motion.name}'")
+            self.expect(motion.initial, self.of(motion.name), f"'{motion.name}'")
+        for body in system.bodies:
+            self.body(body)
+        for load in system.loads:
+            self.load(load)
+        for relation in system.relations:
+            self.expect(relation.value, self.of(relation.name), f"'{relation.name}'")
+        for symbol in system.notation:
+            self.expect(symbol.value, self.of(symbol.name), f"'{symbol.name}'")
+        for abbreviation in system.abbreviations:
+            self.expect(abbreviation.value, self.of(abbreviation.name), f"'{abbreviation.name}'")
+        for assumption in system.assumptions:
+            self.dimensions.alike(assumption.left, assumption.right, "compared")
+        for entry in system.motion:
+            self.expect(entry.value, self.of(entry.coordinate), f"'{entry.coordinate}'")
+            self.expect(entry.rate, self.of(entry.coordinate).times(Form(RATE)), f"the rate of '{entry.coordinate}'")
+        self.expect(system.time_scale, RATE, "the rate of dimensionless time")
+        for claim in system.claims:
+            check_claim(claim, self.dimensions)
+
+    def body(self, body: Body) -> None:
+        for angle in body.rotation.angles:
+            self.expect(angle, NONE, "a rotation angle")
+        self.vector(body.connection_point, LENGTH, "a connection point")
+        self.vector(body.relative_velocity, SPEED, "a relative velocity")
+        self.vector(body.mass_centre, LENGTH, "a mass centre")
+        self.expect(body.mass, MASS, "a mass")
+        for row in body.inertia.tensor if body.inertia else ():
+            self.vector(row, INERTIA, "a moment of inertia")
+        self.vector(body.gyrostatic_moment, times(INERTIA, RATE), "a gyrostatic moment")
+
+    def load(self, load: Load) -> None:
+        match load:
+            case NewtonianGravity(constant=constant):
+                self.expect(constant, times(times(LENGTH, LENGTH, 2), TIME, -2), "a gravitational parameter")
+            case UniformGravity(acceleration):
+                self.vector(acceleration, ACCELERATION, "an acceleration")
+            case CoordinateSpring(coordinate, stiffness, rest):
+                there = self.of(coordinate)
+                self.expect(stiffness, Form(ENERGY).times(there, -2), f"the stiffness of a spring on '{coordinate}'")
+                self.expect(rest, there, f"'{coordinate}'")
+            case CoordinateDamper(coordinate, coefficient):
+                wanted = Form(times(ENERGY, TIME)).times(self.of(coordinate), -2)
+                self.expect(coefficient, wanted, f"the coefficient of a damper on '{coordinate}'")
+            case PointSpring(first, second, stiffness, length):
+                self.points((first, second))
+                self.expect(stiffness, times(FORCE, LENGTH, -1), "a stiffness")
+                self.expect(length, LENGTH, "a length")
+            case PointDamper(first, second, coefficient) | IsotropicDamper(first, second, coefficient):
+                self.points((first, second))
+                self.expect(coefficient, times(FORCE, SPEED, -1), "a damping coefficient")
+            case ForceFunction(expression, spelled):
+                self.expect(expression, ENERGY, f"a {spelled}")
+            case Rayleigh(expression):
+                self.expect(expression, times(ENERGY, TIME, -1), "a dissipation function")
+            case GeneralizedForce(components):
+                for name, component in components:
+                    self.expect(component, Form(ENERGY).times(self.of(name), -1), f"the generalised force of '{name}'")
+            case PointForce(point, components):
+                self.points((point,))
+                self.vector(components, FORCE, "a force")
+            case Torque(components=components):
+                self.vector(components, ENERGY, "a torque")
+
+    def points(self, points: Iterable[Point]) -> None:
+        for point in points:
+            self.vector(point.position, LENGTH, "a point")
