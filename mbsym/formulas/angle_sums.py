@@ -12,10 +12,9 @@ Waves are packed too: the sum of n_k * 256**k, and whether it is a sine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
-from math import comb, gcd, lcm
+from math import comb, gcd
 from typing import NamedTuple
 
 #: A packed product of sines and cosines.
@@ -45,9 +44,16 @@ class Wave(NamedTuple):
 class Part(NamedTuple):
     """weight * waves * (what stays a product of sines and cosines)."""
 
-    weight: Fraction
+    weight: int
     waves: tuple[Wave, ...]
     code: Code
+
+
+class Joined(NamedTuple):
+    """The sum of the parts, divided by ``below``, a power of two."""
+
+    parts: tuple[Part, ...]
+    below: int = 1
 
 
 def packed(exponents: Iterable[tuple[int, int, int]]) -> Code:
@@ -67,61 +73,60 @@ def unpacked(code: Code) -> Iterator[tuple[int, int, int]]:
 
 
 @lru_cache(maxsize=1 << 14)
-def joined(products: frozenset[tuple[Code, int]]) -> tuple[Part, ...] | None:
+def joined(products: frozenset[tuple[Code, int]], squares: bool = True) -> Joined | None:
     """The shortest presentation found of the sum of weight * product; None where nothing is shorter than products.
 
-    The same value, exactly.  Depends on the products only, and not on their order.
+    The same value, exactly.  Depends on the products only, and not on their order.  ``squares``: single angles, too,
+    have their sin^2 and their double angle.
     """
     if len(products) < 2 or len(products) > MOST_PRODUCTS:
         return None
-    found = _shortest(dict(products))
-    return None if found is None else tuple(sorted(found, key=_order))
+    return _shortest(dict(sorted(products)), squares)
 
 
-def may_join(products: Mapping[Code, int]) -> bool:
-    """Whether there is anything to look for: two products that differ as the parts of a sum of angles do."""
-    return bool(_linked(products)) or bool(_squared(products))
-
-
-def _order(part: Part) -> tuple[object, ...]:
-    return (part.waves, part.code)
-
-
-def _shortest(products: Mapping[Code, int]) -> list[Part] | None:
-    best: list[Part] | None = None
-    least = length_of_parts([Part(Fraction(weight), (), code) for code, weight in products.items()])
-    for block in _candidates(products):
-        parts = _over(products, block)
-        length = length_of_parts(parts)
+def _shortest(products: Mapping[Code, int], squares: bool) -> Joined | None:
+    pieces = [Part(weight, (), code) for code, weight in products.items()]
+    best, least = None, _length(pieces, 1)
+    for block in _candidates(products, squares):
+        found = _over(products, block)
+        length = _length(*found)
         if length < least:
-            best, least = parts, length
+            best, least = found, length
+            if 2 * len(found[0]) <= len(products) and len(block) > 1:
+                break
     if best is None:
         return None
     # What stands beside each wave is a polynomial in the angles that are left.
-    beside: dict[tuple[Wave, ...], dict[Code, Fraction]] = {}
-    for part in best:
+    parts, below = best
+    beside: dict[tuple[Wave, ...], dict[Code, int]] = {}
+    for part in parts:
         beside.setdefault(part.waves, {})[part.code] = part.weight
-    found: list[Part] = []
-    for waves, rest in beside.items():
-        found += _further(waves, rest)
-    return found
+    further = [(waves, rest, _shortest(rest, squares) if len(rest) > 1 else None) for waves, rest in beside.items()]
+    common = max([1, *(again.below for _, _, again in further if again is not None)])
+    result: list[Part] = []
+    for waves, rest, again in further:
+        if again is None:
+            result += [Part(weight * common, waves, code) for code, weight in rest.items()]
+        else:
+            factor = common // again.below
+            result += [
+                Part(part.weight * factor, tuple(sorted((*waves, *part.waves))), part.code) for part in again.parts
+            ]
+    return _lowest(result, below * common)
 
 
-def _further(waves: tuple[Wave, ...], rest: dict[Code, Fraction]) -> list[Part]:
-    if len(rest) > 1:
-        below = max(weight.denominator for weight in rest.values())  # powers of two
-        again = _shortest({code: int(weight * below) for code, weight in rest.items()})
-        if again is not None:
-            return [Part(part.weight / below, tuple(sorted((*waves, *part.waves))), part.code) for part in again]
-    return [Part(weight, waves, code) for code, weight in rest.items()]
+def _lowest(parts: Iterable[Part], below: int) -> Joined:
+    parts = list(parts)
+    common = gcd(below, *(part.weight for part in parts))
+    lowest = [part._replace(weight=part.weight // common) for part in parts]
+    return Joined(tuple(sorted(lowest, key=lambda part: (part.waves, part.code))), below // common)
 
 
 # --- which angles to join ---------------------------------------------------------------------------------------------
 
 
-def _candidates(products: Mapping[Code, int]) -> Iterator[tuple[int, ...]]:
-    for angle in _squared(products):
-        yield (angle,)
+def _candidates(products: Mapping[Code, int], squares: bool) -> Iterator[tuple[int, ...]]:
+    """Sets of angles to join, the largest first."""
     links = _linked(products)
     for whole in _components(links):
         if len(whole) > MOST_ANGLES:
@@ -131,6 +136,9 @@ def _candidates(products: Mapping[Code, int]) -> Iterator[tuple[int, ...]]:
         sizes = range(len(whole) - 1, 1, -1) if len(whole) <= _ALL_SUBSETS else (2,) if len(whole) > 2 else ()
         for size in sizes:
             yield from combinations(whole, size)
+    if squares:
+        for angle in _squared(products):
+            yield (angle,)
 
 
 def _linked(products: Mapping[Code, int]) -> list[tuple[int, int]]:
@@ -196,26 +204,32 @@ def _single(byte: int) -> tuple[tuple[int, int], ...]:
     return tuple((n, weight) for n, weight in spectrum.items() if weight)
 
 
-def _over(products: Mapping[Code, int], block: tuple[int, ...]) -> list[Part]:
-    """Waves in the angles of the block, where they are shorter; beside them what the other angles leave."""
+def _over(products: Mapping[Code, int], block: tuple[int, ...]) -> tuple[list[Part], int]:
+    """Waves in the angles of the block, where they are shorter, beside what the others leave; and their divisor."""
     mask = sum(_BYTE << (_BITS * angle) for angle in block)
     beside: dict[Code, dict[Code, int]] = {}
     for code, weight in products.items():
         beside.setdefault(code & ~mask, {})[code & mask] = weight
+    scale = 1 << max(_degree(code & mask) for code in products)
     found: list[Part] = []
     for outside, inner in beside.items():
-        waves = _waves(inner, block)
-        as_products = [Part(Fraction(weight), (), code) for code, weight in inner.items()]
-        if waves is None or length_of_parts(waves) >= length_of_parts(as_products):
+        as_products = [Part(weight * scale, (), code) for code, weight in inner.items()]
+        waves = _waves(inner, block, scale)
+        if waves is None or _length(waves, scale) >= _length(as_products, scale):
             waves = as_products
-        found += [part._replace(code=part.code | outside) for part in waves]
-    return found
+        found += [Part(weight, wave, code | outside) for weight, wave, code in waves] if outside else waves
+    return found, scale
 
 
-def _waves(inner: Mapping[Code, int], block: tuple[int, ...]) -> list[Part] | None:
-    """The Fourier polynomial; None where a power is too high."""
-    cosines: dict[int, Fraction] = {}
-    sines: dict[int, Fraction] = {}
+@lru_cache(maxsize=1 << 12)
+def _degree(code: Code) -> int:
+    return sum(sine + cosine for _, sine, cosine in unpacked(code))
+
+
+def _waves(inner: Mapping[Code, int], block: tuple[int, ...], scale: int) -> list[Part] | None:
+    """``scale`` times the Fourier polynomial; None where a power is too high."""
+    cosines: dict[int, int] = {}
+    sines: dict[int, int] = {}
     for code, weight in inner.items():
         spectrum, odd, degree = {0: weight}, 0, 0
         for angle in block:
@@ -232,40 +246,44 @@ def _waves(inner: Mapping[Code, int], block: tuple[int, ...]) -> list[Part] | No
                     key = place + n * shift
                     product[key] = product.get(key, 0) + value * factor
             spectrum = product
-        sign = -1 if odd & 2 else 1  # (-i)**odd is this sign, times -i where odd is odd
+        factor = -scale >> degree if odd & 2 else scale >> degree  # (-i)**odd, but for -i itself
         target = sines if odd & 1 else cosines
         for key, value in spectrum.items():
-            if key > 0 or (key == 0 and not odd & 1):  # the other half is its mirror image
-                weight_here = Fraction(sign * value * (2 if key else 1), 1 << degree)
-                target[key] = target.get(key, Fraction(0)) + weight_here
-    return [*_folded(cosines), *(part for key, weight in sines.items() if weight for part in _wave(True, key, weight))]
+            if key > 0:  # the other half is its mirror image
+                target[key] = target.get(key, 0) + 2 * factor * value
+            elif not key and not odd & 1:
+                target[0] = target.get(0, 0) + factor * value
+    found = _folded(cosines)
+    found += [_wave(True, key, weight) for key, weight in sines.items() if weight]
+    return found
 
 
-def _folded(cosines: dict[int, Fraction]) -> list[Part]:
+def _folded(cosines: dict[int, int]) -> list[Part]:
     """1 + cos(2 u) is 2 cos(u)**2, 1 - cos(2 u) is 2 sin(u)**2."""
-    constant = cosines.pop(0, Fraction(0))
+    constant = cosines.pop(0, 0)
     found: list[Part] = []
     for key in sorted(cosines):
         weight = cosines[key]
         if constant and abs(weight) == abs(constant):
-            half = _multiples(key)
-            if all(n % 2 == 0 for _, n in half):
-                wave, _ = _oriented(weight != constant, tuple((angle, n // 2) for angle, n in half))
+            double = _multiples(key)
+            if all(n % 2 == 0 for _, n in double):
+                wave, _ = _oriented(weight != constant, tuple([(angle, n // 2) for angle, n in double]))
                 found.append(Part(2 * constant, (wave._replace(power=2),), 0))
-                constant = Fraction(0)
+                constant = 0
                 continue
         if weight:
-            found += _wave(False, key, weight)
+            found.append(_wave(False, key, weight))
     if constant:
         found.append(Part(constant, (), 0))
     return found
 
 
-def _wave(sine: bool, key: int, weight: Fraction) -> list[Part]:
+def _wave(sine: bool, key: int, weight: int) -> Part:
     wave, sign = _oriented(sine, _multiples(key))
-    return [Part(weight * sign, (wave,), 0)]
+    return Part(weight * sign, (wave,), 0)
 
 
+@lru_cache(maxsize=1 << 12)
 def _multiples(key: int) -> Combination:
     """(angle, multiple) from the sum of multiple * 256**angle."""
     found, angle = [], 0
@@ -288,25 +306,25 @@ def _oriented(sine: bool, combination: Combination) -> tuple[Wave, int]:
 # --- lengths ----------------------------------------------------------------------------------------------------------
 
 
-def length_of_code(code: Code) -> int:
+@lru_cache(maxsize=1 << 12)
+def _length_of_code(code: Code) -> int:
     """What is read of a product of sines and cosines: functions, names, powers."""
     return sum(2 * sine + (0 if not cosine else 2 if cosine == 1 else 3) for _, sine, cosine in unpacked(code))
 
 
-def length_of_wave(wave: Wave) -> int:
+@lru_cache(maxsize=1 << 12)
+def _length_of_wave(wave: Wave) -> int:
     """``cos``, and of each angle its name, its sign and its multiple."""
     inside = sum(1 if abs(n) == 1 else 2 for _, n in wave.combination) + len(wave.combination) - 1
     return 1 + inside + (wave.power != 1)
 
 
-def length_of_parts(parts: Sequence[Part]) -> int:
-    """The parts as a sum, their common number in front."""
-    if not parts:
-        return 0
-    below = lcm(*(part.weight.denominator for part in parts))
-    content = gcd(*(part.weight.numerator * (below // part.weight.denominator) for part in parts))
-    common = Fraction(content, below)
-    written = 0 if common.denominator == 1 else 1
-    for waves, code in ((part.waves, part.code) for part in parts):
-        written += 1 + sum(map(length_of_wave, waves)) + length_of_code(code)
-    return written + sum(abs(part.weight) != common for part in parts)
+def _length(parts: Sequence[Part], below: int) -> int:
+    """The parts as a sum, their common number in front; all are divided by ``below``."""
+    common = gcd(*[part.weight for part in parts])
+    written = 0 if common % below == 0 else 1
+    for weight, waves, code in parts:
+        written += 1 + (abs(weight) != common) + _length_of_code(code)
+        for wave in waves:
+            written += _length_of_wave(wave)
+    return written

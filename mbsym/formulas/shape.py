@@ -47,8 +47,8 @@ FACTOR_COEFFICIENTS = 3000
 COLLECT = 40
 #: Beyond so many terms only the variable that occurs most often is tried.
 COLLECT_BEST = 14
-#: Both forms of shorter polynomials are made and compared; of longer ones only the counts of terms are.
-COMPARED = 60
+#: In polynomials with up to so many terms sin^2 and cos^2 of one angle are weighed against one of them.
+COMPARED = 24
 #: A longer polynomial stands in sums of angles if that leaves at most this share of its terms.
 WORTH_SUMS = Fraction(3, 4)
 
@@ -166,6 +166,7 @@ class _Presenter:
         self._negatives: dict[Sum, Sum] = {}
         self._ranks: dict[Sum, int] = {}
         self._lengths: dict[Sum, int] = {}
+        self._choices: dict[tuple[frozenset[Any], Angles], tuple[int, Terms]] = {}
         self._waves = _Waves(self)
 
     def __call__(self, polynomial: Polynomial, angles: Angles = "products") -> Sum:
@@ -180,14 +181,60 @@ class _Presenter:
         scale, terms = self._terms(numerator)
         if not terms:
             return Sum(())
-        joined = None if angles == "products" else self._waves.joined(terms)
-        if joined is None:
+        if angles == "products":
             return self._shape(scale, terms, under)
+        below, joined = self._with_angles(terms, angles)
+        if joined is not terms:
+            return self._shape(scale * below, joined, under)
+        known = self._shapes.get((id(polynomial), "products"))
+        if known is None:
+            known = self._shapes[id(polynomial), "products"] = (polynomial, self._shape(scale, terms, under))
+        return known[1]
+
+    def _with_angles(self, terms: Terms, angles: Angles) -> tuple[int, Terms]:
+        """(a whole number, the terms times it), sums of angles chosen for each product of velocities by itself."""
+        groups: dict[Monomial, Terms] = {}
+        for monomial, coefficient in terms.items():
+            end = 0
+            while end < len(monomial) and self._levels[monomial[end][0]] >= _VELOCITY:
+                end += 1
+            groups.setdefault(monomial[:end], {})[monomial[end:]] = coefficient
+        chosen = [(head, *self._shorter(tail, angles)) for head, tail in groups.items()]
+        if all(tail is groups[head] for head, _, tail in chosen):
+            return 1, terms
+        common = max(below for _, below, _ in chosen)
+        return common, {
+            head + monomial: coefficient * (common // below)
+            for head, below, tail in chosen
+            for monomial, coefficient in tail.items()
+        }
+
+    def _shorter(self, terms: Terms, angles: Angles) -> tuple[int, Terms]:
+        """The terms of one product of velocities, as products of sines and cosines or with waves."""
+        if len(terms) < 2:
+            return 1, terms
+        key = frozenset(terms.items())
+        known = self._choices.get((key, angles))
+        if known is None:
+            known = self._choices[key, angles] = self._chosen(terms, angles)
+        return known if known[0] else (1, terms)
+
+    def _chosen(self, terms: Terms, angles: Angles) -> tuple[int, Terms]:
+        """The same, (0, {}) for products."""
+        sums = self._waves.joined(terms, squares=False)
+        if angles == "shorter" and sums is not None and len(terms) > COMPARED:
+            sums = sums if len(sums[1]) <= WORTH_SUMS * len(terms) else None
+        if angles == "shorter" and len(terms) > COMPARED:
+            return sums or (0, {})
+        squared = self._waves.joined(terms, squares=True)
+        if squared is None or squared == sums:
+            return sums or (0, {})
         if angles == "sums":
-            return self._shape(scale * joined[0], joined[1], under)
-        if len(terms) > COMPARED and len(joined[1]) > WORTH_SUMS * len(terms):
-            return self(polynomial)
-        return min(self(polynomial), self._shape(scale * joined[0], joined[1], under), key=self.length)
+            return squared
+        # sin^2 beside cos^2 of one angle is shorter only where their weights are not shared with other terms.
+        usual = sums or (1, terms)
+        lengths = [self.length(self._shape(*candidate, [])) for candidate in (usual, squared)]
+        return squared if lengths[1] < lengths[0] else sums or (0, {})
 
     def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
@@ -513,9 +560,10 @@ class _Waves:
         self.names = [name for name in presenter._declared if name in ring.angles]
         self._numbers = {name: ring.angles[name] for name in self.names}
         self._atoms = [(ring.index("sine", name), ring.index("cosine", name)) for name in self.names]
-        self._codes: dict[int, tuple[int, int]] = {}  # of a generator: its angle, its weight in a code
+        self._codes: dict[int, int] = {}  # of a generator: its weight in a packed product
         for angle, (sine, cosine) in enumerate(self._atoms):
-            self._codes[sine], self._codes[cosine] = (angle, 1 << 8 * angle), (angle, 2 << 8 * angle)
+            self._codes[sine] = angle_sums.packed([(angle, 1, 0)])
+            self._codes[cosine] = angle_sums.packed([(angle, 0, 1)])
         self._made: list[Wave] = []
         self._indices: dict[Wave, int] = {}
         self._known: dict[angle_sums.Wave, tuple[int, int]] = {}
@@ -526,8 +574,8 @@ class _Waves:
     def index(self, wave: Wave) -> int:
         return self._indices[wave]
 
-    def joined(self, terms: Terms) -> tuple[int, Terms] | None:
-        """(a whole number, the terms times it) with waves where they are shorter, term by term of all else; or None."""
+    def joined(self, terms: Terms, squares: bool) -> tuple[int, Terms] | None:
+        """(a whole number, the terms times it) with waves where they are shorter, beside all else; None if nowhere."""
         beside: dict[Monomial, dict[int, int]] = {}
         codes = self._codes
         for monomial, coefficient in terms.items():
@@ -539,31 +587,32 @@ class _Waves:
                 elif pair[1] > angle_sums.MOST_POWER:
                     return None
                 else:
-                    code += known[1] * pair[1]
+                    code += known * pair[1]
             beside.setdefault(tuple(rest), {})[code] = coefficient
         if len(beside) == len(terms):
             return None
-        found: list[tuple[Monomial, int, tuple[angle_sums.Part, ...]]] = []
-        below, any_joined = 1, False
+        found: list[tuple[Monomial, int, dict[int, int], angle_sums.Joined | None]] = []
+        below = 0
         for outside, products in beside.items():
+            waves = None
             content = gcd(*products.values())
-            parts = None
             if len(products) > 1:
-                parts = angle_sums.joined(frozenset([(code, c // content) for code, c in products.items()]))
-            if parts is None:
-                parts = tuple([angle_sums.Part(Fraction(c // content), (), code) for code, c in products.items()])
-            else:
-                any_joined = True
-                below = lcm(below, *(part.weight.denominator for part in parts))
-            found.append((outside, content, parts))
-        if not any_joined:
+                waves = angle_sums.joined(frozenset([(code, c // content) for code, c in products.items()]), squares)
+                if waves is not None:
+                    below = max(below, waves.below)
+            found.append((outside, content, products, waves))
+        if not below:
             return None
         result: Terms = {}
-        for outside, content, parts in found:
+        for outside, content, products, waves in found:
+            if waves is None:
+                parts = [angle_sums.Part(weight * below, (), code) for code, weight in products.items()]
+            else:
+                factor = content * (below // waves.below)
+                parts = [part._replace(weight=part.weight * factor) for part in waves.parts]
             for part in parts:
-                weight = part.weight * content * below
                 monomial = self._monomial(outside, part)
-                result[monomial] = result.get(monomial, 0) + weight.numerator
+                result[monomial] = result.get(monomial, 0) + part.weight
         return below, result
 
     def _monomial(self, outside: Monomial, part: angle_sums.Part) -> Monomial:
