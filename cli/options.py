@@ -14,6 +14,7 @@ from mbsym.expressions.counting import counted
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, Name, walk
+from mbsym.problems import NUMBERS
 from mbsym.source import is_description, render_option
 from mbsym.source.scope import closest
 from mbsym_cli.console import printable
@@ -81,8 +82,6 @@ class Options:
 
     def problems(self, text: str) -> tuple[int, ...]:
         """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""
-        from mbsym.analysis import PROBLEMS
-
         found: set[int] = set()
         for part in (part.strip() for part in text.split(",")):
             first, dash, last = (piece.strip() for piece in part.partition("-"))
@@ -96,10 +95,10 @@ class Options:
                 hint = f"a range goes upwards: write {last}-{first}"
                 self.complain("--problems", "bad-range", f"the range {part} is empty", hint)
                 continue
-            wrong = [n for n in dict.fromkeys((low, high)) if n not in PROBLEMS]
+            wrong = [n for n in dict.fromkeys((low, high)) if n not in NUMBERS]
             if wrong:
                 message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
-                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {max(PROBLEMS)}")
+                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {max(NUMBERS)}")
                 continue
             found.update(range(low, high + 1))
         return tuple(sorted(found))
