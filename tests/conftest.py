@@ -25,6 +25,8 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no chromium")
 needs_pdflatex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
 
 TESTS = Path(__file__).parent
@@ -52,6 +54,15 @@ def parsed(text: str) -> Expression:
     tree = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, end - start))
     assert tree is not None, [item.message for item in complaints.items]
     return tree
+
+
+def browsed(file: Path, *options: str, wait: int = 1000) -> tuple[str, list[str]]:
+    """The document that a browser makes of a file, after ``wait`` virtual milliseconds, and what its console says."""
+    command = [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--v=0"]
+    command += [f"--user-data-dir={file.parent / 'browser'}", f"--virtual-time-budget={wait}", *options, "--dump-dom"]
+    done = subprocess.run([*command, file.as_uri()], capture_output=True, timeout=120)
+    said = done.stderr.decode(errors="replace").splitlines()
+    return done.stdout.decode(errors="replace"), [line for line in said if "CONSOLE" in line]
 
 
 class Exact:

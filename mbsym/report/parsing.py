@@ -251,6 +251,35 @@ def _printable(text: str) -> None:
         raise SyntaxError(f"the control character U+{ord(bad[0]):04X}", ("", line, 0, None))
 
 
+#: What stands in these is no markup.
+_RAW = re.compile(r"(<(script|style)\b[^>]*>)(.*?)(</\2>)", re.DOTALL)
+
+
+def _html(text: str) -> None:
+    """Our pages are well-formed XML besides, and ask for nothing from elsewhere."""
+    from xml.parsers import expat
+
+    bare = _RAW.sub(lambda found: found[1] + "\n" * found[3].count("\n") + found[4], text)
+    _printable(bare)
+    reader = expat.ParserCreate()
+    reader.StartElementHandler = _own_element
+    try:
+        reader.Parse(bare, True)
+    except expat.ExpatError as error:
+        raise SyntaxError(expat.ErrorString(error.code), ("", error.lineno, error.offset, None)) from None
+
+
+def _own_element(name: str, attributes: dict[str, str]) -> None:
+    for key, value in attributes.items():
+        if key.startswith("on") or key == "style":
+            raise SyntaxError(f"the attribute {key} of <{name}> is none of ours")
+        if key in _ADDRESSES and not value.startswith(("#", "data:image/")):
+            raise SyntaxError(f"<{name}> asks for {value[:60]!r}")
+
+
+_ADDRESSES = ("src", "href", "xlink:href", "action", "formaction", "data", "poster", "srcset", "ping", "background")
+
+
 def _json(text: str) -> None:
     json.loads(text, parse_constant=_no_number)
 
@@ -260,5 +289,6 @@ def _no_number(word: str) -> float:
 
 
 _READERS: dict[str, Callable[[str], None]] = {
-    "py": _python, "c": _c, "h": _c, "wl": _wolfram, "tex": _latex, "json": _json,
+    "py": _python, "c": _c, "h": _c, "wl": _wolfram, "tex": _latex, "html": _html,
+    "json": _json,
 }  # fmt: skip

@@ -75,6 +75,12 @@ def _c_header(analysis: Analysis, problems: Sequence[int]) -> str:
     return header(analysis, problems)
 
 
+def _html(analysis: Analysis, problems: Sequence[int]) -> str:
+    from mbsym.report.html_report import render
+
+    return render(analysis, problems)
+
+
 def _json(analysis: Analysis, problems: Sequence[int]) -> str:
     from mbsym.report.results_json import render
 
@@ -97,6 +103,7 @@ TARGETS = {
             program=True,
         ),
         Target("c", "model.c", (), "C99 source of the equations, with model.h", _c, (_HEADER,), program=True),
+        Target("html", "report.html", None, "a page for browsers, in one file", _html),
         Target("json", "results.json", None, "every result as text in Python syntax", _json),
     )
 }

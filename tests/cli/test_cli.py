@@ -35,7 +35,16 @@ def test_run_writes_all_reports(tmp_path: Path) -> None:
     done = mbsym("run", PENDULUM, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json", files.MANIFEST}
+    assert names == {
+        "report.tex",
+        "report.wl",
+        "model.py",
+        "model.c",
+        "model.h",
+        "report.html",
+        "results.json",
+        files.MANIFEST,
+    }
     assert "self-check" in done.stdout
     assert "exact" in done.stdout
 

@@ -1,0 +1,376 @@
+"""Formulas in MathML (Core, presentation): the same shapes and the same names as in LaTeX.
+
+No browser breaks a formula across lines.  So a formula is a list of *pieces*, each the content of a ``<math>`` of its
+own, and the page breaks between them: before a plus or minus of the outermost sum, and within brackets only where
+these are long.  Products carry the invisible times, functions the invisible application, so that what is read aloud, or
+by a program, is what is meant.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.formulas.names import greek, parts
+from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, leaves, present
+
+#: Brackets with more symbols than this may be broken; those of coefficients, made of parameters, are kept longer.
+LONG_BRACKET, LONG_COEFFICIENT = 24, 60
+
+_LETTERS = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
+    "iota": "ι", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "omicron": "ο", "pi": "π", "rho": "ρ",
+    "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω",
+}  # fmt: skip
+_BRACKETS = ("()", "[]", "{}")
+_DOTS = {"velocity": "˙", "acceleration": "¨"}
+_TRIGONOMETRIC = {"sine": "sin", "cosine": "cos"}
+_NAMED = {"exp": "exp", "log": "ln", "atan": "arctan"}
+
+TIMES = "<mo>\u2062</mo>"
+#: Around functions and words, which would run into their neighbours.
+SPACED_TIMES = '<mo lspace=".17em">\u2062</mo>'
+APPLY = '<mo rspace=".12em">\u2061</mo>'
+
+
+# --- elements ---------------------------------------------------------------------------------------------------------
+
+
+def mi(name: str) -> str:
+    """An identifier; one letter is set in italics, several are upright."""
+    return f"<mi>{escape(name)}</mi>"
+
+
+def mn(value: int | str) -> str:
+    """An unsigned number."""
+    return f"<mn>{value}</mn>"
+
+
+def mo(character: str, first: bool = False) -> str:
+    """An operator between its operands; where a piece begins with it, that has to be said."""
+    form = ' form="infix"' if first else ""
+    return f"<mo{form}>{escape(character)}</mo>"
+
+
+def sign(character: str) -> str:
+    """A sign before its operand."""
+    return f'<mo form="prefix">{character}</mo>'
+
+
+def mtext(words: str) -> str:
+    return f"<mtext>{escape(words)}</mtext>"
+
+
+def fraction(top: str, bottom: str) -> str:
+    return f"<mfrac><mrow>{top}</mrow><mrow>{bottom}</mrow></mfrac>"
+
+
+def bracketed(content: str, pair: str = "()") -> str:
+    """In brackets that grow with what they hold."""
+    opening, closing = pair[0], pair[1]
+    return f"<mrow><mo>{opening}</mo>{content}<mo>{closing}</mo></mrow>"
+
+
+def power(base: str, exponent: str) -> str:
+    return f"<msup><mrow>{base}</mrow><mrow>{exponent}</mrow></msup>"
+
+
+def row(items: Sequence[str]) -> str:
+    """(a, b, c)."""
+    return bracketed('<mo separator="true">,</mo><mspace width="0.3em"/>'.join(items))
+
+
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """A matrix in brackets."""
+    body = "".join("<mtr>" + "".join(f"<mtd>{x}</mtd>" for x in line) + "</mtr>" for line in rows)
+    return bracketed(f"<mtable>{body}</mtable>")
+
+
+# --- names ------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A stem and its index, as elements; dots stand over the stem only."""
+
+    stem: str
+    index: str = ""
+
+    def __str__(self) -> str:
+        return f"<msub>{self.stem}{self.index}</msub>" if self.index else self.stem
+
+    def dotted(self, dots: str) -> Symbol:
+        return Symbol(f'<mover accent="true">{self.stem}<mo stretchy="false">{dots}</mo></mover>', self.index)
+
+    def raised(self, exponent: int) -> str:
+        if exponent == 1:
+            return str(self)
+        if self.index:
+            return f"<msubsup>{self.stem}{self.index}{mn(exponent)}</msubsup>"
+        return f"<msup>{self.stem}{mn(exponent)}</msup>"
+
+
+def mathml_symbol(name: str) -> Symbol:
+    """theta1 -> theta with index 1, Jx -> J with index x, p_max -> p with index max, mass -> mass."""
+    split = parts(name)
+    if split.greek:
+        return Symbol(mi(letter(split.greek)), _index(split.indices))
+    stem, indices = split.stem, list(split.indices)
+    match = re.fullmatch(r"([A-Z])([a-z]{1,2}|[A-Z])|([a-z])([a-z])", stem)
+    if match:
+        stem, first = (match[1], match[2]) if match[1] else (match[3], match[4])
+        indices.insert(0, first)
+    return Symbol(mi(stem), _index(indices))
+
+
+def letter(name: str) -> str:
+    """theta -> \u03b8, Theta -> \u0398."""
+    lower = name[:1].lower() + name[1:]
+    letter = _LETTERS[lower]
+    return letter if lower == name else letter.upper()
+
+
+def _index(indices: Iterable[str]) -> str:
+    """Digits and letters side by side, words apart by commas."""
+    written: list[str] = []
+    before = ""
+    for piece in indices:
+        word = len(piece) > 1 and not piece.isdigit()
+        if before and (word or (before.isdigit() and piece.isdigit())):
+            written.append('<mo separator="true">,</mo>')
+        written.append(mn(piece) if piece.isdigit() else mi(letter(greek(piece)) if greek(piece) else piece))
+        before = piece
+    if not written:
+        return ""
+    return written[0] if len(written) == 1 else f"<mrow>{''.join(written)}</mrow>"
+
+
+class MathNames:
+    """One renaming for a system: no two names look alike; one that would is written out as it was declared."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        taken: set[str] = set()
+        self._symbols: dict[str, Symbol] = {}
+        for name in dict.fromkeys(names):
+            symbol = mathml_symbol(name)
+            if str(symbol) in taken:
+                symbol = Symbol(f'<mi class="verbatim">{escape(name)}</mi>')
+            taken.add(str(symbol))
+            self._symbols[name] = symbol
+
+    def __getitem__(self, name: str) -> Symbol:
+        known = self._symbols.get(name)
+        return mathml_symbol(name) if known is None else known
+
+
+_NAMES: WeakKeyDictionary[Ring, MathNames] = WeakKeyDictionary()
+
+
+def mathml_names(ring: Ring) -> MathNames:
+    """The ring's renaming, made once; a part of a ring has the names of the whole."""
+    ring = ring.whole if isinstance(ring, ParameterRing) else ring
+    if ring not in _NAMES:
+        kinds = ("coordinate", "prescribed", "parameter")
+        _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])
+    return _NAMES[ring]
+
+
+# --- formulas ---------------------------------------------------------------------------------------------------------
+
+
+def mathml_pieces(ring: Ring, polynomial: Polynomial) -> list[str]:
+    """The polynomial in pieces between which a page may break the line."""
+    return MathPrinter(ring).pieces(shape_of(ring, polynomial))
+
+
+def mathml_text(ring: Ring, polynomial: Polynomial) -> str:
+    """The polynomial in one piece."""
+    return MathPrinter(ring).sum(shape_of(ring, polynomial))
+
+
+def shape_of(ring: Ring, polynomial: Polynomial) -> Sum:
+    """What is printed here: with sums of angles where these are shorter, unless something else was asked for."""
+    return present(ring, polynomial, angles_or("shorter"))
+
+
+class MathPrinter:
+    def __init__(self, ring: Ring) -> None:
+        self.ring = ring
+        self.names = mathml_names(ring)
+        self._atoms: dict[tuple[int, int], str] = {}
+        self._heights: dict[Sum, int] = {}
+
+    def sum(self, shape: Sum) -> str:
+        return "".join(self._sum(shape, False))
+
+    def pieces(self, shape: Sum) -> list[str]:
+        return self._sum(shape, True)
+
+    def _sum(self, shape: Sum, breaks: bool) -> list[str]:
+        if not shape.terms:
+            return [mn(0)]
+        found = [""]
+        for place, term in enumerate(shape.terms):
+            negative = term.coefficient < 0
+            if place and breaks:
+                found.append("")
+            if place:
+                found[-1] += mo("\u2212" if negative else "+", breaks)
+            elif negative:
+                found[-1] += sign("\u2212")
+            _join(found, self._product(term, breaks))
+        return found
+
+    def _product(self, product: Product, breaks: bool) -> list[str]:
+        """Without its sign: number and parameters as one fraction if there is a denominator, then the rest."""
+        top, bottom = product.magnitude
+        over = self._readable(product.over)
+        head = ""
+        if product.under:
+            inside = [f for f in over if isinstance(f.base, int) and self._is_parameter(f.base)]
+            if len(over) == 1 and not inside and isinstance(over[0].base, int):
+                inside = over
+            over = [f for f in over if f not in inside]
+            above = [mn(top)] if top != 1 or not inside else []
+            below = [mn(bottom)] if bottom != 1 else []
+            alone = len(product.under) == 1 and not below
+            below += [self._denominator(f, alone) for f in self._readable(product.under)]
+            head = fraction(self._joined(above + [self.factor(f) for f in inside]), self._joined(below))
+        elif bottom != 1:
+            head = f"<mfrac>{mn(top)}{mn(bottom)}</mfrac>"
+        elif top != 1 or not over:
+            head = mn(top)
+        found = [head]
+        before = head
+        for factor in over:
+            pieces = self.factor_pieces(factor) if breaks else [self.factor(factor)]
+            if before:
+                found[-1] += _times(before, pieces[0])
+            _join(found, pieces)
+            before = pieces[-1]
+        return found
+
+    def _joined(self, factors: Sequence[str]) -> str:
+        text = ""
+        for before, factor in zip(["", *factors], factors, strict=False):
+            text += (_times(before, factor) if before else "") + factor
+        return text
+
+    def _readable(self, factors: Iterable[Factor]) -> list[Factor]:
+        """Sines and cosines last: after ``cos x`` a factor s or (a + b) would read as a part of the argument."""
+        return sorted(factors, key=self._is_sine)
+
+    def _is_sine(self, factor: Factor) -> bool:
+        if isinstance(factor.base, Wave):
+            return True
+        return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _TRIGONOMETRIC
+
+    def _is_parameter(self, index: int) -> bool:
+        return self.ring.generators[index].kind == "parameter"
+
+    def _denominator(self, factor: Factor, alone: bool) -> str:
+        if alone and factor.exponent == 1 and isinstance(factor.base, Sum):
+            return self.sum(factor.base)
+        return self.factor(factor)
+
+    def factor(self, factor: Factor) -> str:
+        if isinstance(factor.base, int):
+            return self.atom(factor.base, factor.exponent)
+        if isinstance(factor.base, Wave):
+            return self.wave(factor.base, factor.exponent)
+        inner = bracketed(self.sum(factor.base), self._pair(factor.base))
+        return inner if factor.exponent == 1 else f"<msup>{inner}{mn(factor.exponent)}</msup>"
+
+    def factor_pieces(self, factor: Factor) -> list[str]:
+        """A long bracket in pieces; its brackets, in different pieces, do not grow, and the exponent is the last's."""
+        if not isinstance(factor.base, Sum) or leaves(factor.base) <= LONG_BRACKET:
+            return [self.factor(factor)]
+        if self._constant(factor.base) and leaves(factor.base) <= LONG_COEFFICIENT:
+            return [self.factor(factor)]
+        pair = self._pair(factor.base)
+        pieces = self._sum(factor.base, True)
+        pieces[0] = f'<mo form="prefix" stretchy="false">{pair[0]}</mo>' + pieces[0]
+        end = f'<mo form="postfix" stretchy="false">{pair[1]}</mo>'
+        pieces[-1] += end if factor.exponent == 1 else f"<msup>{end}{mn(factor.exponent)}</msup>"
+        return pieces
+
+    def _constant(self, shape: Sum) -> bool:
+        """Whether it is made of parameters only."""
+        bases = [f.base for term in shape.terms for f in (*term.over, *term.under)]
+        return all(
+            self._constant(x) if isinstance(x, Sum) else isinstance(x, int) and self._is_parameter(x) for x in bases
+        )
+
+    def _pair(self, shape: Sum) -> str:
+        return _BRACKETS[(self._height(shape) - 1) % len(_BRACKETS)]
+
+    def _height(self, shape: Sum) -> int:
+        """How deeply brackets are nested, this one included."""
+        if shape not in self._heights:
+            inner = (f.base for term in shape.terms for f in term.over if isinstance(f.base, Sum))
+            self._heights[shape] = 1 + max(map(self._height, inner), default=0)
+        return self._heights[shape]
+
+    def atom(self, index: int, exponent: int = 1) -> str:
+        """A generator to a power."""
+        key = index, exponent
+        if key not in self._atoms:
+            self._atoms[key] = self._atom(self.ring.generators[index], exponent)
+        return self._atoms[key]
+
+    def _atom(self, g: Generator, exponent: int) -> str:
+        if g.kind in _TRIGONOMETRIC:
+            name = Symbol(mi(_TRIGONOMETRIC[g.kind])).raised(exponent)
+            return f"<mrow>{name}{APPLY}{self._angle(g)}</mrow>"
+        if g.kind == "root":
+            return Symbol(f"<msqrt>{self._inner(g.argument)}</msqrt>").raised(exponent)
+        if g.kind == "function":
+            name = Symbol(mi(_NAMED[g.name])).raised(exponent)
+            return f"<mrow>{name}{APPLY}{bracketed(self._inner(g.argument))}</mrow>"
+        if g.name == "pi":
+            return Symbol(mi("π")).raised(exponent)
+        symbol = self.names[g.name]
+        return (symbol.dotted(_DOTS[g.kind]) if g.kind in _DOTS else symbol).raised(exponent)
+
+    def wave(self, wave: Wave, exponent: int = 1) -> str:
+        """The sine or cosine of a sum of angles, in brackets unless it is a multiple of one."""
+        text = ""
+        for name, n in wave.angle:
+            if text:
+                text += mo("\u2212" if n < 0 else "+")
+            elif n < 0:
+                text += sign("\u2212")
+            top, angle = abs(n.numerator), str(self.names[name])
+            multiple = angle if top == 1 else mn(top) + TIMES + angle
+            text += multiple if n.denominator == 1 else fraction(multiple, mn(n.denominator))
+        name = Symbol(mi(_TRIGONOMETRIC[wave.kind])).raised(exponent)
+        argument = f"<mrow>{text}</mrow>" if len(wave.angle) == 1 else bracketed(text)
+        return f"<mrow>{name}{APPLY}{argument}</mrow>"
+
+    def _angle(self, g: Generator) -> str:
+        if g.argument is not None:
+            return bracketed(self._inner(g.argument))
+        symbol = str(self.names[g.name])
+        return symbol if g.denominator == 1 else f"<mfrac>{symbol}{mn(g.denominator)}</mfrac>"
+
+    def _inner(self, argument: Any) -> str:
+        return self.sum(shape_of(self.ring, argument))
+
+
+def _join(found: list[str], pieces: Sequence[str]) -> None:
+    """Pieces after pieces: the first one goes on where the last one ends."""
+    found[-1] += pieces[0]
+    found.extend(pieces[1:])
+
+
+_WORD = re.compile(r"<mrow><m(sup><m)?i>|<mi( class=\"verbatim\")?>[^<]{2,}<|<m(sub|subsup|sup)><mi[^>]*>[^<]{2,}<")
+
+
+def _times(before: str, after: str) -> str:
+    """Invisible, with a little room around functions and words."""
+    return SPACED_TIMES if _WORD.match(before) or _WORD.match(after) else TIMES

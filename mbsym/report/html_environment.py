@@ -1,0 +1,67 @@
+"""Jinja for HTML: everything that is put into a page is escaped, but for what our own printers have made.
+
+A page is one file that asks the network for nothing.  Its style and its scripts stand in it, and a content security
+policy with their hashes lets the browser run these and nothing else, whatever a description may have smuggled in.
+"""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Callable, Mapping
+from hashlib import sha256
+from importlib.resources import files
+from typing import Any
+
+from markupsafe import Markup
+
+
+def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[str, ...], **values: Any) -> str:
+    """A template of ``mbsym_templates/html`` filled in; ``known`` are the functions that it may call.
+
+    ``scripts`` names the files of that folder that the page runs.  An unknown name in a template is an error.
+    """
+    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined  # only reports need it
+
+    try:
+        cache = FileSystemBytecodeCache()  # compiled templates, in a folder that only this user may write
+    except RuntimeError:
+        cache = None
+    folder = files("mbsym_templates").joinpath("html")
+    environment = Environment(
+        bytecode_cache=cache,
+        loader=FileSystemLoader(str(folder)),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.globals.update(known)
+    style = folder.joinpath("page.css").read_text(encoding="utf-8")
+    code = [folder.joinpath(name).read_text(encoding="utf-8") for name in scripts]
+    values |= {
+        "style": Markup(style),
+        "scripts": [Markup(text) for text in code],
+        "policy": _policy(style, code),
+    }
+    return environment.get_template(template).render(**values)
+
+
+def _policy(style: str, scripts: list[str]) -> str:
+    """Nothing from anywhere; the page's own style and scripts, known by their hashes; pictures that stand in it."""
+    run = " ".join(map(_hash, scripts)) or "'none'"
+    return (
+        f"default-src 'none'; style-src {_hash(style)}; script-src {run}; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+
+
+def embedded(data: Any) -> Markup:
+    """Data for a script of the page, as JSON that cannot end the element in which it stands."""
+    text = json.dumps(data, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))

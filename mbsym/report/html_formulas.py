@@ -1,0 +1,248 @@
+"""Formulas, vectors and matrices as HTML: MathML in lines that break between terms, long ones folded away."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import gcd
+
+from flint import fmpq
+from markupsafe import Markup, escape
+
+from mbsym.expressions.counting import counted as counted_things
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.mathml import (
+    TIMES,
+    MathPrinter,
+    bracketed,
+    mathml_pieces,
+    mathml_symbol,
+    mathml_text,
+    mi,
+    mn,
+    mo,
+    mtext,
+    power,
+    row,
+    shape_of,
+    sign,
+    table,
+)
+from mbsym.formulas.shape import Factor, leaves
+from mbsym.report.conditions import Reference
+from mbsym.report.lengths import not_printed
+
+#: Formulas with more symbols than this are folded away behind their length.
+FOLDED = 120
+#: A vector or matrix is written as one as long as a line of it has at most so many symbols.
+WIDEST = 44
+#: A formula with more terms than this is counted only: nobody reads it, and a page has limits.
+LONGEST = 6000
+#: Conditions with more symbols than this are counted instead of written: results.json has them.
+LONGEST_CONDITION = 450
+
+RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264"}
+
+
+def math(*parts: str) -> Markup:
+    """One formula in the text, of finished MathML."""
+    return Markup(f"<math>{''.join(parts)}</math>")
+
+
+def symbol(name: str, lower: str = "", upper: str = "") -> Markup:
+    """A letter of our own (omega, M) with indices below and above."""
+    letter = mathml_symbol(name).stem
+    below, above = (f"<mrow>{_indices(text)}</mrow>" for text in (lower, upper))
+    if lower and upper:
+        return Markup(f"<msubsup>{letter}{below}{above}</msubsup>")
+    if lower or upper:
+        return Markup(f"<msub>{letter}{below}</msub>" if lower else f"<msup>{letter}{above}</msup>")
+    return Markup(letter)
+
+
+def _indices(text: str) -> str:
+    """12, O1, ``1,12``: letters, digits, commas."""
+    return "".join(
+        mn(piece) if piece.isdigit() else '<mo separator="true">,</mo>' if piece == "," else mi(piece)
+        for piece in re.findall(r"\d+|,|[A-Za-z]", text)
+    )
+
+
+def part_of(name: str, part: object, lower: str) -> Markup:
+    """An entry of a matrix of a subsystem: (M with index 1) with index 12."""
+    whole = f"<mrow><mo>(</mo>{symbol(name, str(part))}<mo>)</mo></mrow>" if part else symbol(name)
+    return Markup(f"<msub>{whole}<mrow>{_indices(lower)}</mrow></msub>")
+
+
+def indexed(base: str, lower: object) -> Markup:
+    """(finished MathML) with an index."""
+    return Markup(f"<msub><mrow>{base}</mrow><mrow>{_indices(str(lower))}</mrow></msub>")
+
+
+def _joined(*parts: str) -> str:
+    """Finished pieces one after the other: markup plus text would escape the text."""
+    return "".join(parts)
+
+
+# --- lines ------------------------------------------------------------------------------------------------------------
+
+
+def line(left: str, value: Formula, long: frozenset[int] = frozenset(), right: str = "", sign: str = "=") -> Markup:
+    """``left = value right`` as a line of its own; folded away where it is long, counted where it is too long."""
+    if value.terms > LONGEST or id(value) in long:
+        return text_line(left, mo(sign) if left else "", mtext(f"({not_printed(value)})"), right)
+    pieces = mathml_pieces(value.ring, value.polynomial)
+    written = whole([_joined(left, mo(sign) if left else "", pieces[0]), *pieces[1:]], right)
+    if leaves(shape_of(value.ring, value.polynomial)) <= FOLDED:
+        return written
+    size = escape(counted_things(value.terms, "term"))
+    head = math(left, mo(sign), "<mo>\u2026</mo>") if left else ""
+    return Markup(f"<details><summary>{head} <small>{size}</small></summary>{written}</details>")
+
+
+def whole(pieces: Sequence[str], right: str = "") -> Markup:
+    """Pieces as a line that may break between them."""
+    ended = [*pieces[:-1], _joined(pieces[-1], right)]
+    return Markup(f'<div class="formula">{" ".join(f"<math>{piece}</math>" for piece in ended)}</div>')
+
+
+def text_line(*parts: str) -> Markup:
+    return whole(["".join(parts)])
+
+
+def zero(values: Column) -> bool:
+    return all(x.is_zero for x in values)
+
+
+# --- vectors and matrices ---------------------------------------------------------------------------------------------
+
+
+def _size(value: Formula) -> int:
+    return leaves(shape_of(value.ring, value.polynomial))
+
+
+def inline(value: Formula) -> Markup:
+    """Finished MathML of a formula in one piece."""
+    return Markup(mathml_text(value.ring, value.polynomial))
+
+
+def components(values: Column, long: frozenset[int] = frozenset()) -> Markup:
+    """(a, b, c), or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    if any(id(x) in long or x.terms > 30 for x in values) or sum(map(_size, values)) > WIDEST:
+        return Markup("")
+    return Markup(row([inline(x) for x in values]))
+
+
+def matrix(value: Matrix, long: frozenset[int] = frozenset()) -> Markup:
+    """A matrix in brackets, or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    if any(id(x) in long or x.terms > 60 for line in value for x in line):
+        return Markup("")
+    number = _common_number(value)
+    if number > 1:
+        value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in line] for line in value.polynomials])
+    if sum(max(map(_size, column)) for column in zip(*value, strict=True)) > WIDEST:
+        return Markup("")
+    written = table([[inline(x) for x in line] for line in value])
+    return Markup(written if number == 1 else mn(number) + TIMES + written)
+
+
+def _common_number(value: Matrix) -> int:
+    """The whole number that stands in front of a matrix of several entries."""
+    entries = [x.polynomial for line in value for x in line if not x.is_zero]
+    if len(entries) < 2:
+        return 1
+    coefficients = [c for x in entries for c in x.coeffs()]
+    return gcd(*(int(c.p) for c in coefficients)) if all(c.q == 1 for c in coefficients) else 1
+
+
+def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:
+    """(index, entry) of what is not zero; of a symmetric matrix the upper half."""
+    comma = "," if len(value.rows) > 9 else ""
+    return [
+        (f"{i + 1}{comma}{j + 1}", entry)
+        for i, line in enumerate(value)
+        for j, entry in enumerate(line)
+        if not entry.is_zero and (j >= i or not symmetric)
+    ]
+
+
+# --- problem 6 --------------------------------------------------------------------------------------------------------
+
+
+def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Markup:
+    """left = sum of coefficient*variable^k, highest power first."""
+    found: list[str] = []
+    for degree, coefficient in reversed(list(enumerate(coefficients))):
+        if coefficient.is_zero:
+            continue
+        raised = "" if degree == 0 else mi(variable) if degree == 1 else power(mi(variable), mn(degree))
+        shape = shape_of(coefficient.ring, coefficient.polynomial)
+        if length := counted(coefficient):
+            pieces, negative = [mtext(length)], False
+        elif raised and len(shape.terms) > 1:
+            pieces, negative = MathPrinter(coefficient.ring).factor_pieces(Factor(shape)), False
+        else:
+            negative = shape.terms[0].coefficient < 0 and len(shape.terms) == 1
+            pieces = mathml_pieces(coefficient.ring, -coefficient.polynomial if negative else coefficient.polynomial)
+        if raised:
+            pieces = [raised] if pieces == [mn(1)] else [*pieces[:-1], pieces[-1] + TIMES + raised]
+        if found:
+            shown = "\u2212" if negative else "+"
+            pieces[0] = mo(shown, first=True) + pieces[0]
+        elif negative:
+            pieces[0] = sign("\u2212") + pieces[0]
+        found += pieces
+    found = found or [mn(0)]
+    return whole([_joined(left, mo("="), found[0]), *found[1:]])
+
+
+def counted(value: Formula, in_json: bool = True) -> str:
+    """How long a polynomial is that nobody would read; "" for any other."""
+    if value.terms <= LONGEST and _size(value) < LONGEST_CONDITION:
+        return ""
+    degree = max(map(sum, value.polynomial.monoms()))
+    return f"({value.terms} terms, of degree {degree}{'; in full in results.json' if in_json else ''})"
+
+
+def condition(left: str, value: Formula, name: str, in_json: bool = True) -> Markup:
+    """``left: value > 0``; a long one is only counted, and ``in_json`` tells where it is."""
+    end = relation(name)
+    length = counted(value, in_json)
+    if length:
+        return text_line(left, mo(":"), mtext(length), end)
+    return line(left, value, right=end, sign=":")
+
+
+def relation(name: str) -> Markup:
+    """A relation and zero."""
+    return Markup(mo(RELATIONS.get(name, name)) + mn(0))
+
+
+def refer(reference: Reference) -> Markup:
+    """``v4 < 0`` for a polynomial that was shown before."""
+    under = _joined(label(reference.label), mo(":")) if reference.under != reference.label else ""
+    return text_line(under, label(reference.under), relation(reference.relation))
+
+
+def label(words: str) -> Markup:
+    """v6 as a coefficient's symbol, other labels as text."""
+    opposite = re.fullmatch(r"-\((.*)\)", words)
+    if opposite is not None:
+        return Markup(_joined(sign("\u2212"), label(opposite[1])))
+    bare, comma, rest = words.partition(", ")
+    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    if match is None:
+        return Markup(mtext(words))
+    shown = symbol(match[1], match[2], f"({match[4]})" if match[4] else "")
+    if match[4]:
+        shown = Markup(f"<msubsup>{mi(match[1])}{mn(match[2])}{bracketed(mn(match[4]))}</msubsup>")
+    return Markup(_joined(shown, mtext(f", {rest}"))) if comma else shown
+
+
+def prose(words: str) -> Markup:
+    """Words of the stability kernel, with lambda as a symbol."""
+
+    def power_of(found: re.Match[str]) -> str:
+        return math(power(mi("λ"), mn(found[2])) if found[2] else mi("λ"))
+
+    return Markup(re.sub(r"\blambda(\^(\d+))?", power_of, str(escape(words))))

@@ -1,0 +1,197 @@
+"""``report.html``: every result in one file that reads well on a screen and on paper, and asks the network for nothing.
+
+What was found stands first.  Formulas are MathML; long ones are folded away behind their length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, power
+from mbsym.formulas.names import free_name
+from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
+from mbsym.problems.stability import Stability
+from mbsym.problems.stability.spectrum import Spectrum, numbers
+from mbsym.problems.stability.word import Word
+from mbsym.report import html_formulas as shown
+from mbsym.report.brief import brief
+from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
+from mbsym.report.conditions import Shown, cases, provided, statements
+from mbsym.report.functions import moving
+from mbsym.report.html_description import expression, load_in_words
+from mbsym.report.html_diagram import diagram
+from mbsym.report.html_environment import page
+from mbsym.report.inertias import accepted_inertias
+from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.programs import programs_of
+from mbsym.report.sections.stability import root_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: The order of the sections: as a reader wants them, as in report.tex.
+ORDER = (1, 2, 3, 4, 5, 6, 7)
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The file's text."""
+    from mbsym.analysis import PROBLEMS
+
+    system = analysis.system
+    names = mathml_names(analysis.ring)
+    printed = _claimed_names(analysis)
+    stages = {number: analysis.stage(number) for number in problems}
+    found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
+    long = withheld([found[number] for number in COUNTED if number in found], PAPER)
+    taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
+    taken |= {str(names[item.name]) for item in system.prescribed}
+    taken |= {str(names[item.name]) for item in system.notation}
+    known: dict[str, Callable[..., Any]] = {
+        **_functions(long),
+        "name": lambda name: Markup(str(names[name])),
+        "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
+        "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
+        "expression": lambda value: expression(value, names),
+        "vector": lambda values: Markup(shown.row([expression(x, names) for x in values])),
+        "tensor": lambda rows: Markup(shown.table([[expression(x, names) for x in line] for line in rows])),
+        "printed": lambda value: expression(value, printed),
+        "printed_name": lambda name: Markup(str(printed[name])),
+        "load": lambda value: load_in_words(value, names),
+        "motion": lambda: _motion(analysis, names),
+        "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
+    }
+    return page(
+        "report.html.j2",
+        known,
+        ("report.js",),
+        system=system,
+        accepted=accepted_inertias(system),
+        numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
+        found=found,
+        problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
+        failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
+        code=_code(analysis) if 3 in stages and 3 not in found else None,
+        variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
+        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        decided=_decided,
+        DEPENDS=Word.DEPENDS,
+        claims=analysis.claims,
+        checks=analysis.checks,
+        brief=brief(analysis, 0.0),
+        diagram=diagram(system) if system.bodies else "",
+        version=_version(),
+    )
+
+
+def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
+    """What templates write formulas with."""
+    return {
+        "math": shown.math,
+        "symbol": shown.symbol,
+        "part_of": shown.part_of,
+        "indexed": shown.indexed,
+        "mi": lambda name: Markup(mi(name)),
+        "mo": lambda sign: Markup(mo(sign)),
+        "squared": lambda value: Markup(power(value, "<mn>2</mn>")),
+        "line": lambda left, value, right="": shown.line(left, value, long, right),
+        "text_line": shown.text_line,
+        "components": lambda values: shown.components(values, long),
+        "matrix": lambda value: shown.matrix(value, long),
+        "entries": shown.entries,
+        "zero": shown.zero,
+        "polynomial": shown.polynomial,
+        "condition": shown.condition,
+        "relation": shown.relation,
+        "refer": shown.refer,
+        "label": shown.label,
+        "inline": shown.inline,
+        "prose": shown.prose,
+        "short": lambda value: value.terms < 60,
+        "moving": moving,
+        "statements": statements,
+        "cases": cases,
+        "Shown": Shown,
+        "counterexample": lambda value: counterexample(value).replace("for", "For", 1),
+        "titles": titles,
+        "repair": repair,
+        "eigenvalues": _eigenvalues,
+        "grade": _grade,
+    }
+
+
+def _separated(items: Sequence[str]) -> list[str]:
+    comma = '<mo separator="true">,</mo><mspace width="0.3em"/>'
+    return [piece for k, item in enumerate(items) for piece in ([comma] if k else []) + [item]]
+
+
+def _grade(word: str) -> str:
+    """good, bad or open: how a verdict or an outcome is coloured; the word itself says it."""
+    good = {word.value for word in Word if word.stable} | {EXACT, NUMERICAL, HELD}
+    return "good" if word in good else "bad" if word in (Word.UNSTABLE, FAILED, REFUTED) else "open"
+
+
+def _motion(analysis: Analysis, names: MathNames) -> Markup:
+    """The unperturbed motion, in formulas that may stand on several lines."""
+    items = analysis.system.motion
+    return Markup(", ").join(
+        shown.math(str(names[item.coordinate]), mo("="), expression(moving(item.value, item.rate), names))
+        for item in items
+    )
+
+
+def _decided(found: Stability) -> str:
+    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
+    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
+        return ""
+    enclosed = any(part.theory.at_point is None for part in found.subsystems)
+    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
+
+
+def _eigenvalues(spectrum: Spectrum) -> str:
+    """``-0.1 ± 2.3i (twice)``, separated by semicolons."""
+    return "; ".join(root_text(root).replace("+-", "±").replace("-", "\u2212") for root in numbers(spectrum))
+
+
+def _claimed_names(analysis: Analysis) -> MathNames:
+    """The names of the system, and those of a publication's abbreviations besides."""
+    kinds = ("coordinate", "prescribed", "parameter")
+    own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
+    variables = [claim.variable for claim in analysis.system.claims if claim.variable]
+    return MathNames([*own, *(item.name for item in analysis.system.abbreviations), *variables])
+
+
+DIALECT = Dialect(
+    call=lambda function, argument: f"{function}({argument})",
+    local=lambda count: f"s{count}",
+    number=lambda value: str(Fraction(value)),
+)
+
+
+def _code(analysis: Analysis) -> list[str] | None:
+    """Mass matrix and forcing as a straight-line program; None if there is none."""
+    system, (programs, _) = analysis.system, programs_of(analysis)
+    if programs is None:
+        return None
+    n = len(system.coordinates)
+    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    nodes = [programs.mass_matrix[i][j] for i, j in upper]
+    same = {name: name for name in programs.environment}
+    body = listing(programs.program, [*nodes, *programs.forcing], same, DIALECT)
+    if len(body.assignments) > PAPER_PROGRAM:
+        return [f"({program_not_printed(len(body.assignments))})"]
+    lines = [f"{name} = {text}" for name, text in body.assignments]
+    lines += [f"M[{i + 1}, {j + 1}] = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
+    return lines + [f"f[{i + 1}] = {text}" for i, text in enumerate(body.results[len(upper) :])]
+
+
+def _version() -> str:
+    try:
+        return version("mbsym")
+    except PackageNotFoundError:
+        return ""
