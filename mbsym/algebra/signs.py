@@ -219,7 +219,10 @@ class Signs:
 
     def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
         """The same knowledge with further assumptions."""
-        return Signs(self.context, self.words, (*self.assumptions, *more), self.normal, self.numbers)
+        more = tuple(more)
+        return (
+            self if not more else Signs(self.context, self.words, (*self.assumptions, *more), self.normal, self.numbers)
+        )
 
     def _decided(self, answer: bool, nonzero: tuple[Polynomial, ...] = ()) -> Condition:
         one = self.context.constant(1)
@@ -255,10 +258,22 @@ class Signs:
                 known.append((rest, _product(allowed, frozenset({direction}))))
         return tuple(known)
 
+    @cached_property
+    def _found(self) -> dict[tuple[str, int], SignSet]:
+        return {}
+
     def _possible(self, p: Polynomial, after: int) -> SignSet:
         """The possible signs of p; changes of variables only for generators beyond ``after``."""
         if p == 0:
             return ZERO
+        if len(p) > MOST_TERMS:  # its text would take longer than it saves
+            return self._by_factors(p, after)
+        key = str(p), after
+        if key not in self._found:
+            self._found[key] = self._by_factors(p, after)
+        return self._found[key]
+
+    def _by_factors(self, p: Polynomial, after: int) -> SignSet:
         unit, powers = _factored(p)
         result = frozenset({_sign(unit)})
         for factor, exponent in powers:
@@ -311,18 +326,22 @@ class Signs:
 
     def _restricted(self, p: Polynomial) -> tuple[Signs, Polynomial]:
         """The same question with only the generators that occur in p or in the assumptions: contexts can be wide."""
-        degrees = [p.degrees(), *(a.degrees() for a, _ in self.assumptions if not a.is_constant())]
-        used = tuple(i for i, column in enumerate(zip(*degrees, strict=True)) if any(column))
+        used = tuple(sorted(self._assumed.union(occurring([p]))))
         if len(used) == len(self.words):
             return self, p
         if used not in self._restrictions:
             names = self.context.names()
             context = type(self.context).get([names[i] for i in used], self.context.ordering())
             words = tuple(self.words[i] for i in used)
-            assumptions = tuple((_narrowed(a, used, context), relation) for a, relation in self.assumptions)
-            self._restrictions[used] = Signs(context, words, assumptions)
+            assumptions = tuple((a.project_to_context(context), relation) for a, relation in self.assumptions)
+            self._restrictions[used] = _shared(Signs(context, words, assumptions))
         small = self._restrictions[used]
-        return small, _narrowed(p, used, small.context)
+        return small, p.project_to_context(small.context)
+
+    @cached_property
+    def _assumed(self) -> frozenset[int]:
+        """The generators that occur in the assumptions."""
+        return frozenset(occurring(a for a, _ in self.assumptions))
 
     def _search(self, p: Polynomial, after: int) -> SignSet:
         result = self._by_terms(p)
@@ -449,9 +468,17 @@ class Signs:
         """Some rational points that satisfy the assumptions; the same ones every time."""
         random, found = Random(1), []
         bounds = [self._bounds(generator) for generator in range(self.context.nvars())]
+        places = [[_between(lower, upper, share) for share in SHARES] for lower, upper in bounds]
+        # What bounds one generator holds at all these points, where there is something between its bounds.
+        apart = [k for k, (lower, upper) in enumerate(bounds) if not (lower and upper) or lower[0] < upper[0]]
+        others = [
+            (p, RELATIONS[relation])
+            for p, relation in self.assumptions
+            if not any(_is_bound(p, generator, relation) for generator in apart)
+        ]
         for _ in range(ATTEMPTS):
-            point = tuple(_between(lower, upper, random.choice(SHARES)) for lower, upper in bounds)
-            if all(_sign(p(*point)) in RELATIONS[relation] for p, relation in self.assumptions):
+            point = tuple(random.choice(values) for values in places)
+            if all(_sign(p(*point)) in allowed for p, allowed in others):
                 found.append(point)
                 if len(found) == WITNESSES:
                     break
@@ -583,8 +610,20 @@ def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
         return fmpq(1), [(p, 1)]
 
 
-def _narrowed(p: Polynomial, used: tuple[int, ...], context: Any) -> Polynomial:
-    return context.from_dict({tuple(exponents[i] for i in used): c for exponents, c in p.to_dict().items()})
+#: What was found out under the same assumptions in the same few generators, whoever asked.
+_SHARED: dict[tuple[Any, ...], Signs] = {}
+_MOST_SHARED = 256
+
+
+def _shared(known: Signs) -> Signs:
+    """The first knowledge with this content, with everything that has been proved from it."""
+    assumptions = tuple((str(p), relation) for p, relation in known.assumptions)
+    key = (known.context.names(), known.context.ordering(), known.words, assumptions)
+    if key not in _SHARED:
+        if len(_SHARED) >= _MOST_SHARED:
+            _SHARED.clear()
+        _SHARED[key] = known
+    return _SHARED[key]
 
 
 def _same(left: Condition, right: Condition) -> bool:

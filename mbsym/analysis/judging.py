@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.mechanics.variables import angle_denominators
+from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import Claim
 from mbsym.problems import claims, stability
 from mbsym.problems.claims import ClaimResult
@@ -30,11 +30,11 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
         analysis.stage(number)
     if any(claim.right is not None for claim in system.claims):
         analysis.optional("trials")
-    symbols = claims.Symbols(system)
-    own = angle_denominators(system)
-    arguments = {id(claim): list(symbols.arguments(claim)) for claim in system.claims}
+    symbols = claims.Symbols.of(analysis)
+    own, there = angle_denominators(system), set(angles_of(system))
+    arguments = {id(claim): [x for x in symbols.arguments(claim) if x not in there] for claim in system.claims}
     # Sines that only claims hold: those claims are judged in a ring of their own, and cost the others nothing.
-    further = {key: some for key, some in arguments.items() if angle_denominators(system, some) != own}
+    further = {key: some for key, some in arguments.items() if some and angle_denominators(system, some) != own}
     source = analysis
     if further:
         angles = [one for some in further.values() for one in some]

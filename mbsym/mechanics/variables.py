@@ -110,7 +110,7 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
                 for other, factor in inner.coefficients if inner is not None else ():
                     found[other] = lcm(found.get(other, 1), (factor * coefficient).denominator)
 
-    for argument in (*_angles(system), *arguments):
+    for argument in (*angles_of(system), *arguments):
         note(argument)
     for relation in reversed(system.relations):  # what an angle is related to stands under its sine then
         form = linear_form(relation.value)
@@ -121,7 +121,7 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
     return {name: found[name] for name in declared if name in found}
 
 
-def _angles(system: System) -> Iterator[Expression]:
+def angles_of(system: System) -> Iterator[Expression]:
     """Every angle of a joint, and every argument of a sine, cosine or tangent."""
     for body in system.bodies:
         for _, angle in body.rotation.turns():
@@ -138,14 +138,14 @@ def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set
     Those that an unperturbed motion brings are among them; multiples of pi/2, whose sines are whole numbers, are not.
     """
     values = (entry.value for entry in system.motion)
-    forms = (linear_form(x) for x in (*_angles(system), *arguments, *values))
+    forms = (linear_form(x) for x in (*angles_of(system), *arguments, *values))
     found = {(form.turns % 2, form.constant) for form in forms if form is not None}
     return {(turns, radians) for turns, radians in found if radians or turns.denominator > 2}
 
 
 def has_linear_angles(system: System) -> bool:
     """Whether every angle is a number, or a linear form in names: no rates, no number that is no multiple of pi."""
-    return all(map(_is_plain, map(linear_form, _angles(system))))
+    return all(map(_is_plain, map(linear_form, angles_of(system))))
 
 
 def _is_plain(form: LinearForm | None) -> bool:
@@ -165,8 +165,7 @@ def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expres
     adjunctions += 4 * exact * sum(body.mass != ZERO or body.inertia is not None for body in system.bodies)
     for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):
-            if isinstance(node, Call) or (isinstance(node, Operation) and node.operator in ("/", "**")):
-                adjunctions += 2
+            adjunctions += 2 * _may_adjoin(node)
     return Ring(
         system.coordinates,
         [item.name for item in system.prescribed],
@@ -177,6 +176,23 @@ def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expres
         spare=min(adjunctions, 64) + 2 * min(len(constant_angles(system, arguments)), MOST_CONSTANT_ANGLES),
         terms=terms,
     )
+
+
+def _may_adjoin(node: Expression) -> bool:
+    """Whether an operation may need a generator of its own; sines and cosines of linear forms the ring has anyway.
+
+    Every generator makes all arithmetic slower, so what cannot need one is not counted.
+    """
+    match node:
+        case Call("sin" | "cos", argument):
+            return linear_form(argument) is None
+        case Operation("/", _, divisor):
+            form = linear_form(divisor)
+            return form is None or not form.is_constant
+        case Operation("**", _, exponent):
+            form = linear_form(exponent)
+            return form is None or not form.is_constant or form.constant < 0 or form.constant.denominator > 1
+    return isinstance(node, Call)
 
 
 def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:

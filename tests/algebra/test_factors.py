@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from math import prod
+from random import Random
 
 import pytest
-from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
@@ -34,3 +35,19 @@ def test_a_refusal_is_a_failure_with_its_limit() -> None:
     with pytest.raises(NoClosedForm, match="OverflowError: too large") as refused:
         irreducible_factors(Refusing())
     assert refused.value.limit is Limit.FACTORS
+
+
+def test_a_wide_context_has_the_factors_that_the_library_finds_there() -> None:
+    """Factored among the generators that occur, and by the library in all hundred: the same, in the same order."""
+    wide = fmpq_mpoly_ctx.get([f"x{k}" for k in range(100)], Ordering.lex)
+    source = Random(3)
+    for _ in range(60):
+        own = source.sample(wide.gens(), source.randint(1, 4))
+        product = wide.constant(fmpq(source.choice((-6, 1, 5)), 7))
+        for _ in range(source.randint(1, 3)):
+            part = sum(
+                (source.randint(-3, 3) * x * source.choice(own) for x in own), wide.constant(source.randint(1, 4))
+            )
+            product *= part ** source.randint(1, 2)
+        unit, powers = product.factor()
+        assert irreducible_factors(product) == (unit, list(powers))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from random import Random
 from typing import Any
 
 import pytest
@@ -10,7 +11,18 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsym.algebra.signs import RELATIONS, SIGN_SETS, Condition, ContradictionError, Signs, conditions
+from mbsym.algebra import signs as module
+from mbsym.algebra.signs import (
+    ATTEMPTS,
+    RELATIONS,
+    SHARES,
+    SIGN_SETS,
+    WITNESSES,
+    Condition,
+    ContradictionError,
+    Signs,
+    conditions,
+)
 
 CONTEXT = fmpq_mpoly_ctx.get(["x", "y", "z"], Ordering.degrevlex)
 x, y, z = CONTEXT.gens()
@@ -147,6 +159,46 @@ def test_never_wrong(three: tuple[str, ...], given_: list[tuple[Any, str]], p: A
             assert _sign(value) in claimed
             reduced = condition.polynomial(*point) > 0 and all(f(*point) != 0 for f in condition.nonzero)
             assert reduced == (value > 0)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.tuples(words, words, words), st.lists(assumption, max_size=4))
+def test_witnesses_keep_every_assumption(three: tuple[str, ...], given_: list[tuple[Any, str]]) -> None:
+    """Points between bounds need not be put into these bounds: the same points as if they were put into all."""
+    known = Signs(CONTEXT, three, tuple(given_))
+    random, slow = Random(1), []
+    bounds = [known._bounds(k) for k in range(3)]
+    for _ in range(ATTEMPTS):
+        point = tuple(module._between(lower, upper, random.choice(SHARES)) for lower, upper in bounds)
+        if all(_sign(a(*point)) in RELATIONS[relation] for a, relation in given_):
+            slow.append(point)
+    assert known._witnesses == tuple(slow[:WITNESSES])
+
+
+WIDE = fmpq_mpoly_ctx.get([f"w{k}" for k in range(30)], Ordering.lex)
+knowledge = st.tuples(st.tuples(words, words, words), st.lists(assumption, max_size=2))
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.tuples(knowledge, polynomials), min_size=2, max_size=6))
+def test_what_is_shared_is_what_would_be_found_alone(questions: list[tuple[Any, Any]]) -> None:
+    """Whoever asks in a wide context gets the answer that they would get if nobody had asked before."""
+    places = [WIDE.gen(k) for k in (3, 8, 21)]
+
+    def answer(three: tuple[str, ...], given_: list[tuple[Any, str]], p: Any) -> str:
+        spread = ["real"] * 30
+        for k, word in zip((3, 8, 21), three, strict=True):
+            spread[k] = word
+        wide = tuple((a.compose(*places, ctx=WIDE), relation) for a, relation in given_)
+        try:
+            return Signs(WIDE, tuple(spread), wide).sign(p.compose(*places, ctx=WIDE))
+        except ContradictionError:
+            return "contradiction"
+
+    together = [answer(*known, p) for known, p in questions]
+    for (known, p), found in zip(questions, together, strict=True):
+        module._SHARED.clear()
+        assert answer(*known, p) == found
 
 
 def _sign(value: Any) -> int:

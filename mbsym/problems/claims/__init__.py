@@ -95,7 +95,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
         return examined_number(derived, claim, about)
     if claim.right is not None:
         return examined_condition(derived, claim, about)
-    symbols = Symbols(derived.system)
+    symbols = Symbols.of(derived)
     claimed = symbols.polynomial(derived.parameters_scene, claim)
     if claim.kind == "first integral":
         return examined_integral(derived, claim, about, in_parameters(derived, claimed))

@@ -84,11 +84,10 @@ def _forms(derived: Derived, claim: Claim) -> Iterator[Region]:
 def _wanted(region: Region, claim: Claim) -> Inequality:
     """The claimed inequality as p > 0, p >= 0 or p != 0.  Raises NoClosedForm."""
     derived = region.derived
-    ring, scene, symbols = derived.ring, derived.parameters_scene, Symbols(derived.system)
+    symbols = Symbols.of(derived)
     assert claim.right is not None
-    sides = [claim.equals, claim.right]
-    lower = symbols.lowering(ring, scene.environment, symbols.occurring(sides))
-    left, right = (lower(symbols.opened(side)) for side in sides)
+    lower = symbols.in_scene(derived.parameters_scene)
+    left, right = (lower(symbols.opened(side)) for side in (claim.equals, claim.right))
     if claim.relation in ("<", "<="):
         left, right = right, left
     return Inequality(region.cleared(left - right), {"<": ">", "<=": ">="}.get(claim.relation, claim.relation))
@@ -242,7 +241,7 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
 
     A condition that is to be necessary is tried on its border, too: at equality the motion may be stable.
     """
-    symbols = Symbols(derived.system)
+    symbols = Symbols.of(derived)
     environment = derived.parameters_scene.environment
     sufficient = claim.role == SUFFICIENT
 

@@ -99,13 +99,13 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
 def _both(derived: Derived, claim: Claim) -> tuple[Any, Any]:
     """The claimed and the derived number as balls of the working precision.  Raises KeyError where a number lacks."""
     state = _state(derived.system, claim)
-    return _number(Symbols(derived.system), state, claim.equals), _derived_number(derived, claim, state)
+    return _number(Symbols.of(derived), state, claim.equals), _derived_number(derived, claim, state)
 
 
 def _derived_number(derived: Derived, claim: Claim, state: State) -> Any:
     """The derived quantity at the state."""
     if claim.of_expression is not None:
-        return _value(derived, Symbols(derived.system), state, claim.of_expression)
+        return _value(derived, Symbols.of(derived), state, claim.of_expression)
     return Carrier(derived.ring, state.numbers, state.values)(derived_quantity(derived, claim))
 
 

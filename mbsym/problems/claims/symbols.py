@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
@@ -34,9 +35,17 @@ class Symbols:
     One that is a linear form in angles (``beta = theta + alpha``) may stand under sin and cos; the others are values.
     """
 
+    @staticmethod
+    def of(owner: Any) -> Symbols:
+        """Those of ``owner.system``, made once for its owner."""
+        if owner not in _REMEMBERED:
+            _REMEMBERED[owner] = Symbols(owner.system)
+        return _REMEMBERED[owner]
+
     def __init__(self, system: System) -> None:
         self.system = system
         self.values = {item.name: item.value for item in system.abbreviations}
+        self._in_scenes: WeakKeyDictionary[Scene, Lowering] = WeakKeyDictionary()
         self.forms: dict[str, LinearForm] = {}
         for name, value in self.values.items():
             form = linear_form(value)
@@ -96,18 +105,44 @@ class Symbols:
                 known[name] = Lowering(algebra, known)(self.opened(value))
         return Lowering(algebra, known)
 
+    def in_scene(self, scene: Scene) -> Lowering:
+        """Values for expressions over a scene, with those of the abbreviations: each is formed once."""
+        if scene not in self._in_scenes:
+            values = _Values(scene.environment, self)
+            self._in_scenes[scene] = values.lower = Lowering(scene.algebra, values)
+        return self._in_scenes[scene]
+
     def polynomial(self, scene: Scene, claim: Claim) -> Polynomial:
         """What was claimed, in the ring; a characteristic polynomial's variable is the generator of the time.
 
         Raises NoClosedForm where such a polynomial holds the time itself.
         """
-        wanted = self.occurring([claim.equals])
-        environment = dict(scene.environment)
-        if claim.variable:
-            if "t" in wanted:
-                raise NoClosedForm("a characteristic polynomial does not hold the time")
-            environment[claim.variable] = scene.ring.generator("time", "t")
-        return self.lowering(scene.ring, environment, wanted)(self.opened(claim.equals))
+        lower, opened = self.in_scene(scene), self.opened(claim.equals)
+        if not claim.variable:
+            return lower(opened)
+        if "t" in self.occurring([claim.equals]):
+            raise NoClosedForm("a characteristic polynomial does not hold the time")
+        # No abbreviation holds the variable: it is no name outside its claim.
+        known = {name: lower(Name(name)) for name in names(opened) if name != claim.variable}
+        return Lowering(scene.ring, known | {claim.variable: scene.ring.generator("time", "t")})(opened)
+
+
+#: Whose abbreviations are asked for again and again, claim by claim.
+_REMEMBERED: WeakKeyDictionary[Any, Symbols] = WeakKeyDictionary()
+
+
+class _Values(dict[str, Any]):
+    """Values by name; those of abbreviations are formed when they are asked for."""
+
+    lower: Lowering
+
+    def __init__(self, environment: Mapping[str, Any], symbols: Symbols) -> None:
+        super().__init__({name: value for name, value in environment.items() if name not in symbols.values})
+        self._symbols = symbols
+
+    def __missing__(self, name: str) -> Any:
+        self[name] = found = self.lower(self._symbols.opened(self._symbols.values[name]))
+        return found
 
 
 def _written(form: LinearForm) -> Expression:
