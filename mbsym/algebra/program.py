@@ -7,7 +7,7 @@ outwards (``a*(-b)`` is ``-(a*b)``) so that more nodes turn out equal.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
@@ -258,15 +258,23 @@ class Program(Algebra):
                     counted += 1
         return counted
 
-    def evaluate(self, outputs: Sequence[Node], inputs: Mapping[str, Any], algebra: Algebra) -> list[Any]:
+    def evaluate(
+        self,
+        outputs: Sequence[Node],
+        inputs: Mapping[str, Any],
+        algebra: Algebra,
+        standing: Callable[[int, Any], Any] | None = None,
+    ) -> list[Any]:
         """The outputs over any algebra whose scalars divide through ``algebra.reciprocal``.
 
         Sines and cosines of inputs are looked up through ``algebra.sin_cos`` of their linear form, so that exact
-        rational states stay exact.  Raises NoValue for an input without a value, and what the algebra raises.
+        rational states stay exact.  ``standing`` is given the number and the value of every instruction and says what
+        stands in its place from there on.  Raises NoValue for an input without a value, and what the algebra raises.
         """
         values: dict[int, Any] = {}
         for number in self.live(outputs):
-            values[number] = self._apply(self.instructions[number], number, values, inputs, algebra)
+            value = self._apply(self.instructions[number], number, values, inputs, algebra)
+            values[number] = value if standing is None else standing(number, value)
         return [values[node.number] for node in outputs]
 
     def _apply(

@@ -100,6 +100,9 @@ class Ring(Algebra):
     many generators may be adjoined.  terms: the budget of terms a formula may have; beyond it NoClosedForm is raised.
     """
 
+    #: Generators by which formulas are collected before others when they are shown.
+    leading: frozenset[int] = frozenset()
+
     def __init__(
         self,
         coordinates: Sequence[str],

@@ -52,6 +52,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
+from mbsym.problems.telling import ToldSystem, told_system
 
 T = TypeVar("T")
 
@@ -132,6 +133,7 @@ class Analysis(Stages):
     signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene))
     programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
     expanded = Derived["Analysis", Scene](approximation.expanded)
+    told = Derived["Analysis", ToldSystem](lambda a: a._told())
 
     @cached_property
     def oracles(self) -> Oracles:
@@ -219,6 +221,9 @@ class Analysis(Stages):
     def _balance(self) -> Balance:
         energies = self.optional("energy")
         return dissipation.balance(self.parameters_scene if energies is None else self.scene, energies, self.signs)
+
+    def _told(self) -> ToldSystem:
+        return told_system(self.system, self.ring, self.terms)
 
     def _equilibria(self) -> Equilibria:
         values = given_values(self.system, {})

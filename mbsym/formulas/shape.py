@@ -237,6 +237,11 @@ class _Presenter:
         return squared if lengths[1] < lengths[0] else sums or (0, {})
 
     def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
+        if self.ring.leading and not under:
+            level = max(self.level(monomial[0][0]) for monomial in terms if monomial) if any(terms) else 0
+            if level >= _VELOCITY:  # m l w/2 + l F, not l (m w + 2 F)/2: what leads is read term by term
+                grouped = self._grouped(terms, self._at_level(level), True)
+                return Sum(tuple(x._replace(coefficient=x.coefficient / scale) for x in grouped.terms))
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
         product = product._replace(coefficient=product.coefficient / scale)
         if under:
@@ -283,6 +288,8 @@ class _Presenter:
                     level = _RECIPROCAL
             elif level == 1 and self.ring.has("parameter", generator.name):
                 level = 0
+            elif index in self.ring.leading:
+                level = _VELOCITY
             self._levels[index] = level
         return self._levels[index]
 

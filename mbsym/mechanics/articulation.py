@@ -95,7 +95,7 @@ def articulation(scene: Scene) -> Articulation:
     builder = _Builder(scene)
     for body in scene.system.bodies:
         builder.add(body)
-    properties = [_mass_properties(scene, name) for name in scene.motions]
+    properties = [mass_properties(scene, name) for name in scene.motions]
     masses = _regrouped(scene.algebra, builder.frames, dict(zip(builder.frame_of.values(), properties, strict=True)))
     return Articulation(scene, tuple(builder.frames), builder.frame_of, masses)
 
@@ -173,7 +173,7 @@ class _Builder:
 # --- mass properties ---
 
 
-def _mass_properties(scene: Scene, name: str) -> MassProperties:
+def mass_properties(scene: Scene, name: str) -> MassProperties:
     """A body's mass properties about its connection point."""
     algebra, motion = scene.algebra, scene.motions[name]
     zero = algebra.zero_vector

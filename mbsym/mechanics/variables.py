@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from math import lcm
@@ -154,10 +154,17 @@ def _is_plain(form: LinearForm | None) -> bool:
     return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
 
 
-def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expression] = ()) -> Ring:
+def ring_of(
+    system: System,
+    terms: int = TERM_BUDGET,
+    arguments: Iterable[Expression] = (),
+    moving: Sequence[str] = (),
+    fixed: Sequence[str] = (),
+) -> Ring:
     """The exact ring of a system, with the user's notation among its parameters.
 
-    ``arguments`` are angles under sin and cos besides those of the system.
+    ``arguments`` are angles under sin and cos besides those of the system; ``moving`` and ``fixed`` names of further
+    quantities, those that vary with the state and those that do not.
     """
     adjunctions = 12 + 4 * len(system.loads)
     # Every mass centre has a distance of its own in the exact field, and on the unperturbed motion another one.
@@ -168,8 +175,8 @@ def ring_of(system: System, terms: int = TERM_BUDGET, arguments: Iterable[Expres
             adjunctions += 2 * _may_adjoin(node)
     return Ring(
         system.coordinates,
-        [item.name for item in system.prescribed],
-        [*system.parameter_names, *(item.name for item in system.notation)],
+        [*(item.name for item in system.prescribed), *moving],
+        [*system.parameter_names, *(item.name for item in system.notation), *fixed],
         angle_denominators(system, arguments),
         positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
         nonnegative=[parameter.name for parameter in system.parameters if parameter.sign == "nonnegative"],

@@ -163,14 +163,14 @@ def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[boo
 
 
 def _verdict(found: Sequence[Pair]) -> tuple[str, str]:
-    agreements = [(label, first, second, _agree(first, second)) for label, first, second in found]
+    agreements = [(label, first, second, agreement(first, second)) for label, first, second in found]
     for label, first, second, agree in agreements:
         if agree is False:
             return FAILED, f"{label} differs: {_short(first)} against {_short(second)}"
     return (UNDECIDED, "enclosures too wide") if any(agree is None for *_, agree in agreements) else (EXACT, "")
 
 
-def _agree(first: Scalar, second: Scalar) -> bool | None:
+def agreement(first: Scalar, second: Scalar) -> bool | None:
     """Equal, different, or (balls too wide to tell) None."""
     if not isinstance(first, arb) and not isinstance(second, arb):
         return bool(first == second)
@@ -397,7 +397,7 @@ def _vanishing(ring: Ring, x: Any) -> str:
     with ctx.workprec(PRECISION):
         for _ in range(4 * STATES):
             value = ring.evaluate(x, {name: arb(source.randint(1, 99)) / 64 for name in ring.names()})
-            agree = _agree(value, arb(0))
+            agree = agreement(value, arb(0))
             if agree is False:
                 return FAILED
             found += agree is True

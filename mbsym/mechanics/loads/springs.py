@@ -72,6 +72,11 @@ class _Pair:
         return Action(tuple(wrenches))
 
 
+def between(first: Point, second: Point, scene: Scene) -> Vector:
+    """r_second - r_first, in the axes of the nearest common ancestor of their bodies."""
+    return _Pair(first, second, scene).span
+
+
 def _point_spring_force_function(load: PointSpring, scene: Scene) -> Scalar:
     """U = -stiffness (d^2 - 2 d length + length^2) / 2; without a natural length no root is taken."""
     algebra = scene.algebra

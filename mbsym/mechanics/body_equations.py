@@ -1,0 +1,322 @@
+"""The equations of motion body by body, as a person would write them: what their intermediates are called is noted.
+
+Outwards, in each body's own axes, with the turns' axes u_t and rates x_t' (v_t = u_t x_t'):
+
+    omega_k   = R omega_j + sum v_t
+    epsilon_k = R epsilon_j + omega_k x sum v_t + sum over s < t of v_s x v_t + sum u_t x_t''        (q'' = 0)
+    w_k       = R (w_j + epsilon_j x r + omega_j x (omega_j x r) + 2 omega_j x r' + r'')
+
+where w of the base is minus the uniform gravity, and a falling frame's own (``mbsym.mechanics.falling``) takes the
+place of what the recursion gives.  Inwards, of a body with everything that it carries, referred to O_k:
+
+    composite bodies    m, S, J  (mass, first moment, tensor)
+    needed at q'' = 0   F = m w + epsilon x S + omega x (omega x S) - loads + what the bodies on it need,
+                        H = S x w + J epsilon + omega x (J omega + h) - loads + what the bodies on it need
+
+A unit acceleration of a coordinate that turns body k about b and displaces O_k along v (b = d omega_k/dq',
+v = R dr/dq) takes  u = m v + b x S,  n = J b + S x v;  carried inwards these meet the joints on their way:
+
+    M_ij = b_i.n_j + v_i.u_j,        f_i = Q_i - (b_i.H + v_i.F).
+
+Not the leanest recursion (``composite`` and ``bias_forces`` are) but one of few quantities that all have a meaning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.expressions.tree import differentiate, names
+from mbsym.mechanics.articulation import MassProperties, mass_properties, shifted, total
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.falling import falling_frames, overrides
+from mbsym.mechanics.intermediates import Matrix, Meaning, NamedScene, Notes, Quantity, transposed
+from mbsym.mechanics.loads.kinds import KINDS, force_function
+from mbsym.mechanics.loads.orbit import Orbit, radius_vectors
+from mbsym.mechanics.loads.springs import between
+from mbsym.mechanics.variables import program_environment
+from mbsym.model.system import (
+    EXACT,
+    INERTIAL,
+    IsotropicDamper,
+    NewtonianGravity,
+    PointDamper,
+    PointSpring,
+    System,
+    UniformGravity,
+    acceleration_name,
+)
+
+
+@dataclass(frozen=True)
+class BodyEquations:
+    """M (n x n) and f (n) of M q'' = f, T and U, as nodes of ``program``; ``meanings`` by the numbers of nodes.
+
+    ``motions``: of each body omega_k, V_Ok and V_Ck.
+    """
+
+    program: Program
+    meanings: Mapping[int, Meaning]
+    motions: Mapping[str, tuple[Vector, Vector, Vector]]
+    mass_matrix: tuple[tuple[Node, ...], ...]
+    forcing: tuple[Node, ...]
+    kinetic_energy: Node
+    force_function: Node
+
+
+def body_equations(system: System, ring: Ring) -> BodyEquations:
+    """The equations and energies of a system over a program of their own; ``ring`` is the system's.
+
+    Raises what the loads raise: SingularPoint, NoClosedForm.
+    """
+    program, notes = Program(), Notes()
+    inputs: dict[str, Node] = dict(program_environment(system, program))
+    still = {acceleration_name(name): program.zero for name in system.coordinates}
+    scene = NamedScene(system, program, inputs | still, ring, notes)
+    _note_loads(scene)
+    mass = _Composite(scene)
+    return BodyEquations(
+        program=program,
+        meanings=notes.meanings,
+        motions={
+            name: (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre) for name, x in scene.motions.items()
+        },
+        mass_matrix=mass.rows(),
+        forcing=_forcing(scene, mass.joints),
+        kinetic_energy=kinetic_energy(scene),
+        force_function=force_function(scene),
+    )
+
+
+def _falling(scene: NamedScene) -> NamedScene:
+    """The scene seen from its falling frames.  Its notes are dropped: a velocity there is no velocity of the body."""
+    frames = frozenset(falling_frames(scene.system))
+    return NamedScene(scene.system, scene.program, scene.environment, scene.ring, Notes(), falling=frames)
+
+
+def _note_loads(scene: NamedScene) -> None:
+    """The vectors on which loads depend."""
+    notes = scene.notes
+    for number, load in enumerate(scene.system.loads, 1):
+        if isinstance(load, NewtonianGravity):
+            if load.order == EXACT:
+                for motion, r in radius_vectors(load, scene):
+                    notes.vector(r, Quantity.RADIUS, motion.body.name, load=number)
+                continue
+            for motion, e, c in Orbit(load, scene).bodies():
+                notes.vector(e, Quantity.OUTWARD, motion.body.name, load=number)
+                notes.vector(c, Quantity.PLACE, motion.body.name, load=number)
+                along = scene.algebra.dot(e, c)
+                notes.scalar(along, Meaning(Quantity.ALONG, motion.body.name, load=number))
+        elif isinstance(load, PointSpring | PointDamper | IsotropicDamper):
+            notes.vector(between(load.first, load.second, scene), Quantity.SPAN, "", load=number)
+
+
+@dataclass(frozen=True, slots=True)
+class _Joint:
+    """What one coordinate does to a body: it turns it about ``turn`` and displaces O_k along ``shift``, in its axes."""
+
+    coordinate: str
+    turn: Vector
+    shift: Vector
+
+
+def _joints(scene: NamedScene, name: str) -> list[_Joint]:
+    algebra, lower, motion = scene.algebra, scene.lower, scene.motions[name]
+    found = []
+    for coordinate in scene.system.coordinates:
+        turn = algebra.zero_vector
+        for each, axis in zip(motion.turns, scene.axes[name], strict=True):
+            if coordinate in names(each.angle):
+                slope = lower(differentiate(each.angle, coordinate))
+                turn = algebra.add(turn, algebra.scale(slope, axis))
+        shift = algebra.zero_vector
+        if any(coordinate in names(x) for x in motion.body.connection_point):
+            along = lower.vector([differentiate(x, coordinate) for x in motion.body.connection_point])
+            shift = scene.out(name, along)
+        if not (_vanishes(algebra, turn) and _vanishes(algebra, shift)):
+            found.append(_Joint(coordinate, turn, shift))
+    return found
+
+
+def _vanishes(algebra: Algebra, v: Vector) -> bool:
+    return all(algebra.vanishes(x) for x in v)
+
+
+def _turned_back(algebra: Algebra, rotation: Matrix, tensor: Matrix) -> Matrix:
+    """R^T J R of a symmetric tensor."""
+    columns = transposed(rotation)
+    half = [algebra.apply(tensor, column) for column in columns]
+    rows = [[algebra.zero] * 3 for _ in range(3)]
+    for i in range(3):
+        for j in range(i, 3):
+            rows[i][j] = rows[j][i] = algebra.dot(columns[i], half[j])
+    return _matrix(rows)
+
+
+def _matrix(rows: list[list[Scalar]]) -> Matrix:
+    return (
+        (rows[0][0], rows[0][1], rows[0][2]),
+        (rows[1][0], rows[1][1], rows[1][2]),
+        (rows[2][0], rows[2][1], rows[2][2]),
+    )
+
+
+class _Composite:
+    """The mass matrix from composite bodies; a coordinate may occur in the joints of several bodies."""
+
+    def __init__(self, scene: NamedScene) -> None:
+        self.scene = scene
+        self.algebra = scene.algebra
+        self.joints = {name: _joints(scene, name) for name in scene.motions}
+        self.entries: dict[tuple[str, str], Scalar] = {}
+        self.order = {name: place for place, name in enumerate(scene.system.coordinates)}
+        #: The bodies that have a joint, or carry on to one nearer to the base.
+        self.moving = {name for name in scene.motions if any(self.joints.get(x) for x in scene.system.path(name))}
+        algebra, notes = self.algebra, scene.notes
+        composite = {name: mass_properties(scene, name) for name in scene.motions}
+        for name in reversed(scene.motions):
+            own, motion = composite[name], scene.motions[name]
+            notes.scalar(own.mass, Meaning(Quantity.MASS, name))
+            notes.vector(own.first_moment, Quantity.FIRST_MOMENT, name)
+            notes.symmetric(own.tensor, Quantity.INERTIA, name)
+            for place, joint in enumerate(self.joints[name]):
+                self._climb(name, place, joint, own)
+            parent = motion.body.attached_to
+            if parent != INERTIAL:
+                rotation = scene.rotations[name]
+                moment = scene.back(name, own.first_moment)
+                turned = MassProperties(own.mass, moment, _turned_back(algebra, rotation, own.tensor))
+                composite[parent] = total(algebra, composite[parent], shifted(algebra, turned, motion.offset))
+
+    def rows(self) -> tuple[tuple[Node, ...], ...]:
+        coordinates = self.scene.system.coordinates
+        zero: Node = self.scene.program.zero
+        return tuple(tuple(self.entries.get(self._key(i, j), zero) for j in coordinates) for i in coordinates)
+
+    def _key(self, i: str, j: str) -> tuple[str, str]:
+        return (i, j) if self.order[i] <= self.order[j] else (j, i)
+
+    def _climb(self, name: str, place: int, joint: _Joint, own: MassProperties) -> None:
+        """What a unit acceleration of one joint takes, on its way to the base."""
+        algebra, scene, notes = self.algebra, self.scene, self.scene.notes
+        h = own.first_moment
+        force = algebra.add(algebra.scale(own.mass, joint.shift), algebra.cross(joint.turn, h))
+        moment = algebra.add(algebra.apply(own.tensor, joint.turn), algebra.cross(h, joint.shift))
+        body, others = name, self.joints[name][place:]
+        while True:
+            notes.vector(force, Quantity.UNIT_FORCE, body, joint.coordinate)
+            notes.vector(moment, Quantity.UNIT_MOMENT, body, joint.coordinate)
+            for other in others:
+                share = algebra.dot(other.turn, moment) + algebra.dot(other.shift, force)
+                self._add(joint, other, share)
+            motion = scene.motions[body]
+            if motion.body.attached_to not in self.moving:
+                return
+            force, moment = scene.back(body, force), scene.back(body, moment)
+            moment = algebra.add(moment, algebra.cross(motion.offset, force))
+            body = motion.body.attached_to
+            others = self.joints[body]
+
+    def _add(self, joint: _Joint, other: _Joint, share: Scalar) -> None:
+        if self.algebra.vanishes(share):
+            return
+        if joint is not other and joint.coordinate == other.coordinate:
+            share = share + share
+        key = self._key(joint.coordinate, other.coordinate)
+        known = self.entries.get(key)
+        self.entries[key] = share if known is None else known + share
+
+
+def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Node, ...]:
+    algebra, notes, system = scene.algebra, scene.notes, scene.system
+    force, moment = _needed(scene)
+    totals: dict[str, Scalar] = dict.fromkeys(system.coordinates, algebra.zero)
+    falling = _falling(scene) if falling_frames(system) else scene
+    for load in system.loads:
+        if isinstance(load, UniformGravity):
+            continue
+        action = KINDS[type(load)].action(load, falling if isinstance(load, NewtonianGravity) else scene)
+        for name, value in action.generalized.items():
+            totals[name] = totals[name] + value
+        for wrench in action.wrenches:
+            force[wrench.body] = algebra.subtract(force[wrench.body], wrench.force)
+            moment[wrench.body] = algebra.subtract(moment[wrench.body], wrench.moment)
+    for name in reversed(scene.motions):
+        motion = scene.motions[name]
+        notes.vector(force[name], Quantity.FORCE, name)
+        notes.vector(moment[name], Quantity.MOMENT, name)
+        for joint in joints[name]:
+            share = algebra.dot(joint.turn, moment[name]) + algebra.dot(joint.shift, force[name])
+            totals[joint.coordinate] = totals[joint.coordinate] - share
+        parent = motion.body.attached_to
+        if parent != INERTIAL:
+            carried = scene.back(name, force[name])
+            twist = algebra.add(scene.back(name, moment[name]), algebra.cross(motion.offset, carried))
+            force[parent] = algebra.add(force[parent], carried)
+            moment[parent] = algebra.add(moment[parent], twist)
+    return tuple(totals[name] for name in system.coordinates)
+
+
+def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
+    """F and H of each body's own mass at q'' = 0, the loads other than gravity left out."""
+    algebra, notes, system = scene.algebra, scene.notes, scene.system
+    zero = algebra.zero_vector
+    base = zero
+    for load in system.loads:
+        if isinstance(load, UniformGravity):
+            base = algebra.subtract(base, scene.lower.vector(load.acceleration))
+    felt = overrides(scene, base)
+    angular, origin = {INERTIAL: zero}, {INERTIAL: base}
+    force: dict[str, Vector] = {}
+    moment: dict[str, Vector] = {}
+    for name, motion in scene.motions.items():
+        parent = motion.body.attached_to
+        spin = scene.motions[parent].angular_velocity if parent != INERTIAL else zero
+        angular[name] = notes.vector(
+            algebra.add(scene.out(name, angular[parent]), _joint_acceleration(scene, name)),
+            Quantity.ANGULAR_ACCELERATION,
+            name,
+        )
+        carried = algebra.add(origin[parent], _swung(algebra, angular[parent], spin, motion.offset))
+        first = [scene.rate(x) for x in motion.body.connection_point]
+        relative = scene.lower.vector(first)
+        carried = algebra.add(carried, algebra.scale(algebra.number(2), algebra.cross(spin, relative)))
+        carried = algebra.add(carried, scene.lower.vector([scene.rate(x) for x in first]))
+        if name in felt:
+            origin[name] = felt[name]
+        else:
+            if parent != INERTIAL:
+                notes.vector(carried, Quantity.CARRIED_ACCELERATION, name)
+            origin[name] = scene.out(name, carried)
+        notes.vector(origin[name], Quantity.ACCELERATION, name)
+        own = mass_properties(scene, name)
+        w, epsilon, omega = origin[name], angular[name], motion.angular_velocity
+        force[name] = algebra.add(algebra.scale(own.mass, w), _swung(algebra, epsilon, omega, own.first_moment))
+        spun = algebra.apply(own.tensor, omega)
+        if motion.gyrostatic_moment is not None:
+            spun = algebra.add(spun, motion.gyrostatic_moment)
+        turned = algebra.add(algebra.apply(own.tensor, epsilon), algebra.cross(omega, spun))
+        moment[name] = algebra.add(algebra.cross(own.first_moment, w), turned)
+    return force, moment
+
+
+def _swung(algebra: Algebra, angular: Vector, spin: Vector, r: Vector) -> Vector:
+    """epsilon x r + omega x (omega x r)."""
+    return algebra.add(algebra.cross(angular, r), algebra.cross(spin, algebra.cross(spin, r)))
+
+
+def _joint_acceleration(scene: NamedScene, name: str) -> Vector:
+    """omega_k x sum v_t + sum over s < t of v_s x v_t + sum u_t x_t''."""
+    algebra, motion = scene.algebra, scene.motions[name]
+    rates = [algebra.scale(turn.rate, axis) for turn, axis in zip(motion.turns, scene.axes[name], strict=True)]
+    found = algebra.cross(motion.angular_velocity, motion.relative_angular_velocity)
+    for place, v in enumerate(rates):
+        for w in rates[place + 1 :]:
+            found = algebra.add(found, algebra.cross(v, w))
+    for turn, axis in zip(motion.turns, scene.axes[name], strict=True):
+        found = algebra.add(found, algebra.scale(turn.second_rate, axis))
+    return found

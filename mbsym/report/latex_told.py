@@ -1,0 +1,37 @@
+"""Named intermediates in LaTeX: a passage is a paragraph that TeX may break between and inside its formulas.
+
+Everything expands to plain LaTeX with amsmath: a section is put into other people's documents.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.latex import LatexNames, latex_names, latex_text
+from mbsym.formulas.told import Told
+from mbsym.report.passages import Passage
+
+#: How a paragraph of formulas is set: TeX breaks lines only where the formulas say so, before plus and minus.
+OPENING = (
+    r"{\raggedright\binoppenalty=10000 \relpenalty=10000 \linepenalty=200 \lineskiplimit=1pt \lineskip=2pt"
+    r" \hangindent=1.2em \hangafter=1 \noindent "
+)
+CLOSING = r"\par}"
+
+
+def paragraphs(told: Told[object], found: Iterable[Passage], escaped: Callable[[str], str]) -> list[str]:
+    """Every passage as a paragraph."""
+    names = latex_names(told.ring)
+    return [OPENING + _sentence(passage, names, escaped) + CLOSING for passage in found]
+
+
+def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]) -> str:
+    coordinate = f" ${names[passage.coordinate]}$" if passage.coordinate else ""
+    formulas = [equation(str(names[item.name]), item.formula) for item in passage.definitions]
+    return f"{escaped(passage.words)}{coordinate}: " + ";\\quad ".join(formulas) + "."
+
+
+def equation(symbol: str, formula: Formula) -> str:
+    """``$symbol = formula$``, which may be broken."""
+    return f"$\\displaystyle {symbol} = {latex_text(formula.ring, formula.polynomial, breaks=True)}$"

@@ -1,0 +1,150 @@
+"""How named intermediates are told: passages, each a phrase and the definitions that it introduces, in order.
+
+Every target for people prints the same passages.  Bodies are numbered as the report numbers them; a name is said once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.told import Definition, Told, occurring_in
+from mbsym.mechanics.falling import falling_frames
+from mbsym.mechanics.intermediates import Meaning, Quantity
+from mbsym.model.system import INERTIAL, NewtonianGravity, System, UniformGravity
+
+
+@dataclass(frozen=True)
+class Passage:
+    """``words``, the symbol of ``coordinate`` if there is one, a colon, and the definitions."""
+
+    words: str
+    coordinate: str
+    definitions: tuple[Definition[Meaning], ...]
+
+
+def passages(
+    told: Told[Meaning], system: System, formulas: Iterable[Formula], known: Iterable[str] = ()
+) -> tuple[Passage, ...]:
+    """What formulas need to be understood, besides the names ``known`` before.
+
+    Definitions of one quantity of one body stand together, and by component, where none uses one that comes later.
+    """
+    groups: list[list[Definition[Meaning]]] = []
+    home: dict[int, int] = {}
+    for item in told.wanted(formulas, known):
+        used = [home[k] for k in occurring_in([item.formula.polynomial], told.ring) if k in home]
+        earliest = max(used, default=0)
+        place = next((k for k in range(earliest, len(groups)) if _together(groups[k][0], item)), len(groups))
+        if place == len(groups):
+            groups.append([])
+        groups[place].append(item)
+        home[told.index(item.name)] = place
+    speaker = _Speaker(system)
+    return tuple(Passage(*speaker(group[0].meaning), _by_component(told, group)) for group in groups)
+
+
+def _together(first: Definition[Meaning], second: Definition[Meaning]) -> bool:
+    a, b = first.meaning, second.meaning
+    if a is None or b is None:
+        return a is b
+    return (a.quantity, a.body, a.coordinate, a.load) == (b.quantity, b.body, b.coordinate, b.load)
+
+
+def _by_component(told: Told[Meaning], group: Sequence[Definition[Meaning]]) -> tuple[Definition[Meaning], ...]:
+    own = {told.index(item.name) for item in group}
+    if any(own & occurring_in([item.formula.polynomial], told.ring) for item in group):
+        return tuple(group)
+    return tuple(sorted(group, key=lambda item: () if item.meaning is None else item.meaning.place))
+
+
+#: ``{b}`` is the body, ``{p}`` its predecessor, ``{it}`` the body with what it carries, ``{o}`` the expansion point.
+_WORDS = {
+    Quantity.DIRECTION_COSINE: "Direction cosines of {b} relative to {p}, by row and column",
+    Quantity.RELATIVE_ANGULAR_VELOCITY: "Angular velocity of {b} relative to {p}",
+    Quantity.ANGULAR_VELOCITY: "Angular velocity of {b}",
+    Quantity.CARRIED_VELOCITY: "Velocity of the connection point of {b}, in the axes of {p}",
+    Quantity.VELOCITY_ORIGIN: "Velocity of the connection point of {b}",
+    Quantity.VELOCITY_CENTRE: "Velocity of the mass centre of {b}",
+    Quantity.ANGULAR_ACCELERATION: "Angular acceleration of {b}",
+    Quantity.CARRIED_ACCELERATION: "Acceleration of the connection point of {b}{gravity}, in the axes of {p}",
+    Quantity.ACCELERATION: "Acceleration of the connection point of {b}{gravity}",
+    Quantity.OUTWARD: "Unit vector from the attracting centre to {o}, in the axes of {b}",
+    Quantity.RADIUS: "Radius vector from the attracting centre to the mass centre of {b}",
+    Quantity.PLACE: "Radius vector from {o} to the mass centre of {b}",
+    Quantity.ALONG: "Projection of that radius vector on that unit vector, for {b}",
+    Quantity.SPAN: "Vector between the ends of load {l}, in the axes of {common}",
+    Quantity.MASS: "Mass of {it}",
+    Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of {it}",
+    Quantity.INERTIA: "Inertia tensor of {it} about the connection point",
+    Quantity.UNIT_FORCE: "Force at the connection point of {b} that a unit acceleration takes of",
+    Quantity.UNIT_MOMENT: "Moment about the connection point of {b} that a unit acceleration takes of",
+    Quantity.FORCE: "Force that {it} needs beyond the loads",
+    Quantity.MOMENT: "Moment about the connection point that {it} needs beyond the loads",
+}  # fmt: skip
+
+
+class _Speaker:
+    """Says what an intermediate is; each body's name once."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.numbers = {body.name: k for k, body in enumerate(system.bodies, 1)}
+        self.carriers = {body.attached_to for body in system.bodies}
+        self.named: set[str] = set()
+
+    def __call__(self, meaning: Meaning | None) -> tuple[str, str]:
+        """The phrase, and the coordinate whose symbol ends it."""
+        if meaning is None:
+            return "Abbreviations", ""
+        template = _WORDS[meaning.quantity]
+        body = self.system.body(meaning.body) if meaning.body else None
+        values: dict[str, str] = {}
+        for key, make in (
+            ("b", lambda: self._body(meaning.body)),
+            ("it", lambda: self._body(meaning.body) + self._carried(meaning.body)),
+            ("p", lambda: self._body("" if body is None else body.attached_to)),
+            ("o", lambda: self._expansion_point(meaning.load)),
+            ("common", lambda: self._common(meaning.load)),
+        ):
+            if f"{{{key}}}" in template:
+                values[key] = make()
+        gravity = self._gravity(meaning.body) if "{gravity}" in template else ""
+        return template.format(**values, gravity=gravity, l=meaning.load), meaning.coordinate
+
+    def _body(self, name: str) -> str:
+        if name == INERTIAL or not name:
+            return "the inertial frame"
+        said = f"body {self.numbers[name]}"
+        if name in self.named:
+            return said
+        self.named.add(name)
+        return f"{said} ({name})"
+
+    def _carried(self, name: str) -> str:
+        return " with what it carries" if name in self.carriers else ""
+
+    def _load(self, number: int) -> object:
+        return self.system.loads[number - 1]
+
+    def _expansion_point(self, number: int) -> str:
+        load = self._load(number)
+        about = load.about if isinstance(load, NewtonianGravity) else ""
+        if about == INERTIAL or not about:
+            return "the origin of the inertial frame"
+        return f"the connection point of {self._body(about)}"
+
+    def _common(self, number: int) -> str:
+        load = self._load(number)
+        ends = [getattr(load, "first").body, getattr(load, "second").body]  # noqa: B009 - any load between two points
+        paths = [self.system.path(name) for name in ends]
+        shared = [a for a, b in zip(*paths, strict=False) if a == b]
+        return self._body(shared[-1])
+
+    def _gravity(self, name: str) -> str:
+        """Which gravity is taken off an acceleration: the uniform one, and that at the origin of a falling frame."""
+        parts = ["gravity"] if any(isinstance(x, UniformGravity) for x in self.system.loads) else []
+        carriers = [frame for frame in falling_frames(self.system) if frame in self.system.path(name)]
+        parts += [f"the field at the connection point of {self._body(frame)}" for frame in carriers]
+        return f" less {' and '.join(parts)}" if parts else ""
