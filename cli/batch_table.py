@@ -71,6 +71,9 @@ class Live(Lines):
         if self._running.pop(row.file, None) is not None:
             self._derived += 1
         super().ended(row)
+        self._drawn = 0.0
+        if self._live is not None:
+            self.tick()
 
     def say(self, text: str, row: Row) -> None:
         from rich.text import Text

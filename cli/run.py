@@ -36,6 +36,8 @@ def command(
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
 
+    For folders in folders, several at a time and only what changed, there is 'mbsym batch'.
+
     Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals.
     One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
     failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,

@@ -118,21 +118,32 @@ def test_a_damaged_file_is_made_again(place: Path) -> None:
     text = (place / "in" / "a.yaml").read_text(encoding="utf-8")
     damaged = {}
     for name in ("results.json", "outcome.json", ".mbsym.json"):
-        for damage in ("changed", "gone", "cut"):
+        for damage in ("changed", "gone"):
             copy = f"{damage}-{name.strip('.').replace('.', '-')}"
             folder_of(place / "in", **{copy: text})
             shutil.copytree(place / "out" / "a", place / "out" / copy)
             file = place / "out" / copy / name
             data = file.read_bytes()
-            if damage == "gone":
-                file.unlink()
-            else:
-                file.write_bytes(data[: len(data) // 2] if damage == "cut" else data.replace(b"a", b"b", 1))
+            file.unlink()
+            if damage == "changed":
+                file.write_bytes(data.replace(b"a", b"b", 1))
             damaged[copy] = False
     before = files_of(place / "out" / "a")
     batch("in", "-o", "out", *QUICK, cwd=place)
     assert cached(place / "out") == {"a": True, **damaged}
     assert all(files_of(place / "out" / copy) == before for copy in damaged)
+
+
+def test_a_delivery_that_was_killed_is_completed(place: Path) -> None:
+    """Everything lay ready (``cli/files.py``, step 2), but only some of it had been moved to its place."""
+    folder = place / "out" / "a"
+    before = files_of(place / "out")
+    (folder / ".mbsym-ready").mkdir()
+    for name in ("outcome.json", ".mbsym.json"):
+        (folder / name).rename(folder / ".mbsym-ready" / name)
+    batch("in", "-o", "out", *QUICK, cwd=place)
+    assert cached(place / "out") == {"a": True}
+    assert files_of(place / "out") == before
 
 
 def test_what_another_command_wrote_over_is_made_again(place: Path) -> None:
