@@ -8,7 +8,6 @@ from __future__ import annotations
 import gc
 import importlib
 import sys
-from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 import click
@@ -68,6 +67,8 @@ class LazyGroup(click.Group):
         """With a hint where the name of a command is misspelt."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
+            from difflib import get_close_matches
+
             near = get_close_matches(name, COMMANDS, 1)
             known = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(COMMANDS)}"
             context.fail(f"there is no command '{name}'; {known}")

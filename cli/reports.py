@@ -108,10 +108,10 @@ def _show(
     analysis: Analysis, path: Path, written: list[Path], request: Request, seconds: float, found: Ledger | None
 ) -> None:
     """The run on the terminal."""
-    from mbsym_cli.show import show, show_brief
-
     if request.quiet:
         return
+    from mbsym_cli.show import show, show_brief
+
     if request.brief:
         from mbsym.report.brief import brief
 

@@ -72,3 +72,31 @@ def test_reading_a_description_loads_nothing_heavy(name: str) -> None:
     program = f"import sys, {name}; print(*[m for m in {HEAVY} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+#: What a run has no use for: numbers in arrays, figures, SymPy's exchange, the search for all equilibria, what writes
+#: descriptions, metadata of packages, and (where nothing is printed) a terminal's colours.
+UNUSED = (
+    *(name for name in HEAVY if name != "jinja2"),
+    "importlib.metadata",
+    "importlib.resources",
+    "mbsym.algebra.polynomial_systems",
+    "mbsym.problems.equilibria",
+    "mbsym.source.yaml_writer",
+)
+
+
+@pytest.mark.parametrize(
+    ("command", "unused"), [("run", UNUSED), ("check", (*HEAVY, "importlib.metadata", "flint", "mbsym.analysis"))]
+)
+def test_a_command_loads_only_what_it_uses(command: str, unused: tuple[str, ...], tmp_path: Path) -> None:
+    """Every module that is imported for nothing is time that every run takes."""
+    options = ["--out", str(tmp_path), "--quiet"] if command == "run" else []
+    arguments = ["mbsym", command, str(ROOT.parent / "systems" / "double-pendulum.yaml"), *options]
+    program = (
+        f"import atexit, sys; sys.argv = {arguments}\n"
+        f"atexit.register(lambda: print('loaded:', *[m for m in {unused} if m in sys.modules]))\n"
+        "from mbsym_cli.main import main; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "loaded:"

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
@@ -31,13 +31,11 @@ from mbsym.problems import (
     dissipation,
     energy,
     equations,
-    equilibria,
     equilibrium,
     integrals,
     kinematics,
     knowledge,
     linearisation,
-    open_verdicts,
     stability,
 )
 from mbsym.problems.checks import Check, oracles
@@ -46,13 +44,15 @@ from mbsym.problems.claims.counterexample import Trials
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.equilibria import Equilibria
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
 from mbsym.problems.telling import ToldSystem, told_system
+
+if TYPE_CHECKING:
+    from mbsym.problems.equilibria import Equilibria
 
 T = TypeVar("T")
 
@@ -186,7 +186,7 @@ class Analysis(Stages):
 
     # --- at numbers ---
 
-    equilibria = Derived["Analysis", Equilibria](lambda a: a._equilibria(), ("straight-line program",), says=True)
+    equilibria = Derived["Analysis", "Equilibria"](lambda a: a._equilibria(), ("straight-line program",), says=True)
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
@@ -216,6 +216,10 @@ class Analysis(Stages):
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.judgeable
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
+        if found.numerical is None or not found.numerical.word.open:
+            return found
+        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+
         return open_verdicts.decided(found, scene, self.equilibrium)
 
     def _balance(self) -> Balance:
@@ -231,6 +235,8 @@ class Analysis(Stages):
         if missing:
             hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
             raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+        from mbsym.problems import equilibria
+
         return equilibria.equilibria(self.system, values)
 
 

@@ -10,10 +10,11 @@ import json
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from hashlib import sha256
-from importlib.resources import files
 from typing import Any
 
 from markupsafe import Markup
+
+from mbsym.report.environment import compiled, templates
 
 
 def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[str, ...], **values: Any) -> str:
@@ -21,16 +22,12 @@ def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[
 
     ``scripts`` names the files of that folder that the page runs.  An unknown name in a template is an error.
     """
-    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined  # only reports need it
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only reports need it
 
-    try:
-        cache = FileSystemBytecodeCache()  # compiled templates, in a folder that only this user may write
-    except RuntimeError:
-        cache = None
-    folder = files("mbsym_templates").joinpath("html")
+    folder = templates() / "html"
     environment = Environment(
-        bytecode_cache=cache,
-        loader=FileSystemLoader(str(folder)),
+        bytecode_cache=compiled(),
+        loader=FileSystemLoader(folder),
         undefined=StrictUndefined,
         autoescape=True,
         trim_blocks=True,
@@ -38,8 +35,8 @@ def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[
         keep_trailing_newline=True,
     )
     environment.globals.update(known)
-    style = folder.joinpath("page.css").read_text(encoding="utf-8")
-    code = [folder.joinpath(name).read_text(encoding="utf-8") for name in scripts]
+    style = (folder / "page.css").read_text(encoding="utf-8")
+    code = [(folder / name).read_text(encoding="utf-8") for name in scripts]
     values |= {
         "style": Markup(style),
         "scripts": [Markup(text) for text in code],

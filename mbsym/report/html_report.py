@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from mbsym import __version__
 from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, power
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
@@ -85,7 +85,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         checks=analysis.checks,
         brief=brief(analysis, 0.0),
         diagram=diagram(system) if system.bodies else "",
-        version=_version(),
+        version=__version__,
     )
 
 
@@ -188,10 +188,3 @@ def _code(analysis: Analysis) -> list[str] | None:
     lines = [f"{name} = {text}" for name, text in body.assignments]
     lines += [f"M[{i + 1}, {j + 1}] = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
     return lines + [f"f[{i + 1}] = {text}" for i, text in enumerate(body.results[len(upper) :])]
-
-
-def _version() -> str:
-    try:
-        return version("mbsym")
-    except PackageNotFoundError:
-        return ""

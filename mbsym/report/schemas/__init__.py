@@ -8,23 +8,24 @@ measured seconds).
 from __future__ import annotations
 
 import json
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 Schema = dict[str, Any]
 
+_FOLDER = Path(__file__).parent
+
 
 def names() -> tuple[str, ...]:
     """The kinds of files that have a schema: results, simulation, ..."""
-    found = (item.name for item in files(__package__).iterdir())
-    return tuple(sorted(name.removesuffix(".json") for name in found if name.endswith(".json")))
+    return tuple(sorted(item.stem for item in _FOLDER.iterdir() if item.suffix == ".json"))
 
 
 def schema(name: str) -> Schema:
     """The schema (draft 2020-12) of a kind of file.  Raises KeyError for a name that is not among ``names()``."""
     if name not in names():
         raise KeyError(name)
-    found: Schema = json.loads(files(__package__).joinpath(f"{name}.json").read_text(encoding="utf-8"))
+    found: Schema = json.loads((_FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     return found
 
 
