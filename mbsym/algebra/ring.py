@@ -98,6 +98,7 @@ class Ring(Algebra):
     each with the common denominator of its coefficients there (sin(q/2) makes it 2).  positive: the parameters known to
     be positive (a root of their squares is taken exactly).  nonnegative: those that may be zero besides.  spare: how
     many generators may be adjoined.  terms: the budget of terms a formula may have; beyond it NoClosedForm is raised.
+    typed: the sums of angles (coefficients by name, as in ``LinearForm``) as they stand in the description.
     """
 
     #: Generators by which formulas are collected before others when they are shown.
@@ -113,6 +114,7 @@ class Ring(Algebra):
         nonnegative: Iterable[str] = (),
         spare: int = 8,
         terms: int = TERM_BUDGET,
+        typed: Iterable[tuple[tuple[str, Fraction], ...]] = (),
     ) -> None:
         self.work, self.work_budget = 0, WORK_BUDGET * max(1, terms // TERM_BUDGET)
         self.spare = spare
@@ -142,6 +144,7 @@ class Ring(Algebra):
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
         self._derivatives: dict[str, dict[int, Polynomial]] = {}
         self.angles = dict(angles)
+        self.typed = frozenset(typed)
         self._declare_angles()
 
     def _declare_angles(self) -> None:
@@ -845,6 +848,7 @@ class ParameterRing(Ring):
         self._positive = {self.indices.index(k) for k in whole._positive if k in self.indices}
         self._nonnegative = {self.indices.index(k) for k in whole._nonnegative if k in self.indices}
         self._relations, self._derivatives, self.angles, self._independent = [], {}, {}, set()
+        self.typed = frozenset()
 
     def project(self, x: Polynomial) -> Polynomial:
         """A polynomial of the whole ring in these parameters only."""

@@ -618,40 +618,52 @@ class _Waves:
                 factor = content * (below // waves.below)
                 parts = [part._replace(weight=part.weight * factor) for part in waves.parts]
             for part in parts:
-                monomial = self._monomial(outside, part)
-                result[monomial] = result.get(monomial, 0) + part.weight
+                monomial, sign = self._monomial(outside, part)
+                result[monomial] = result.get(monomial, 0) + sign * part.weight
         return below, result
 
-    def _monomial(self, outside: Monomial, part: angle_sums.Part) -> Monomial:
-        pairs = list(outside)
+    def _monomial(self, outside: Monomial, part: angle_sums.Part) -> tuple[Monomial, int]:
+        pairs, sign = list(outside), 1
         for wave in part.waves:
-            pairs.append((self._generator(wave), wave.power))
+            index, turned = self._generator(wave)
+            pairs.append((index, wave.power))
+            sign *= turned**wave.power
         for angle, sine, cosine in angle_sums.unpacked(part.code):
             pairs += [(self._atoms[angle][0], 1)] * sine
             if cosine:
                 pairs.append((self._atoms[angle][1], cosine))
-        return tuple(sorted(pairs, key=lambda pair: self.presenter.place(pair[0])))
+        return tuple(sorted(pairs, key=lambda pair: self.presenter.place(pair[0]))), sign
 
-    def _generator(self, wave: angle_sums.Wave) -> int:
-        """The number that stands for a wave: a generator's own for sin and cos of a single angle."""
-        if len(wave.combination) == 1 and wave.combination[0][1] == 1:
-            return self._atoms[wave.combination[0][0]][0 if wave.sine else 1]
-        ordered = sorted(wave.combination, key=lambda item: item[1] < 0)
-        angle = tuple((self.names[k], Fraction(n, self._numbers[self.names[k]])) for k, n in ordered)
-        made = Wave("sine" if wave.sine else "cosine", angle)
+    def _generator(self, wave: angle_sums.Wave) -> tuple[int, int]:
+        """(the number that stands for a wave, sign): a generator's own number for sin and cos of a single angle."""
+        if wave not in self._known:
+            self._known[wave] = self._new(wave)
+        return self._known[wave]
+
+    def _new(self, wave: angle_sums.Wave) -> tuple[int, int]:
+        combination = wave.combination
+        if len(combination) == 1 and combination[0][1] == 1:
+            return self._atoms[combination[0][0]][0 if wave.sine else 1], 1
+        # q2 - q1 stays so where the description says it so; else the first angle is positive.
+        coefficients = {self.names[k]: Fraction(n, self._numbers[self.names[k]]) for k, n in combination}
+        typed = self.presenter.ring.typed
+        straight, opposite = (tuple(sorted((k, sign * n) for k, n in coefficients.items())) for sign in (1, -1))
+        sign = -1 if opposite in typed and straight not in typed else 1
+        angle = sorted(((name, sign * n) for name, n in coefficients.items()), key=lambda item: item[1] < 0)
+        made = Wave("sine" if wave.sine else "cosine", tuple(angle))
         if made not in self._indices:
             index = self._indices[made] = self.first + len(self._made)
             self._made.append(made)
             presenter = self.presenter
             presenter._inverted[index] = None
-            presenter._levels[index] = max(presenter.level(self._atoms[k][0]) for k, _ in wave.combination)
+            presenter._levels[index] = max(presenter.level(self._atoms[k][0]) for k, _ in combination)
             place = 0
-            for k, n in wave.combination[:11]:
+            for k, n in combination[:11]:
                 place = (place << 20) + (k << 8) + 128 + n
-            place <<= 20 * (11 - min(len(wave.combination), 11))
-            first = presenter.place(self._atoms[wave.combination[0][0]][1])
+            place <<= 20 * (11 - min(len(combination), 11))
+            first = presenter.place(self._atoms[combination[0][0]][1])
             presenter._places[index] = first + (1 << _WITHIN) + 2 * place + wave.sine
-        return self._indices[made]
+        return self._indices[made], sign if wave.sine else 1
 
 
 def _by(variable: int) -> Split:
