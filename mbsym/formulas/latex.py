@@ -1,8 +1,10 @@
 """Formulas in LaTeX (amsmath): dots for velocities, Greek letters, indices, fractions.
 
 Long formulas must break across lines.  Only TeX knows how wide things are, so ``breaks=True`` marks the places before
-plus and minus signs, in brackets too, with penalties that grow with the depth, and TeX chooses.  Brackets are of fixed
-size, therefore, never ``\\left`` and ``\\right``.
+plus and minus signs with penalties that grow with the depth, and TeX chooses.  A bracket that fits into a line is never
+broken; of longer ones a coefficient's only as a last resort.  Brackets are of fixed size, never ``\\left`` and ``\\right``.
+
+Nothing may read wrongly: what follows ``\\cos x`` would seem to belong to the argument, so functions stand last.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
-from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, present
+from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, length, present
 
 _VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
 #: Greek letters that LaTeX has no command for: they look Latin.
@@ -27,12 +29,31 @@ _LATIN = {
 _BRACKETS = (("(", ")"), (r"\bigl[", r"\bigr]"), (r"\bigl\{", r"\bigr\}"), (r"\Bigl(", r"\Bigr)"))
 _DOTS = {"velocity": "dot", "acceleration": "ddot"}
 _COMMANDS = {"sine": r"\sin", "cosine": r"\cos"}
+#: A bracket of this length (names, numbers, signs; a column holds it) is never broken.
+UNBROKEN = 18
+#: The penalty for a break in a longer bracket of parameters only.
+LAST_RESORT = 5000
 _NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan"}
 
 
 def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
     """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus."""
     return LatexPrinter(ring, breaks).sum(present(ring, polynomial, angles_or("shorter")))
+
+
+def latex_factor(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
+    """The polynomial as a factor before another: in brackets if it is a sum, or if what follows would be misread.
+
+    After ``\\cos x`` a name or number would seem to belong to the argument.  1 is written as an empty string, -1 as ``-``.
+    """
+    shape, printer = present(ring, polynomial, angles_or("shorter")), LatexPrinter(ring, breaks)
+    if len(shape.terms) != 1:
+        return printer.factor(Factor(shape))
+    text = printer.sum(shape)
+    if text in ("1", "-1"):
+        return text[:-1]
+    term = shape.terms[0]
+    return printer.factor(Factor(shape)) if term.over and printer.runs_on(term) else text
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,18 +142,20 @@ class LatexPrinter:
     def __init__(self, ring: Ring, breaks: bool = False) -> None:
         self.ring = ring
         self.breaks = breaks
+        self._whole = LatexPrinter(ring) if breaks else self
         self.names = latex_names(ring)
         self._atoms: dict[int, tuple[str, str]] = {}
         self._heights: dict[Sum, int] = {}
 
-    def sum(self, shape: Sum, depth: int = 0) -> str:
+    def sum(self, shape: Sum, depth: int = 0, penalty: int = 0) -> str:
+        """The terms, in ``depth`` brackets; where it may be broken, at this penalty."""
         if not shape.terms:
             return "0"
         pieces: list[str] = []
         for term in shape.terms:
             negative = term.coefficient < 0
             if pieces and self.breaks:
-                pieces.append(f"\\penalty{60 * depth} ")
+                pieces.append(f"\\penalty{penalty} ")
             pieces.append((" - " if negative else " + ") if pieces else ("-" if negative else ""))
             pieces.append(self.product(term, depth))
         return "".join(pieces)
@@ -170,15 +193,18 @@ class LatexPrinter:
             return True
         return isinstance(factor.base, int) and self.ring.generators[factor.base].kind in _COMMANDS
 
+    def runs_on(self, product: Product) -> bool:
+        """Whether it ends in a function without brackets, whose argument would seem to go on."""
+        return any(self._is_sine(factor) for factor in product.over)
+
     def _is_parameter(self, index: int) -> bool:
         return self.ring.generators[index].kind == "parameter"
 
     def _denominator(self, factor: Factor, alone: bool) -> str:
         """Inside a fraction's denominator nothing can break, and a lone bracket needs no brackets."""
-        quiet = LatexPrinter(self.ring)
         if alone and factor.exponent == 1 and isinstance(factor.base, Sum):
-            return quiet.sum(factor.base)
-        return quiet.factor(factor)
+            return self._whole.sum(factor.base)
+        return self._whole.factor(factor)
 
     def factor(self, factor: Factor, depth: int = 0) -> str:
         if isinstance(factor.base, int):
@@ -187,7 +213,23 @@ class LatexPrinter:
             return self.wave(factor.base, factor.exponent)
         opening, closing = _BRACKETS[min(self._height(factor.base), len(_BRACKETS)) - 1]
         raised = f"^{{{factor.exponent}}}" if factor.exponent != 1 else ""
-        return f"{opening}{self.sum(factor.base, depth + 1)}{closing}{raised}"
+        return f"{opening}{self._bracketed(factor.base, depth + 1)}{closing}{raised}"
+
+    def _bracketed(self, shape: Sum, depth: int) -> str:
+        if not self.breaks:
+            return self.sum(shape)
+        if length(self.ring, shape) <= UNBROKEN:
+            return self._whole.sum(shape)
+        return self.sum(shape, depth, LAST_RESORT if self._is_coefficient(shape) else 60 * depth)
+
+    def _is_coefficient(self, shape: Sum) -> bool:
+        """Whether nothing in it moves."""
+        return all(self._rests(factor.base) for term in shape.terms for factor in (*term.over, *term.under))
+
+    def _rests(self, base: int | Wave | Sum) -> bool:
+        if isinstance(base, Sum):
+            return self._is_coefficient(base)
+        return isinstance(base, int) and self._is_parameter(base)
 
     def _height(self, shape: Sum) -> int:
         """How deeply brackets are nested, this one included."""
@@ -235,7 +277,7 @@ class LatexPrinter:
         return " " + symbol if g.denominator == 1 else f"\\frac{{{symbol}}}{{{g.denominator}}}"
 
     def _quiet(self, argument: Any) -> str:
-        return LatexPrinter(self.ring).sum(present(self.ring, argument, angles_or("shorter")))
+        return self._whole.sum(present(self.ring, argument, angles_or("shorter")))
 
 
 def _joined(factors: Sequence[str]) -> str:

@@ -125,6 +125,11 @@ def present(ring: Ring, polynomial: Polynomial, angles: Angles = "products") -> 
     return presenter(polynomial, angles)
 
 
+def length(ring: Ring, shape: Sum) -> int:
+    """How much a reader meets: names, numbers, functions, signs, brackets.  The ring has presented the shape."""
+    return _PRESENTERS[ring].length(shape)
+
+
 def leaves(shape: Sum) -> int:
     """How many symbols and numbers a reader meets."""
     return sum(_product_leaves(term) for term in shape.terms)
@@ -164,6 +169,7 @@ class _Presenter:
         self._factored: dict[frozenset[Any], Product] = {}
         self._brackets: dict[frozenset[Any], Sum] = {}
         self._negatives: dict[Sum, Sum] = {}
+        self._turned: dict[Sum, Sum] = {}  # of the negated bracket, the one that it was made of
         self._ranks: dict[Sum, int] = {}
         self._lengths: dict[Sum, int] = {}
         self._choices: dict[tuple[frozenset[Any], Angles], tuple[int, Terms]] = {}
@@ -447,15 +453,18 @@ class _Presenter:
     # --- brackets --------------------------------------------------------------------------------------------------
 
     def _bracket(self, terms: Terms, factored: bool) -> Sum:
+        if len(terms) > FACTOR_WHOLE:
+            return self._new_bracket(terms, factored)
+        key = frozenset(terms.items())
+        if key not in self._brackets:
+            self._brackets[key] = self._new_bracket(terms, factored)
+        return self._brackets[key]
+
+    def _new_bracket(self, terms: Terms, factored: bool) -> Sum:
         level = max(self.level(monomial[0][0]) for monomial in terms if monomial)
         if level:
             return self._grouped(terms, self._at_level(level), factored)
-        if len(terms) > COLLECT:
-            return self._plain(terms)
-        key = frozenset(terms.items())
-        if key not in self._brackets:
-            self._brackets[key] = self._collected(terms) if factored and len(terms) > 2 else self._plain(terms)
-        return self._brackets[key]
+        return self._collected(terms) if factored and 2 < len(terms) <= COLLECT else self._plain(terms)
 
     def _plain(self, terms: Terms) -> Sum:
         ordered = sorted(terms, key=self._key)
@@ -480,7 +489,7 @@ class _Presenter:
             groups.setdefault(head, {})[tail] = coefficient
         shared: dict[tuple[Any, ...], Terms] = {}
         for head in sorted(groups, key=lambda m: (-sum(e for _, e in m), self._key(m))):
-            product = self._product(groups[head], factored)
+            product = self._unsigned(self._product(groups[head], factored))
             shared.setdefault((product.over, product.under), {})[head] = int(product.coefficient.p)
         products: list[Product] = []
         for (over, under), heads in shared.items():
@@ -492,19 +501,41 @@ class _Presenter:
     ) -> Sequence[Product]:
         """over/under times the sum of the heads: l*(m + 3*m0)*(sin(phi)*cos(sigma) + cos(phi)*sin(sigma))."""
         if len(heads) > 1 and (over or under):
-            return [self._times(self._product(heads, factored), over, under)]
+            return [self._times(self._unsigned(self._product(heads, factored)), over, under)]
         products: list[Product] = []
         for head, coefficient in heads.items():
             if head:
                 products.append(self._times(self._assembled(coefficient, head, [], False), over, under))
             else:
-                product = Product(fmpq(coefficient), over, under)
+                product = self._signed(Product(fmpq(coefficient), over, under))
                 products += _opened(product).terms if abs(coefficient) == 1 else [product]
         return products
 
     def _times(self, product: Product, over: Sequence[Factor], under: Sequence[Factor]) -> Product:
         over, under = [*over, *product.over], [*under, *product.under]
-        return Product(product.coefficient, _ordered(self, over), _ordered(self, under))
+        return self._signed(Product(product.coefficient, _ordered(self, over), _ordered(self, under)))
+
+    def _unsigned(self, product: Product) -> Product:
+        """With brackets as they were before a sign went into them: y - x and x - y are one bracket."""
+        coefficient, over = product.coefficient, []
+        for factor in product.over:
+            original = self._turned.get(factor.base) if isinstance(factor.base, Sum) and factor.exponent % 2 else None
+            if original is not None:
+                factor, coefficient = Factor(original, factor.exponent), -coefficient
+            over.append(factor)
+        return Product(coefficient, tuple(over), product.under) if coefficient != product.coefficient else product
+
+    def _signed(self, product: Product) -> Product:
+        """With its minus sign in a bracket that has one already."""
+        if product.coefficient >= 0:
+            return product
+        for place, factor in enumerate(product.over):
+            if isinstance(factor.base, Sum) and factor.exponent % 2 and _takes_sign(factor.base):
+                turned = Factor(self._negated(factor.base), factor.exponent)
+                return Product(
+                    -product.coefficient, (*product.over[:place], turned, *product.over[place + 1 :]), product.under
+                )
+        return product
 
     def _collected(self, terms: Terms) -> Sum:
         """Collected by the parameter that leaves the fewest symbols to read."""
@@ -524,6 +555,7 @@ class _Presenter:
         if bracket not in self._negatives:
             opposite = _tidy([Product(-term.coefficient, term.over, term.under) for term in bracket.terms])
             self._negatives[bracket], self._negatives[opposite] = opposite, bracket
+            self._turned[opposite] = bracket
         return self._negatives[bracket]
 
     def rank(self, factor: Factor) -> int:
@@ -571,6 +603,10 @@ class _Waves:
         for angle, (sine, cosine) in enumerate(self._atoms):
             self._codes[sine] = angle_sums.packed([(angle, 1, 0)])
             self._codes[cosine] = angle_sums.packed([(angle, 0, 1)])
+        numbers = {name: angle for angle, name in enumerate(self.names)}
+        signed = [[(numbers[name], n) for name, n in form if name in numbers] for form in ring.typed]
+        #: Of each sum of angles that was typed, the pairs (one with plus, one with minus).
+        self._typed = {(k, j) for form in signed for k, n in form for j, m in form if n > 0 > m}
         self._made: list[Wave] = []
         self._indices: dict[Wave, int] = {}
         self._known: dict[angle_sums.Wave, tuple[int, int]] = {}
@@ -645,11 +681,10 @@ class _Waves:
         if len(combination) == 1 and combination[0][1] == 1:
             return self._atoms[combination[0][0]][0 if wave.sine else 1], 1
         # q2 - q1 stays so where the description says it so; else the first angle is positive.
-        coefficients = {self.names[k]: Fraction(n, self._numbers[self.names[k]]) for k, n in combination}
-        typed = self.presenter.ring.typed
-        straight, opposite = (tuple(sorted((k, sign * n) for k, n in coefficients.items())) for sign in (1, -1))
-        sign = -1 if opposite in typed and straight not in typed else 1
-        angle = sorted(((name, sign * n) for name, n in coefficients.items()), key=lambda item: item[1] < 0)
+        first, second = combination[0][0], next((k for k, n in combination if n < 0), -1)
+        sign = -1 if (second, first) in self._typed and (first, second) not in self._typed else 1
+        angle = [(self.names[k], Fraction(sign * n, self._numbers[self.names[k]])) for k, n in combination]
+        angle.sort(key=lambda item: item[1] < 0)
         made = Wave("sine" if wave.sine else "cosine", tuple(angle))
         if made not in self._indices:
             index = self._indices[made] = self.first + len(self._made)
@@ -661,8 +696,8 @@ class _Waves:
             for k, n in combination[:11]:
                 place = (place << 20) + (k << 8) + 128 + n
             place <<= 20 * (11 - min(len(combination), 11))
-            first = presenter.place(self._atoms[combination[0][0]][1])
-            presenter._places[index] = first + (1 << _WITHIN) + 2 * place + wave.sine
+            beside = presenter.place(self._atoms[first][1])
+            presenter._places[index] = beside + (1 << _WITHIN) + 2 * place + wave.sine
         return self._indices[made], sign if wave.sine else 1
 
 

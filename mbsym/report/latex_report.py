@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.formulas.formula import Column, Formula, Matrix
-from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_matrix, latex_names, latex_text
+from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_names, latex_text
 from mbsym.formulas.names import free_name
-from mbsym.formulas.shape import Factor, present
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.stability import Stability
@@ -297,11 +296,10 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
         if length := counted(coefficient):
             written.append(" \\penalty0 " + ("+ " if written else "") + length + raised)
             continue
-        text, shape = formula(coefficient), present(coefficient.ring, coefficient.polynomial)
-        if raised and text in ("1", "-1"):
-            text = text[:-1]
-        elif raised and len(shape.terms) > 1:
-            text = LatexPrinter(coefficient.ring, breaks=True).factor(Factor(shape))
+        if raised:
+            text = latex_factor(coefficient.ring, coefficient.polynomial, breaks=True)
+        else:
+            text = formula(coefficient)
         written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
     return "".join(written) or "0"
 
