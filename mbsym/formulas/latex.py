@@ -2,7 +2,8 @@
 
 Long formulas must break across lines.  Only TeX knows how wide things are, so ``breaks=True`` marks the places before
 plus and minus signs with penalties that grow with the depth, and TeX chooses.  A bracket that fits into a line is never
-broken; of longer ones a coefficient's only as a last resort.  Brackets are of fixed size, never ``\\left`` and ``\\right``.
+broken; of longer ones a coefficient's only as a last resort.  Brackets are of fixed size, never ``\\left`` or
+``\\right``.
 
 Nothing may read wrongly: what follows ``\\cos x`` would seem to belong to the argument, so functions stand last.
 """
@@ -44,7 +45,7 @@ def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
 def latex_factor(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
     """The polynomial as a factor before another: in brackets if it is a sum, or if what follows would be misread.
 
-    After ``\\cos x`` a name or number would seem to belong to the argument.  1 is written as an empty string, -1 as ``-``.
+    After ``\\cos x`` a name would seem to belong to the argument.  1 is written as an empty string, -1 as ``-``.
     """
     shape, printer = present(ring, polynomial, angles_or("shorter")), LatexPrinter(ring, breaks)
     if len(shape.terms) != 1:

@@ -182,7 +182,7 @@ def ring_of(
         nonnegative=[parameter.name for parameter in system.parameters if parameter.sign == "nonnegative"],
         spare=min(adjunctions, 64) + 2 * min(len(constant_angles(system, arguments)), MOST_CONSTANT_ANGLES),
         terms=terms,
-        typed=[form.coefficients for form in map(linear_form, _angles(system)) if form is not None],
+        typed=[form.coefficients for form in map(linear_form, angles_of(system)) if form is not None],
     )
 
 
