@@ -104,9 +104,9 @@ def command(
 
 
 def _formats(asked: Options, text: str) -> tuple[str, ...]:
-    from mbsym.report.targets import TARGETS
+    from mbsym.report.targets import FORMATS, TARGETS
 
-    return asked.words("--format", text, tuple(TARGETS), "format", every="all")
+    return asked.words("--format", text, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
 
 
 def _seconds(asked: Options, text: str) -> float | None:

@@ -159,11 +159,19 @@ class Options:
         self._unknown(option, text, choices, what)
         return None
 
-    def words(self, option: str, text: str, choices: Collection[str], what: str, every: str = "") -> tuple[str, ...]:
-        """Some of a few words, separated by commas, each once; ``every`` stands for all of them."""
-        chosen = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",") if part.strip()))
-        if every and chosen == (every,):
-            return tuple(choices)
+    def words(
+        self,
+        option: str,
+        text: str,
+        choices: Collection[str],
+        what: str,
+        every: str = "",
+        of_them: Collection[str] | None = None,
+    ) -> tuple[str, ...]:
+        """Some of a few words, separated by commas, each once; ``every`` stands for all of them, or ``of_them``."""
+        named = [part.strip().lower() for part in text.split(",") if part.strip()]
+        usual = tuple(choices if of_them is None else of_them)
+        chosen = tuple(dict.fromkeys(x for part in named for x in (usual if every and part == every else (part,))))
         for name in chosen:
             if name not in choices:
                 self._unknown(option, name, [*choices, every] if every else choices, what)

@@ -90,7 +90,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     return FAILED if _complaints(analysis, path, files, request) else OK
 
 
-def _ledger(analysis: Analysis, texts: dict[str, str]) -> Ledger:
+def _ledger(analysis: Analysis, texts: dict[str, str | bytes]) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
     from mbsym.report.ledger import ledger_csv, with_ledger
@@ -99,7 +99,7 @@ def _ledger(analysis: Analysis, texts: dict[str, str]) -> Ledger:
     found = ledger(analysis)
     results = TARGETS["json"].filename
     if results in texts:
-        texts[results] = with_ledger(texts[results], found)
+        texts[results] = with_ledger(str(texts[results]), found)
     texts["ledger.csv"] = ledger_csv(found)
     return found
 
@@ -127,11 +127,23 @@ def _show(
         show_ledger(ledger_lines(found), found.unmeasured)
 
 
+def _remarks(path: Path, files: list[Rendered], request: Request) -> None:
+    """What is to be told of files that were made, on standard error."""
+    from mbsym.report.targets import FORMATS
+
+    made = {file.filename for file in files if file.text is not None}
+    for target in (FORMATS[name] for name in request.formats):
+        words = target.remark() if target.remark is not None and target.filename in made else ""
+        if words:
+            complain(path, f"{target.filename}: {words}")
+
+
 def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: Request) -> bool:
     """What went wrong, on standard error; whether anything did."""
     defects = lost(analysis, files)
     for where, failure in defects:
         complain(path, f"{where}: {failure.reason}" + (f"; {failure.hint}" if failure.hint else ""))
+    _remarks(path, files, request)
     open_claims = [result for result in analysis.claims if not result.holds] if request.strict_claims else []
     for result in open_claims:
         place = f"{result.claim.place}: " if result.claim.place else ""

@@ -16,7 +16,9 @@ from mbsym_cli.reports import Request, report_on
 @click.command("run")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
 @click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show; all of them: 1-7]")
-@click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
+@click.option(
+    "--format", "formats", "-f", default="all", show_default=True, help="Some of them; exports only where named."
+)
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
@@ -44,6 +46,9 @@ def command(
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
     unless --strict-claims is given.
 
+    Formats: latex, wolfram, python, c, json are all of them; the exports casadi, jax, octave (MATLAB too), julia,
+    modelica, fmu2 and fmu3 are made where they are named.
+
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
 
@@ -53,13 +58,14 @@ def command(
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
+      mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
     """
-    from mbsym.report.targets import TARGETS, shown_by
+    from mbsym.report.targets import FORMATS, TARGETS, shown_by
 
     asked = Options()
     paths = asked.descriptions(files)
     chosen = None if problems is None else asked.problems(problems)
-    kinds = asked.words("--format", formats, tuple(TARGETS), "format", every="all")
+    kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
     budget = asked.whole("--terms", terms, 1, 10**12)
     if asked.complaints or budget is None:
         for path in paths:

@@ -49,6 +49,6 @@ class Finished:
     """
 
     row: Row
-    files: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str | bytes] = field(default_factory=dict)
     meaning: str = ""
     same: bool = False

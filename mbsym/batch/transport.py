@@ -36,7 +36,7 @@ def finished_text(finished: Finished) -> str:
     return json.dumps(
         {
             "row": row_data(finished.row),
-            "files": dict(finished.files),
+            "files": {name: _content_data(content) for name, content in finished.files.items()},
             "meaning": finished.meaning,
             "same": finished.same,
         }
@@ -46,8 +46,16 @@ def finished_text(finished: Finished) -> str:
 def read_finished(text: str | bytes) -> Finished:
     """Raises one of MALFORMED where it is something else."""
     found = json.loads(text)
-    files = {str(name): str(content) for name, content in found["files"].items()}
+    files = {str(name): _read_content(content) for name, content in found["files"].items()}
     return Finished(read_row(found["row"]), files, str(found["meaning"]), bool(found["same"]))
+
+
+def _content_data(content: str | bytes) -> str | dict[str, str]:
+    return content if isinstance(content, str) else {"base64": base64.b64encode(content).decode()}
+
+
+def _read_content(found: Any) -> str | bytes:
+    return base64.b64decode(found["base64"], validate=True) if isinstance(found, dict) else str(found)
 
 
 def row_data(row: Row) -> dict[str, Any]:

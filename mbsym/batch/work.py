@@ -47,7 +47,7 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
     return row if span is None else replace(row, line=span.line, column=span.column, length=span.length)
 
 
-def _derived(task: Task, system: System) -> tuple[Row, dict[str, str]]:
+def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
@@ -70,11 +70,15 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str]]:
         checks=tuple(
             CheckRow(check.name, check.first, check.second, check.outcome, check.detail) for check in analysis.checks
         ),
-        files=tuple(FileRow(name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(files.items())),
+        files=tuple(FileRow(name, _digest(content)) for name, content in sorted(files.items())),
         message="there was not enough memory for a part of it" if outcome is Outcome.MEMORY else "",
         notes=tuple(_notes(analysis, defects)),
     )
     return row, files
+
+
+def _digest(content: str | bytes) -> str:
+    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
 
 
 def _silent(_: str) -> None:

@@ -44,10 +44,18 @@ class Listing:
 
 
 def listing(
-    program: Program, outputs: Iterable[Node], names: Mapping[str, str], dialect: Dialect, taken: Collection[str] = ()
+    program: Program,
+    outputs: Iterable[Node],
+    names: Mapping[str, str],
+    dialect: Dialect,
+    taken: Collection[str] = (),
+    inline: bool = False,
 ) -> Listing:
-    """Straight-line code for the outputs; ``names`` renames the inputs, locals avoid them and ``taken``."""
-    return _Writer(program, list(outputs), names, dialect, {*taken, *names.values()}).listing()
+    """Straight-line code for the outputs; ``names`` renames the inputs, locals avoid them and ``taken``.
+
+    With ``inline`` there are no assignments: what is used twice is written twice.
+    """
+    return _Writer(program, list(outputs), names, dialect, {*taken, *names.values()}).listing(inline)
 
 
 class _Writer:
@@ -64,7 +72,7 @@ class _Writer:
         self.assignments: list[tuple[str, str]] = []
         self._count = 0
 
-    def listing(self) -> Listing:
+    def listing(self, inline: bool) -> Listing:
         uses = Counter(operand for number in self.live for operand in self.program.instructions[number].operands)
         uses.update(node.number for node in self.outputs)
         inputs = []
@@ -73,7 +81,7 @@ class _Writer:
             text, precedence = self._text(instruction)
             if instruction.operation == "input":
                 inputs.append(str(instruction.payload))
-            elif instruction.operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
+            elif not inline and instruction.operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
                 name = self._fresh(instruction)
                 self.assignments.append((name, text))
                 text, precedence = name, _ATOM

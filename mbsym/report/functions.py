@@ -65,6 +65,12 @@ class Functions:
             time="t" in used,
         )
 
+    def expression(self, value: Expression) -> str:
+        """A value of the description as one expression in the names of the language."""
+        program = Program()
+        node = Lowering(program, program_environment(self.system, program))(value)
+        return listing(program, [node], self.names, self.dialect, inline=True).results[0]
+
     def _unpacked(self, names: Sequence[str], used: set[str]) -> tuple[tuple[int, str], ...]:
         return tuple((place, self.names[name]) for place, name in enumerate(names) if name in used)
 

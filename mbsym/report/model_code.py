@@ -65,17 +65,13 @@ class Integrals:
 
 @dataclass(frozen=True)
 class Part:
-    """A function of generated code: ``entries`` of an array of ``shape`` that need not be zero, by place.
-
-    ``velocities``: it depends on q' as well as on t and q.
-    """
+    """A function of generated code: ``entries`` of an array of ``shape`` that need not be zero, by place."""
 
     name: str
     words: str
     shape: tuple[int, ...]
     program: Program
     entries: Mapping[Place, Node]
-    velocities: bool = True
 
 
 #: Several files are written of one analysis, one after the other, from the same programs.
@@ -155,7 +151,7 @@ def places(analysis: Analysis) -> tuple[Part, Part]:
 def _places(name: str, words: str, program: Program, rows: Sequence[Sequence[Node]]) -> Part:
     entries: dict[Place, Node] = {(i, k): x for i, row in enumerate(rows) for k, x in enumerate(row)}
     words += ", a row for each of BODIES, from the inertial origin in inertial axes"
-    return Part(name, words, (len(rows), 3), program, _nonzero(program, entries), velocities=False)
+    return Part(name, words, (len(rows), 3), program, _nonzero(program, entries))
 
 
 def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...], tuple[str, ...]]:
@@ -169,7 +165,7 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
     energies = generalized_energy(code, analysis.system)
     jacobi = "T2 - T0 - U, with T2 and T0 the parts of T of second and of no degree in q'"
     made = [
-        Part("mass_matrix", "M(q), symmetric", (n, n), program, _nonzero(program, pairs), velocities=False),
+        Part("mass_matrix", "M(q), symmetric", (n, n), program, _nonzero(program, pairs)),
         Part("forcing", "f of M(q) q'' = f(q, q', t)", (n,), program, _nonzero(program, forces)),
         Part("energy", "T - U, the kinetic energy minus the force function", (), program, {(): code.energy}),
         Part("generalized_energy", jacobi, (), program, {(): energies}),

@@ -13,18 +13,24 @@ import math
 import re
 from collections.abc import Callable, Iterator
 from itertools import takewhile
+from typing import Any
 
 #: Larger powers are not computed.
 _MOST_EXPONENT = 10_000
 
 
-def unreadable(filename: str, text: str) -> str:
+def unreadable(filename: str, content: str | bytes) -> str:
     """Why the file would not be taken, or ""."""
-    reader = _READERS.get(filename.rpartition(".")[2])
+    ending = filename.rpartition(".")[2]
+    reader = _READERS.get(ending)
+    if reader is None and ending in ("m", "jl", "mo", "fmu"):
+        from mbsym.report.parsing_exports import READERS
+
+        reader = READERS[ending]
     if reader is None:
         return ""
     try:
-        reader(text)
+        reader(content)
     except (SyntaxError, ValueError, ArithmeticError, RecursionError) as error:
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
         return f"{line}{getattr(error, 'msg', None) or error}"
@@ -128,7 +134,7 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
 _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
-def _balanced(tokens: Iterator[tuple[int, str]]) -> None:
+def balanced(tokens: Iterator[tuple[int, str]]) -> None:
     """Brackets, given with their lines, close in the order in which they opened."""
     opened: list[tuple[int, str]] = []
     for line, token in tokens:
@@ -142,7 +148,7 @@ def _balanced(tokens: Iterator[tuple[int, str]]) -> None:
         raise SyntaxError(f"'{opened[-1][1]}' is never closed", ("", opened[-1][0], 0, None))
 
 
-def _brackets(text: str, skipped: re.Pattern[str], which: str) -> Iterator[tuple[int, str]]:
+def brackets(text: str, skipped: re.Pattern[str], which: str) -> Iterator[tuple[int, str]]:
     """Brackets outside what is skipped (strings, comments); what is opened and never closed there is an error."""
     line, place = 1, 0
     for match in skipped.finditer(text):
@@ -159,9 +165,9 @@ _C = re.compile(
 )
 
 
-def _c(text: str) -> None:
-    _printable(text)
-    _balanced(_brackets(text, _C, "()[]{}"))
+def c_text(text: str) -> None:
+    printable(text)
+    balanced(brackets(text, _C, "()[]{}"))
 
 
 _WOLFRAM = re.compile(r'\\\[[A-Za-z]+\]|\\.|"|\(\*|\*\)|[()\[\]{}]|\n', re.DOTALL)
@@ -169,8 +175,8 @@ _WOLFRAM = re.compile(r'\\\[[A-Za-z]+\]|\\.|"|\(\*|\*\)|[()\[\]{}]|\n', re.DOTAL
 
 def _wolfram(text: str) -> None:
     """Comments nest and know no strings; strings know no comments."""
-    _printable(text)
-    _balanced(_wolfram_brackets(text))
+    printable(text)
+    balanced(_wolfram_brackets(text))
 
 
 def _wolfram_brackets(text: str) -> Iterator[tuple[int, str]]:
@@ -202,7 +208,7 @@ _LATEX = re.compile(
 
 def _latex(text: str) -> None:
     """Braces, environments, \\left with \\right, and dollars of mathematics."""
-    _printable(text)
+    printable(text)
     opened: list[tuple[int, str]] = []
     line, place = 1, 0
     for match in _LATEX.finditer(text):
@@ -243,7 +249,7 @@ def _opener(token: str) -> str:
     return token.replace("\\end", "\\begin").replace(" ", "")
 
 
-def _printable(text: str) -> None:
+def printable(text: str) -> None:
     """No control characters but line ends and tabs."""
     bad = re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
     if bad is not None:
@@ -260,7 +266,7 @@ def _html(text: str) -> None:
     from xml.parsers import expat
 
     bare = _RAW.sub(lambda found: found[1] + "\n" * found[3].count("\n") + found[4], text)
-    _printable(bare)
+    printable(bare)
     reader = expat.ParserCreate()
     reader.StartElementHandler = _own_element
     try:
@@ -288,7 +294,7 @@ def _no_number(word: str) -> float:
     raise ValueError(f"{word} is no number of JSON")
 
 
-_READERS: dict[str, Callable[[str], None]] = {
-    "py": _python, "c": _c, "h": _c, "wl": _wolfram, "tex": _latex, "html": _html,
+_READERS: dict[str, Callable[[Any], None]] = {
+    "py": _python, "c": c_text, "h": c_text, "wl": _wolfram, "tex": _latex, "html": _html,
     "json": _json,
 }  # fmt: skip

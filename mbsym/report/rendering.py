@@ -25,13 +25,13 @@ class Unreadable(Exception):
 
 @dataclass(frozen=True)
 class Rendered:
-    """``text`` of a file, or None where there is none and ``failure`` says why.
+    """``text`` of a file (the bytes of one that is no text), or None where there is none and ``failure`` says why.
 
     ``withheld`` are the problems that it cannot show, with why.
     """
 
     filename: str
-    text: str | None
+    text: str | bytes | None
     failure: NoResult | None = None
     withheld: tuple[tuple[int, NoResult], ...] = ()
 
@@ -71,7 +71,7 @@ def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Re
     return Rendered(target.filename, None, whole)
 
 
-def _read_again(analysis: Analysis, filename: str, text: str) -> Rendered:
+def _read_again(analysis: Analysis, filename: str, text: str | bytes) -> Rendered:
     reason = unreadable(filename, text)
     if not reason:
         return Rendered(filename, text)

@@ -19,16 +19,17 @@ class Target:
     """``needs``: the problems whose results the file can hold (None: all); of these it shows those asked for.
 
     ``program``: it is made from the straight-line program, which is checked then.  ``companions`` are written beside
-    it, as a header is.
+    it, as a header is.  ``remark``: what is to be told of a file that was made here, or "".
     """
 
     name: str
     filename: str
     needs: tuple[int, ...] | None
     title: str
-    text: Callable[[Analysis, Sequence[int]], str]
+    text: Callable[[Analysis, Sequence[int]], str | bytes]
     companions: tuple[Target, ...] = ()
     program: bool = False
+    remark: Callable[[], str] | None = None
 
     @property
     def shows(self) -> tuple[int, ...]:
@@ -37,8 +38,11 @@ class Target:
 
         return ALL_PROBLEMS if self.needs is None else self.needs
 
-    def render(self, analysis: Analysis, problems: Sequence[int]) -> str:
-        """The file's whole text: the same bytes for the same description, whenever and wherever it is made."""
+    def render(self, analysis: Analysis, problems: Sequence[int]) -> str | bytes:
+        """The file's whole text: the same bytes for the same description, whenever and wherever it is made.
+
+        Of an FMU the bytes; these may depend on the compiler that is there.
+        """
         return self.text(analysis, tuple(number for number in sorted(set(problems)) if number in self.shows))
 
 
@@ -97,7 +101,7 @@ TARGETS = {
         Target(
             "python",
             "model.py",
-            (5,),
+            (5, 7),
             "a numpy module of the equations, from the straight-line program",
             _python,
             program=True,
@@ -109,6 +113,49 @@ TARGETS = {
 }
 
 
+def _exported(language: str) -> Callable[[Analysis, Sequence[int]], str]:
+    def text(analysis: Analysis, problems: Sequence[int]) -> str:
+        from importlib import import_module
+
+        written: str = import_module(f"mbsym.report.exports.{language}").render(analysis, problems)
+        return written
+
+    return text
+
+
+def _fmu(version: int) -> Callable[[Analysis, Sequence[int]], bytes]:
+    def content(analysis: Analysis, problems: Sequence[int]) -> bytes:
+        from mbsym.report.exports.fmu import render
+
+        return render(analysis, problems, version)
+
+    return content
+
+
+def _fmu_remark() -> str:
+    from mbsym.report.exports.fmu import remark
+
+    return remark()
+
+
+#: What other programs read: made only where it is named.
+EXPORTS = {
+    target.name: target
+    for target in (
+        Target("casadi", "model_casadi.py", (7,), "functions for CasADi", _exported("casadi_module"), program=True),
+        Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("jax_module"), program=True),
+        Target("octave", "model.m", (7,), "functions for MATLAB and Octave", _exported("octave"), program=True),
+        Target("julia", "model.jl", (7,), "a module for Julia", _exported("julia"), program=True),
+        Target("modelica", "model.mo", (7,), "a model in Modelica", _exported("modelica"), program=True),
+        Target("fmu2", "model-fmi2.fmu", (), "an FMU for model exchange, FMI 2.0", _fmu(2), (), True, _fmu_remark),
+        Target("fmu3", "model-fmi3.fmu", (), "an FMU for model exchange, FMI 3.0", _fmu(3), (), True, _fmu_remark),
+    )
+}
+
+#: Everything that ``--format`` can name; ``all`` means TARGETS.
+FORMATS = TARGETS | EXPORTS
+
+
 def shown_by(formats: Iterable[str]) -> tuple[int, ...]:
     """The problems that the files of some formats can show."""
-    return tuple(sorted({number for name in formats for number in TARGETS[name].shows}))
+    return tuple(sorted({number for name in formats for number in FORMATS[name].shows}))

@@ -20,12 +20,12 @@ Say = Callable[[str], None]
 def derive_all(analysis: Analysis, formats: Iterable[str], say: Say) -> None:
     """Everything that the files and the terminal will show, in order."""
     from mbsym.analysis import PROBLEMS
-    from mbsym.report.targets import TARGETS
+    from mbsym.report.targets import FORMATS
 
     for number in analysis.problems:
         say(f"problem {number}, {PROBLEMS[number].title}")
         analysis.stage(number)
-    if any(TARGETS[name].program for name in formats):
+    if any(FORMATS[name].program for name in formats):
         analysis.optional("programs")
     if analysis.system.claims:
         say("claims")
@@ -37,11 +37,11 @@ def derive_all(analysis: Analysis, formats: Iterable[str], say: Say) -> None:
 def rendered_all(analysis: Analysis, formats: Iterable[str], say: Say) -> Iterator[Rendered]:
     """The files of some formats, those of one format all or none."""
     from mbsym.report.rendering import rendered
-    from mbsym.report.targets import TARGETS
+    from mbsym.report.targets import FORMATS
 
     for name in formats:
-        say(f"writing {TARGETS[name].filename}")
-        yield from rendered(TARGETS[name], analysis, analysis.problems)
+        say(f"writing {FORMATS[name].filename}")
+        yield from rendered(FORMATS[name], analysis, analysis.problems)
 
 
 def lost(analysis: Analysis, files: Iterable[Rendered]) -> list[tuple[str, NoResult]]:

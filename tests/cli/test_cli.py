@@ -60,7 +60,13 @@ def test_format_and_problems_choose(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("kinds", "derived"),
-    [("c", set()), ("python", {"linearisation"}), ("c,python", {"linearisation"}), ("json", set(PROBLEM_NAMES))],
+    [
+        ("c", set()),
+        ("python", {"linearisation", "integrals", "energy", "equations"}),
+        ("c,python", {"linearisation", "integrals", "energy", "equations"}),
+        ("modelica", {"integrals", "energy", "equations"}),
+        ("json", set(PROBLEM_NAMES)),
+    ],
 )
 def test_only_what_the_formats_show_is_derived(
     kinds: str, derived: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch

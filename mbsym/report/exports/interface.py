@@ -1,0 +1,237 @@
+"""What every export holds, as text of a language but for its syntax: values, initial state, function bodies.
+
+A language is how it writes operations, numbers and names; its template says how functions and arrays look.  All
+functions are functions of (t, x, p) with the state x = (q, q') and the parameters p in the order of the description.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.failures import Failure
+from mbsym.expressions.tree import ZERO, Expression, names, text
+from mbsym.formulas.straight_line import Dialect
+from mbsym.model.system import System
+from mbsym.numerics.scenario import exact
+from mbsym.report.c_source import number
+from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.identifiers import camel, prefix_of
+from mbsym.report.model_code import NamedIntegral, Part, first_integrals, parts
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: What exports call their functions and tables; no local name of theirs is one of these.
+_WORDS = """
+    t x p result name given values missing unknown parameters initial_state mass_matrix forcing energy
+    generalized_energy accelerations right_hand_side jacobian integrals joints mass_centres
+"""
+COMMON = frozenset(_WORDS.split())
+
+PI = "3.141592653589793"
+
+
+@dataclass(frozen=True)
+class Language:
+    """``propose`` turns a declared name into one of the language; none of ``reserved`` is used."""
+
+    dialect: Dialect
+    reserved: frozenset[str]
+    propose: Callable[[str], str]
+    time: str = "t"
+
+
+@dataclass(frozen=True)
+class Value:
+    """A parameter: ``local`` its name in the language, ``text`` its value there, empty where it has none.
+
+    ``needs`` are the parameters that a relation makes it of, in the order of the description.
+    """
+
+    name: str
+    local: str
+    text: str
+    meaning: str
+    needs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Written:
+    """A function: its body, and what stands where in its result; other places are zero."""
+
+    name: str
+    words: str
+    shape: tuple[int, ...]
+    body: Function
+    entries: tuple[tuple[tuple[int, ...], str], ...]
+
+    def rows(self, zero: str) -> list[list[str]]:
+        """The result of a matrix, of a column in rows of one."""
+        table = dict(self.entries)
+        height, width = (*self.shape, 1)[:2]
+        columns = len(self.shape) == 2
+        return [[table.get((i, j) if columns else (i,), zero) for j in range(width)] for i in range(height)]
+
+
+@dataclass(frozen=True)
+class Export:
+    """``parameters`` in the order of the description; ``initial`` the texts of x(0), empty for a position not given.
+
+    ``ordered``: parameters such that relations come after what they need.
+    """
+
+    system: System
+    prefix: str
+    functions: tuple[Written, ...]
+    parameters: tuple[Value, ...]
+    ordered: tuple[Value, ...]
+    initial: tuple[tuple[str, str], ...]
+    integrals: tuple[NamedIntegral, ...]
+    lacking: tuple[str, ...]
+    names: dict[str, str] = field(compare=False)
+
+    @property
+    def type_name(self) -> str:
+        """As types and modules are called."""
+        return camel(self.prefix)
+
+    @property
+    def relations(self) -> list[tuple[str, str]]:
+        """As the description writes them."""
+        return [(item.name, text(item.value)) for item in self.system.relations]
+
+    @property
+    def prescribed(self) -> list[tuple[str, str]]:
+        """As the description writes them."""
+        return [(item.name, text(prescribed_value(item))) for item in self.system.prescribed]
+
+    @property
+    def starting(self) -> list[tuple[int, str]]:
+        """The parameters of which initial values are made: place, and name in the language."""
+        values = [x for item in self.system.initial for x in (item.position, item.velocity) if x is not None]
+        used = {name for value in values for name in names(value)}
+        return [(place, item.local) for place, item in enumerate(self.parameters) if item.name in used]
+
+    @property
+    def unplaced(self) -> list[str]:
+        """The coordinates whose initial positions are not given."""
+        return [name for name, value in self.initial if not value]
+
+    def has(self, name: str) -> bool:
+        """Whether there is a function of that name."""
+        return any(item.name == name for item in self.functions)
+
+
+def export(
+    analysis: Analysis, problems: Sequence[int], language: Language, shared: Collection[str] | None = None
+) -> Export:
+    """The system's code in a language.
+
+    ``shared`` names functions that stand in one scope: there are only these, those of one program have one body in
+    common, and no local name is used twice.  Raises NoClosedForm for a number beyond the range of double.
+    """
+    system = analysis.system
+    made, lacking = parts(analysis, problems)
+    writer = Functions(system, language.dialect, language.reserved, language.propose, PI)
+    writer.names["t"] = language.time
+    parameters = _parameters(system, writer)
+    if shared is None:
+        functions = [one for part in made for one in _written(writer, [part])]
+    else:
+        functions = list(_in_one_scope(writer, [part for part in made if part.name in shared]))
+    return Export(
+        system=system,
+        prefix=prefix_of(system.name),
+        functions=tuple(functions),
+        parameters=tuple(parameters),
+        ordered=_ordered(parameters),
+        initial=tuple(_initial(system, writer)),
+        integrals=first_integrals(analysis, problems).named,
+        lacking=lacking,
+        names=writer.names,
+    )
+
+
+def _written(writer: Functions, made: Sequence[Part]) -> list[Written]:
+    """Parts of one program, with one body for all of them."""
+    body = writer.function(made[0].program, [node for part in made for node in part.entries.values()])
+    results = iter(body.results)
+    return [
+        Written(part.name, part.words, part.shape, body, tuple((place, next(results)) for place in part.entries))
+        for part in made
+    ]
+
+
+def _in_one_scope(writer: Functions, made: Sequence[Part]) -> Iterator[Written]:
+    for program in dict.fromkeys(part.program for part in made):
+        found = _written(writer, [part for part in made if part.program is program])
+        writer.reserved |= {name for name, _ in found[0].body.assignments}
+        yield from found
+
+
+def _parameters(system: System, writer: Functions) -> list[Value]:
+    """A relation gives a value unless it goes round in a circle; else the description's number does."""
+    related = {item.name: item.value for item in system.relations}
+    related |= {p.name: p.value for p in system.parameters if p.name not in related and p.value and _made(p.value)}
+    found = []
+    for item in system.parameters:
+        written, needs = "", set[str]()
+        if item.name in related and not _circular(item.name, related):
+            with suppress(Failure):  # a power that no program has: then its number has to do
+                written, needs = writer.expression(related[item.name]), names(related[item.name])
+        if not written and item.value is not None and not _made(item.value):
+            written = number(exact(item.value, {}))
+        used = tuple(name for name in system.parameter_names if name in needs)
+        found.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used))
+    return found
+
+
+def _made(value: Expression) -> bool:
+    """Whether it is made of other parameters."""
+    return bool(names(value) - {"pi"})
+
+
+def _circular(name: str, related: dict[str, Expression]) -> bool:
+    seen: set[str] = set()
+    pending = [name]
+    while pending:
+        for other in names(related.get(pending.pop(), ZERO)) - seen:
+            if other == name:
+                return True
+            seen.add(other)
+            pending.append(other)
+    return False
+
+
+def _ordered(parameters: Sequence[Value]) -> tuple[Value, ...]:
+    """Those without a relation first, then relations, each after what it needs."""
+    done = [item for item in parameters if not item.needs]
+    left = [item for item in parameters if item.needs]
+    while left:
+        known = {item.name for item in done}
+        ready = [item for item in left if known.issuperset(item.needs)]
+        done += ready
+        left = [item for item in left if item not in ready]
+        assert ready
+    return tuple(done)
+
+
+def _initial(system: System, writer: Functions) -> list[tuple[str, str]]:
+    """(name, value) of q and q'; velocities that are not given are zero, as in simulations."""
+    given = {item.coordinate: item for item in system.initial}
+    placed: list[tuple[str, str]] = []
+    moving: list[tuple[str, str]] = []
+    for name, rate in zip(system.coordinates, system.velocities, strict=True):
+        entry = given.get(name)
+        position = entry.position if entry is not None else None
+        velocity = entry.velocity if entry is not None else None
+        placed.append((name, "" if position is None else _value(writer, position)))
+        moving.append((rate, _value(writer, ZERO if velocity is None else velocity)))
+    return placed + moving
+
+
+def _value(writer: Functions, value: Expression) -> str:
+    return writer.expression(value) if _made(value) else number(exact(value, {}))

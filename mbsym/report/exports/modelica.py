@@ -1,0 +1,104 @@
+"""``model.mo``: a flat model in Modelica, whose equations are the straight-line program of the accelerations.
+
+Mass matrix and Jacobian are left to the tools that read it: they differentiate and sort equations themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from mbsym.formulas.names import free_name
+from mbsym.formulas.straight_line import Dialect
+from mbsym.report.c_source import number
+from mbsym.report.environment import rendered
+from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+_WORDS = """
+    algorithm and annotation assert block break class connect connector constant constrainedby der discrete each else
+    elseif elsewhen encapsulated end enumeration equation expandable extends external false final flow for function if
+    import impure in initial inner input loop model not operator or outer output package parameter partial protected
+    public pure record redeclare replaceable return stream then true type when while within
+    time abs sign sqrt div mod rem ceil floor integer sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10
+    Real Integer Boolean String noEvent smooth sample pre edge change reinit initial terminal terminate homotopy delay
+    cardinality semiLinear spatialDistribution actualStream inStream getInstanceName ndims size scalar vector matrix
+    identity diagonal zeros ones fill linspace min max sum product transpose outerProduct symmetric cross skew
+    Connections Clock StateSelect ExternalObject AssertionLevel start fixed
+"""
+RESERVED = COMMON | frozenset(_WORDS.split())
+
+#: The functions that the model shows as variables.
+SHOWN = ("accelerations", "energy", "generalized_energy", "integrals", "joints", "mass_centres")
+
+
+def proposed(name: str) -> str:
+    """An identifier of Modelica."""
+    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter == "_") else "_" for letter in name)
+    plain = plain if not plain[:1].isdigit() else "v" + plain
+    return plain + "_" if plain in RESERVED else plain
+
+
+LANGUAGE = Language(
+    Dialect(
+        call=lambda function, argument: f"{function}({argument})",
+        local=lambda count: f"s{count}",
+        number=number,
+        angle=lambda function, name: f"{function}_{name}",
+    ),
+    RESERVED,
+    proposed,
+    time="time",
+)
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The model's text."""
+    model = export(analysis, problems, LANGUAGE, shared=SHOWN)
+    shown = model.functions
+    auxiliary: dict[str, str] = {}
+    for one in shown:
+        for name, value in one.body.assignments:
+            assert auxiliary.get(name, value) == value  # prescribed quantities are the same everywhere
+            auxiliary[name] = value
+    results = list(_results(model, shown, {*RESERVED, *model.names.values(), *auxiliary}))
+    slopes = next((one.rows("0.0") for one in shown if one.name == "accelerations"), [])
+    return rendered(
+        "exports/model.mo.j2",
+        {"string": string},
+        model=model,
+        auxiliary=auxiliary,
+        results=results,
+        accelerations=[row[0] for row in slopes],
+        own=model.names,
+    )
+
+
+def _results(model: Export, shown: Sequence[Written], used: set[str]) -> Iterator[tuple[str, str, list[str] | str]]:
+    """(name, words, value or three components) of energies, integrals, places of bodies."""
+    for one in shown:
+        rows = one.rows("0.0") if one.shape else []
+        if not one.shape:
+            yield _free(one.name, used), one.words, one.entries[0][1] if one.entries else "0.0"
+        elif one.name == "integrals":
+            for item, row in zip(model.integrals, rows, strict=True):
+                yield _free(f"integral_{item.name}", used), f"{item.title}: constant ({item.status})", row[0]
+        elif one.name in ("joints", "mass_centres"):
+            words = "connection point" if one.name == "joints" else "mass centre"
+            for place, (body, row) in enumerate(zip(model.system.bodies, rows, strict=True), 1):
+                name = _free(f"{'joint' if one.name == 'joints' else 'centre'}{place}", used)
+                yield name, f"{words} of {body.name}, in inertial axes", row
+
+
+def _free(proposal: str, used: set[str]) -> str:
+    # What a function of other exports is called is free here, where nothing is a function.
+    name = free_name(proposal, used - COMMON)
+    used.add(name)
+    return name
+
+
+def string(words: str) -> str:
+    """A string literal."""
+    return '"' + " ".join(words.split()).replace("\\", "\\\\").replace('"', '\\"') + '"'

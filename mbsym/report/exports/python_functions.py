@@ -1,0 +1,42 @@
+"""``model_casadi.py`` and ``model_jax.py``: the same functions over the arrays of two libraries."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from mbsym.formulas.straight_line import Dialect
+from mbsym.report.c_source import number
+from mbsym.report.environment import rendered
+from mbsym.report.exports.interface import COMMON, Language, export
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+RESERVED = COMMON | {
+    *keyword.kwlist, *dir(builtins), "ca", "jnp", "jax", "functions", "n",
+    "NAME", "COORDINATES", "PARAMETERS", "BODIES", "INTEGRALS", "VALUES", "RELATIONS",
+}  # fmt: skip
+
+
+def language(module: str, called: Callable[[str], str]) -> Language:
+    """Python with the functions of ``module``, there ``called`` differently than here."""
+    dialect = Dialect(
+        call=lambda function, argument: f"{module}.{called(function)}({argument})",
+        local=lambda count: f"s{count}",
+        number=number,
+        angle=lambda function, name: f"{function}_{name}",
+    )
+    return Language(dialect, RESERVED, lambda name: name + "_" if name in RESERVED else name)
+
+
+def render(template: str, spoken: Language, analysis: Analysis, problems: Sequence[int]) -> str:
+    """The module's text."""
+    return rendered(template, {"plain": plain}, model=export(analysis, problems, spoken))
+
+
+def plain(words: str) -> str:
+    """Text that may stand in a docstring, a string or a comment."""
+    return " ".join(words.replace("\\", "/").replace('"', "'").split())
