@@ -29,6 +29,7 @@ COMMANDS = {
     "run": Listed("run", "Derive the numbered problems and write reports."),
     "batch": Listed("batch", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
+    "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),

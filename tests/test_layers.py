@@ -29,9 +29,10 @@ BELOW = {
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "report": "expressions algebra model mechanics formulas problems analysis numerics simulation",
     "batch": "expressions algebra model source formulas problems analysis report __init__",
+    "diff": "expressions algebra formulas report",
     "__init__": "source analysis numerics simulation",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
-    " __init__",
+    " diff __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

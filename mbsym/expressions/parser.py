@@ -47,6 +47,22 @@ MAX_WEIGHT = 5_000
 
 SpanOf = Callable[[int, int], Span]
 
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """How much of one expression is read: characters, nodes, levels of the tree, parentheses, weight."""
+
+    length: int = MAX_LENGTH
+    nodes: int = MAX_NODES
+    depth: int = MAX_DEPTH
+    nesting: int = MAX_NESTING
+    weight: int = MAX_WEIGHT
+
+
+#: Of what a person writes, and of what mbsym has derived: thousands of terms, in any order of magnitude that it prints.
+WRITTEN = Bounds()
+DERIVED = Bounds(length=8_000_000, nodes=2_000_000, depth=200_000, nesting=100, weight=2_000_000)
+
 _TOKEN = re.compile(
     r"(?P<blank>\s+)"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+(?![A-Za-z0-9_.]))?)"
@@ -131,7 +147,9 @@ class _Refused(Exception):
     """Internal: this expression is given up; the complaint is already recorded."""
 
 
-def parse_expression(text: str, complaints: Complaints, span_of: SpanOf, named: bool = True) -> Expression | None:
+def parse_expression(
+    text: str, complaints: Complaints, span_of: SpanOf, named: bool = True, bounds: Bounds = WRITTEN
+) -> Expression | None:
     """The tree of an expression, or None with at least one complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
@@ -139,11 +157,12 @@ def parse_expression(text: str, complaints: Complaints, span_of: SpanOf, named: 
     """
     errors_before = complaints.error_count
     try:
-        if len(text) > MAX_LENGTH:
-            complaints.error("too-long", f"an expression has at most {MAX_LENGTH} characters", span_of(0, 1))
+        if len(text) > bounds.length:
+            complaints.error("too-long", f"an expression has at most {bounds.length} characters", span_of(0, 1))
             raise _Refused
         parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
         parser.named = named
+        parser.bounds = bounds
         tree = parser.whole()
     except _Refused:
         return None
@@ -263,6 +282,7 @@ class _Parser:
         self.complaints = complaints
         self.span_of = span_of
         self.named = True
+        self.bounds = WRITTEN
 
     def whole(self) -> Expression:
         if self.next.kind == "end":
@@ -389,8 +409,8 @@ class _Parser:
 
     def nest(self, token: _Token) -> None:
         self.nesting += 1
-        if self.nesting > MAX_NESTING:
-            raise self.refusal("too-deep", f"parentheses nest at most {MAX_NESTING} deep", token)
+        if self.nesting > self.bounds.nesting:
+            raise self.refusal("too-deep", f"parentheses nest at most {self.bounds.nesting} deep", token)
 
     def literal(self, token: _Token) -> Fraction:
         """The exact value of a decimal literal, after a look at its size."""
@@ -413,18 +433,18 @@ class _Parser:
         weight = _weight(node, [size[1] for size in sizes])
         self.sizes[id(node)] = depth, weight
         self.kept.append(node)
-        if self.nodes > MAX_NODES:
+        if self.nodes > self.bounds.nodes:
             raise self.refusal(
-                "too-long", f"an expression has at most {MAX_NODES} parts", self.tokens[self.position - 1]
+                "too-long", f"an expression has at most {self.bounds.nodes} parts", self.tokens[self.position - 1]
             )
-        if depth > MAX_DEPTH:
+        if depth > self.bounds.depth:
             raise self.refusal(
                 "too-deep",
-                f"an expression nests at most {MAX_DEPTH} operations deep",
+                f"an expression nests at most {self.bounds.depth} operations deep",
                 self.tokens[self.position - 1],
                 "group long sums with parentheses",
             )
-        if weight > MAX_WEIGHT:
+        if weight > self.bounds.weight:
             raise self.refusal(
                 "too-long", "these powers multiply up to numbers beyond all bounds", self.tokens[self.position - 1]
             )

@@ -20,7 +20,7 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data = {
         "format": FORMAT,
-        "mbsym": version(),
+        "version": version(),
         "system": system.name,
         "values": {name: str(value) for name, value in values.items()},
         "turning": dict(found.turning),

@@ -83,7 +83,7 @@ def extremes_json(found: Extremes) -> str:
     ]
     whole: dict[str, Any] = {
         "format": FORMAT,
-        "mbsym": version(),
+        "version": version(),
         "system": found.system.name,
         "sentences": list(sentences(found)),
         "left_out": list(found.left_out),

@@ -41,7 +41,7 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     system = analysis.system
     found: dict[str, Any] = {
         "format": FORMAT,
-        "mbsym": version(),
+        "version": version(),
         "problems": sorted(problems),
         "terms": analysis.terms,
         "system": {"name": system.name, "description": system.description},

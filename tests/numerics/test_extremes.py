@@ -17,6 +17,7 @@ import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
 from flint import Ordering, arb, fmpq_mpoly_ctx
+from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.algebra.program import Program
@@ -37,6 +38,7 @@ from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.extremes_tables import extremes_csv, extremes_json, tables
+from mbsym.report.schemas import schema
 from mbsym.source import load
 from mbsym_cli.main import main
 
@@ -329,6 +331,8 @@ def test_sentences_and_tables_follow_the_rows(whole: Any) -> None:
     assert verdicts["A -> 9 from below"]["verdict"] == "unstable"
     assert len(rows) == 1 + len(whole.rows) + len(whole.verdicts)
     content = json.loads(extremes_json(whole))
+    assert list(Draft202012Validator(schema("extremes")).iter_errors(content)) == []
+    assert list(Draft202012Validator(schema("extremes")).iter_errors(content | {"rows": [{}]}))
     assert content["sentences"]
     assert len(content["rows"]) == len(whole.rows)
     shown = list(tables(whole))

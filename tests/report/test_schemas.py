@@ -123,15 +123,12 @@ def test_the_other_files_follow_theirs(tmp_path: Path) -> None:
         assert done.exit_code == 0, done.output
         return done.stdout
 
-    for name in ("satellite", "heavy-top"):
+    for name in ("heavy-top", "spring-pendulum"):
         run("simulate", SHIPPED / f"{name}.yaml", "--time", 1, "--out", tmp_path / name, "--quiet", "--invariants")
         content = json.loads((tmp_path / name / "simulation.json").read_text(encoding="utf-8"))
         assert complaints("simulation", content) == []
         assert complaints("simulation", content | {"enrgy": 1})
-    for name in ("gravity-gradient", "cart-pendulum"):
+    for name in ("dumbbell", "cart-pendulum"):
         found = json.loads(run("equilibria", SHIPPED / f"{name}.yaml", "--json"))
         assert complaints("equilibria", found) == []
         assert complaints("equilibria", found | {"complete": "yes"})
-    run("extremes", SHIPPED / "simple-pendulum.yaml", "--out", tmp_path, "--quiet")
-    content = json.loads((tmp_path / "extremes.json").read_text(encoding="utf-8"))
-    assert complaints("extremes", content) == []
