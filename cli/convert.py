@@ -8,24 +8,32 @@ from pathlib import Path
 
 import click
 
-from mbsym.source import to_text, to_yaml
+from mbsym.source import read, to_text, to_yaml
 from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, printable, read_description
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
+from mbsym_cli.robots import Choices, described, robot_text
 
 
 @click.command("convert")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--to", "spelling", type=click.Choice(["yaml", "text"]), help="Default: the other spelling.")
+@click.option("--floating", is_flag=True, help="Of a robot: its first link moves freely, by six coordinates.")
+@click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
+@click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
 @click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
-def command(file: Path, spelling: str | None, out: Path | None) -> None:
-    """Convert a description between YAML and the editor's plain text, without loss.
+def command(
+    file: Path, spelling: str | None, floating: bool, symbols: bool, no_damping: bool, out: Path | None
+) -> None:
+    """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
-    Comments are not kept; everything that has a meaning is.
+    Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
+    in an open tree have no place for (contacts, closed loops, actuators, ...) is left out, and listed.
 
     \b
-    Example:
+    Examples:
       mbsym convert systems/satellite.yaml --out satellite.txt
+      mbsym convert robot.urdf --symbols --out robot.yaml
     """
     asked = Options()
     if out is not None and _same(out, file):
@@ -34,13 +42,21 @@ def command(file: Path, spelling: str | None, out: Path | None) -> None:
         )
     if asked.refused(file):
         sys.exit(BAD_INPUT)
-    system = read_description(file)
+    robot = robot_text(file)
+    if robot is not None:
+        written = described(file, robot, Choices(floating, symbols, not no_damping))
+        system = None if written is None else read(written, f"{file.stem}.yaml")[0]
+    else:
+        if floating or symbols or no_damping:
+            complain(file, "is no URDF or MJCF: --floating, --symbols and --no-damping mean nothing here")
+            sys.exit(BAD_INPUT)
+        written, system = None, read_description(file)
     if system is None:
         sys.exit(BAD_INPUT)
     if spelling is None:
-        wanted = out.suffix if out is not None else (".yaml" if file.suffix == ".txt" else ".txt")
-        spelling = "text" if wanted == ".txt" else "yaml"
-    text = to_text(system) if spelling == "text" else to_yaml(system)
+        other = ".yaml" if file.suffix == ".txt" or robot is not None else ".txt"
+        spelling = "text" if (out.suffix if out is not None else other) == ".txt" else "yaml"
+    text = to_text(system) if spelling == "text" else written or to_yaml(system)
     if out is None:
         click.echo(text.encode(), nl=False)  # a description is UTF-8, whatever the terminal is
         return

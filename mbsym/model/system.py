@@ -105,6 +105,33 @@ class Inertia:
 
 
 @dataclass(frozen=True, slots=True)
+class Shape:
+    """What a body looks like, for drawing only: ``kind`` of SHAPES with its sizes, in axes of its own on the body.
+
+    ``at`` is its middle and ``rotation`` leads to its axes, both from the axes of the body.
+    """
+
+    kind: str
+    size: tuple[Expression, ...]
+    at: Vector
+    rotation: Rotation = Rotation()
+
+
+#: Kind -> how many sizes: edges of a box; radius; radius and length along the third axis; half axes.
+SHAPES = {"box": 3, "sphere": 1, "cylinder": 2, "capsule": 2, "ellipsoid": 3}
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The least and the greatest value of a coordinate, for drawing and reports: no force keeps it between them."""
+
+    coordinate: str
+    lower: Expression
+    upper: Expression
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
 class Body:
     """One body (or massless frame) and its joint to the body it is attached to.
 
@@ -124,6 +151,7 @@ class Body:
     inertia: Inertia | None
     coordinates: tuple[str, ...]
     gyrostatic_moment: Vector | None = None
+    shapes: tuple[Shape, ...] = ()
     span: Span | None = _span()
 
 
@@ -350,6 +378,7 @@ class System:
     abbreviations: tuple[Abbreviation, ...] = ()
     claims: tuple[Claim, ...] = ()
     units: Units = Units()
+    limits: tuple[Limit, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from mbsym.source.keys import BODY, INERTIA, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence, TooManyComplaints
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
+from mbsym.source.shapes import read_shapes
 
 MAX_BODIES = 250
 MAX_COORDINATES = 6
@@ -188,6 +189,7 @@ def read_body(draft: Draft, drafts: list[Draft], reading: Reading) -> Body:
         inertia=_inertia(fields, reading),
         coordinates=tuple(scalar.text for scalar in draft.coordinates),
         gyrostatic_moment=_gyrostatic_moment(fields),
+        shapes=read_shapes(fields.get("shapes"), fields.what, reading),
         span=draft.name_span,
     )
 

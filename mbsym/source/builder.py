@@ -21,7 +21,14 @@ from mbsym.source.loads import read_loads
 from mbsym.source.placed import Node
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
-from mbsym.source.settings import read_assumptions, read_initial, read_motion, read_notation, read_relations
+from mbsym.source.settings import (
+    read_assumptions,
+    read_initial,
+    read_limits,
+    read_motion,
+    read_notation,
+    read_relations,
+)
 
 
 def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | None:
@@ -64,6 +71,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         time_scale=fields.expression("dimensionless time", Allowed("the rate of dimensionless time")),
         initial=read_initial(fields.get("initial"), reading),
         abbreviations=read_abbreviations(fields.get("abbreviations"), reading),
+        limits=read_limits(fields.get("limits"), reading),
     )
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system.coordinates, reading)

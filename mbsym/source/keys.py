@@ -24,6 +24,7 @@ SYSTEM = {
     "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0)",
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
     "units": "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
+    "limits": "least and greatest values of coordinates, for drawing: {q1: [-pi, pi]}; no force keeps them",
     "claims": "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
 }
 
@@ -54,6 +55,21 @@ BODY = {
     "{tensor, accept: true} for identified values that no body has",
     "gyrostatic moment": "constant angular momentum of rotors inside the body, in its axes: adds h.omega to T",
     "coordinates": "the coordinates that this joint introduces; when left out, the undeclared names used as angles",
+    "shapes": "what the body looks like, for drawing: [{box: [a, b, c], at: [0, 0, 0]}, ...]",
+}
+
+#: What a shape holds beside its kind, and the kinds.
+SHAPE_PLACE = {
+    "at": "its middle, in the axes of the body; [0, 0, 0] when left out",
+    "rotation": "the turns that lead from the axes of the body to its own",
+}
+SHAPE = {
+    "box": "three edges",
+    "sphere": "the radius",
+    "cylinder": "radius, and length along its third axis",
+    "capsule": "radius, and length of its straight part along the third axis",
+    "ellipsoid": "three half axes",
+    **SHAPE_PLACE,
 }
 
 INERTIA = {

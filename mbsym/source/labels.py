@@ -23,6 +23,7 @@ BODY = {
     "accept tensor of inertia": "accept",
     "gyrostatic moment": "gyrostatic moment",
     "generalized coordinates": "coordinates",
+    "shape": "shapes",
 }
 
 #: Sections of ``name = value`` lines and the key of a bare first value (None: the value is one expression).
@@ -36,6 +37,7 @@ SECTIONS: dict[str, tuple[str, str | None]] = {
     "values": ("values", None),
     "initial state": ("initial", "position"),
     "abbreviations": ("abbreviations", None),
+    "limits": ("limits", None),
 }
 
 ASSUMPTIONS = "assumptions"

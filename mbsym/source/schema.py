@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
-from mbsym.model.system import EXACT, GRAVITY_ORDERS
+from mbsym.model.system import EXACT, GRAVITY_ORDERS, SHAPES
 from mbsym.source.keys import (
     ALIASES,
     BODY,
@@ -22,6 +22,7 @@ from mbsym.source.keys import (
     POINT,
     PRESCRIBED,
     ROTATION,
+    SHAPE,
     SIGNS,
     SYSTEM,
 )
@@ -80,6 +81,7 @@ def _system_values() -> dict[str, Schema]:
         "initial": _named({"anyOf": [expression, _record(INITIAL, {})]}),
         "abbreviations": _named(expression),
         "units": _named(_UNIT),
+        "limits": _named({**_list(2), "minItems": 2}),
         "claims": {"type": "array", "items": _reference("claim")},
     }
 
@@ -136,7 +138,18 @@ def _body_values() -> dict[str, Schema]:
         },
         "gyrostatic moment": vector,
         "coordinates": {"type": "array", "items": {"type": "string", "pattern": _NAME}},
+        "shapes": {"type": "array", "items": _record(SHAPE, _shape_values())},
     }
+
+
+def _shape_values() -> dict[str, Schema]:
+    several = {kind: {**_list(count), "minItems": count} for kind, count in SHAPES.items() if count > 1}
+    turns: dict[str, Schema] = {"axes": {"type": "array", "items": {"enum": [0, 1, 2, 3]}}, "angles": {"type": "array"}}
+    return {**several, "at": _reference("vector"), "rotation": _record(ROTATION, turns, required=("axes", "angles"))}
+
+
+def _list(most: int) -> Schema:
+    return {"type": "array", "items": _reference("expression"), "maxItems": most}
 
 
 def _claim_values() -> dict[str, Schema]:

@@ -7,9 +7,9 @@ import re
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression, names
-from mbsym.model.system import Assumption, InitialValue, MotionEntry, Notation, Relation
+from mbsym.model.system import Assumption, InitialValue, Limit, MotionEntry, Notation, Relation, rational
 from mbsym.source.keys import INITIAL, MOTION
-from mbsym.source.placed import Mapping, Node, Scalar
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Reading, keys_of
 from mbsym.source.scope import ASSUMPTION, Allowed
 
@@ -152,3 +152,23 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...
         if known:
             entries.append(InitialValue(entry.key.text, position, velocity, span))
     return tuple(entries)
+
+
+def read_limits(node: Node | None, reading: Reading) -> tuple[Limit, ...]:
+    """``q1: [-pi, pi]``."""
+    allowed = Allowed("a limit")
+    limits = []
+    for entry in () if node is None else reading.entries(node, "'limits'"):
+        known = _is_coordinate(entry.key, "the key of a limit", node, reading)
+        items = reading.items(entry.value, f"the limits of {ascii_safe(entry.key.text)}")
+        if len(items) != 2:
+            if isinstance(entry.value, Sequence):
+                reading.error("wrong-shape", "limits are two: the least and the greatest value", entry.value.span)
+            continue
+        lower, upper = (reading.expression(item, allowed) for item in items)
+        least, most = rational(lower), rational(upper)
+        if least is not None and most is not None and least >= most:
+            reading.error("wrong-shape", "the first limit is the least value", entry.value.span, "exchange the two")
+        if known:
+            limits.append(Limit(entry.key.text, lower, upper, entry.key.span))
+    return tuple(limits)

@@ -35,6 +35,7 @@ from mbsym.model.system import (
     UniformGravity,
     Vector,
 )
+from mbsym.model.system import Shape as Look
 
 Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)
 
@@ -83,6 +84,20 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
         shape["gyrostatic moment"] = vector_shape(body.gyrostatic_moment)
     if body.coordinates != inferred:
         shape["coordinates"] = list(body.coordinates)
+    if body.shapes:
+        shape["shapes"] = [look_shape(one) for one in body.shapes]
+    return shape
+
+
+def look_shape(look: Look) -> dict[str, Shape]:
+    """``{box: [a, b, c], at: ...}``."""
+    sizes: list[Shape] = [text(size) for size in look.size]
+    shape: dict[str, Shape] = {look.kind: sizes[0] if len(sizes) == 1 else sizes}
+    if look.at != _ZERO_VECTOR:
+        shape["at"] = vector_shape(look.at)
+    if look.rotation.axes:
+        axes: list[Shape] = [str(axis) for axis in look.rotation.axes]
+        shape["rotation"] = {"axes": axes, "angles": [text(angle) for angle in look.rotation.angles]}
     return shape
 
 

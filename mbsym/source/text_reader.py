@@ -203,7 +203,8 @@ class _TextReader:
             if label is None:
                 self.error("syntax", "here 'name = value' is wanted", line.span)
                 continue
-            entries.append(Entry(label, value if first is None else self.record(value, first)))
+            read = self.items(value) if key == "limits" else value if first is None else self.record(value, first)
+            entries.append(Entry(label, read))
         return Entry(_key(block.heading, key), Mapping(tuple(entries), block.heading.span))
 
     def record(self, value: Scalar, first: str) -> Node:
@@ -257,6 +258,7 @@ class _TextReader:
         entries: list[Entry] = []
         rotation: list[Entry] = []
         accept: list[Entry] = []
+        shapes: list[tuple[Scalar, Node]] = []
         lines = block.lines
         position = 0
         while position < len(lines):
@@ -277,13 +279,33 @@ class _TextReader:
                 rotation.append(Entry(key, self.items(value)))
             elif key.text == "accept":
                 accept.append(Entry(key, value))
+            elif key.text == "shapes":
+                shapes.append((key, self.shape(value)))
             else:
                 entries.append(Entry(key, self.body_value(key.text, value)))
         if accept:
             entries = _with_accepted(entries, accept)
+        if shapes:
+            key = shapes[0][0]
+            entries.append(Entry(key, Sequence(tuple(shape for _, shape in shapes), key.span)))
         if rotation:
             entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
         return Mapping(tuple(entries), block.heading.span)
+
+    def shape(self, value: Scalar) -> Node:
+        """``box = (a, b, c); at = (x, y, z); axes = {3}; angles = {pi/2}`` as a mapping; axes and angles turn it."""
+        entries: list[Entry] = []
+        rotation: list[Entry] = []
+        for part in _split(value, ";"):
+            label, rest = _label_of(part)
+            if label is None:
+                self.error("syntax", "here 'kind = sizes' or 'at = (x, y, z)' is wanted", part.span)
+                continue
+            word = _word(label.text)
+            (rotation if word in ("axes", "angles") else entries).append(Entry(_key(label, word), self.items(rest)))
+        if rotation:
+            entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
+        return Mapping(tuple(entries), value.span)
 
     def body_value(self, key: str, value: Scalar) -> Node:
         if key == "attached to":

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from mbsym.expressions.tree import ZERO, text
 from mbsym.model.claims import BODY, CLAIMS
-from mbsym.model.system import Body, System, Vector
+from mbsym.model.system import Body, Shape, System, Vector
+from mbsym.source.shape import Shape as Data
 from mbsym.source.shape import (
-    Shape,
     assumption_text,
     claim_shape,
     initial_shape,
@@ -45,6 +45,8 @@ def to_text(system: System) -> str:
         lines += ["", "Assumptions", *(f"  {one}" for one in written)]
     initial = {one.coordinate: _record(initial_shape(one), "position") for one in system.initial}
     lines += _section("Initial state", initial)
+    limits = {one.coordinate: f"({text(one.lower)}, {text(one.upper)})" for one in system.limits}
+    lines += _section("Limits", limits)
     lines += _section("Abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     for number, claim in enumerate(system.claims, start=1):
         lines += ["", f"Claim description ({number})", *_claim(claim_shape(claim, system), numbers)]
@@ -55,7 +57,7 @@ def _section(title: str, entries: dict[str, str]) -> list[str]:
     return ["", title, *(f"  {name} = {value}" for name, value in entries.items())] if entries else []
 
 
-def _record(shape: Shape, first: str) -> str:
+def _record(shape: Data, first: str) -> str:
     """``positive; value = 2; meaning = length``: the first value stands without its key."""
     if not isinstance(shape, dict):
         return str(shape)
@@ -102,7 +104,19 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
     if body.gyrostatic_moment is not None:
         lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
     lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
-    return lines
+    return [*lines, *(f"  Shape: {_look(one)}" for one in body.shapes)]
+
+
+def _look(look: Shape) -> str:
+    """``box = (a, b, c); at = (x, y, z); axes = {3}; angles = {pi/2}``."""
+    sizes = [text(size) for size in look.size]
+    parts = [f"{look.kind} = {sizes[0] if len(sizes) == 1 else '(' + ', '.join(sizes) + ')'}"]
+    if look.at != (ZERO,) * 3:
+        parts.append(f"at = {_vector(look.at)}")
+    if look.rotation.axes:
+        parts.append(f"axes = {_braces([str(axis) for axis in look.rotation.axes])}")
+        parts.append(f"angles = {_braces([text(angle) for angle in look.rotation.angles])}")
+    return "; ".join(parts)
 
 
 def _vector(vector: Vector) -> str:
@@ -113,7 +127,7 @@ def _braces(items: list[str]) -> str:
     return "{" + ", ".join(items) + "}"
 
 
-def _load(kind: str, shape: Shape, numbers: dict[str, str]) -> list[str]:
+def _load(kind: str, shape: Data, numbers: dict[str, str]) -> list[str]:
     lines = [f"  Type of load: {kind}"]
     if not isinstance(shape, dict):
         return [*lines, f"  Expression: {shape}"]
@@ -129,7 +143,7 @@ def _load(kind: str, shape: Shape, numbers: dict[str, str]) -> list[str]:
     return lines
 
 
-def _claim(shape: dict[str, Shape], numbers: dict[str, str]) -> list[str]:
+def _claim(shape: dict[str, Data], numbers: dict[str, str]) -> list[str]:
     """One label a line; a body is named by its number, a state is a record."""
     lines = []
     about_body = CLAIMS[str(shape["claim"])].of == BODY
@@ -144,7 +158,7 @@ def _claim(shape: dict[str, Shape], numbers: dict[str, str]) -> list[str]:
     return lines
 
 
-def _points(points: Shape, numbers: dict[str, str]) -> list[str]:
+def _points(points: Data, numbers: dict[str, str]) -> list[str]:
     assert isinstance(points, list)
     lines = []
     for which, point in zip(("First", "Second"), points, strict=True):
@@ -154,5 +168,5 @@ def _points(points: Shape, numbers: dict[str, str]) -> list[str]:
     return lines
 
 
-def _value(value: Shape) -> str:
+def _value(value: Data) -> str:
     return f"({', '.join(str(item) for item in value)})" if isinstance(value, list) else str(value)

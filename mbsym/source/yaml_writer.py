@@ -42,6 +42,7 @@ def to_yaml(system: System) -> str:
     if system.time_scale is not None:
         lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
     lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
+    lines += _mapping("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
     lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     lines += _list("claims", [_flow(claim_shape(one, system)) for one in system.claims])
     return "\n".join(lines) + "\n"

@@ -18,6 +18,7 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
@@ -26,7 +27,34 @@ from typing import Any
 import numpy as np
 import pinocchio
 from robots import ROBOTS
-from urdf import GRAVITY, MOMENTS, Converted, angle, convert, is_nonnegative
+
+from mbsym.expressions.place import Complaints
+from mbsym.source.robots import convert as robot_description
+from mbsym.source.robots.numbers import angle, is_nonnegative
+from mbsym.source.robots.urdf import MOMENTS
+
+GRAVITY = "9.81"
+
+
+@dataclass(frozen=True)
+class Converted:
+    """A description, the URDF's joints in the order of its coordinates, and whether six of a base come before them."""
+
+    yaml: str
+    joints: tuple[str, ...]
+    floating: bool
+
+    @property
+    def coordinates(self) -> int:
+        return len(self.joints) + (6 if self.floating else 0)
+
+
+def convert(text: str, floating: bool = False) -> Converted:
+    """The description that ``mbsym convert`` writes, without the damping that Pinocchio's recursions leave out."""
+    complaints = Complaints()
+    made = robot_description(text, complaints, floating, damping=False)
+    assert made is not None, [one.message for one in complaints]
+    return Converted(made.yaml, made.joints, floating)
 
 
 def urdf_files() -> dict[str, Path]:

@@ -14,10 +14,12 @@ from pathlib import Path
 
 import pytest
 from robots import QUICK, ROBOTS
-from urdf import angle, convert, is_of_a_body, multiple_of_pi, number
+
+from mbsym.source.robots.numbers import angle, is_of_a_body, multiple_of_pi, number
 
 pytest.importorskip("pinocchio", reason="needs the extra 'robots'")
 agreement = pytest.importorskip("agreement", reason="needs the extra 'robots'")
+convert = agreement.convert
 if not agreement.has_urdf_files():
     pytest.skip("needs the extra 'robots'", allow_module_level=True)
 

@@ -173,6 +173,9 @@ class _System:
             self.expect(abbreviation.value, self.of(abbreviation.name), f"'{abbreviation.name}'")
         for assumption in system.assumptions:
             self.dimensions.alike(assumption.left, assumption.right, "compared")
+        for limit in system.limits:
+            self.expect(limit.lower, self.of(limit.coordinate), f"'{limit.coordinate}'")
+            self.expect(limit.upper, self.of(limit.coordinate), f"'{limit.coordinate}'")
         for entry in system.motion:
             self.expect(entry.value, self.of(entry.coordinate), f"'{entry.coordinate}'")
             self.expect(entry.rate, self.of(entry.coordinate).times(Form(RATE)), f"the rate of '{entry.coordinate}'")
@@ -190,6 +193,10 @@ class _System:
         for row in body.inertia.tensor if body.inertia else ():
             self.vector(row, INERTIA, "a moment of inertia")
         self.vector(body.gyrostatic_moment, times(INERTIA, RATE), "a gyrostatic moment")
+        for shape in body.shapes:
+            self.vector(shape.at, LENGTH, "a place")
+            for size in shape.size:
+                self.expect(size, LENGTH, "a size")
 
     def load(self, load: Load) -> None:
         match load:

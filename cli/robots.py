@@ -1,0 +1,63 @@
+"""What ``mbsym convert`` does with a robot's file: reads it, complains, and tells what is left out."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from mbsym.expressions.counting import counted
+from mbsym.expressions.place import Complaints
+from mbsym.source import read, render
+from mbsym_cli.console import complain, printable
+
+#: Of a file so many bytes are read to see what it is, and at all.
+_LOOK, _MOST = 20_000, 40_000_000
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How a robot is described."""
+
+    floating: bool
+    symbols: bool
+    damping: bool
+
+
+def robot_text(file: Path) -> str | None:
+    """The text of a URDF or MJCF file; None of everything else, and of what cannot be read."""
+    from mbsym.source.robots import is_robot
+
+    try:
+        with file.open("rb") as stream:
+            head = stream.read(_LOOK)
+            if not is_robot(head.decode("utf-8", "replace")):
+                return None
+            data = head + stream.read(_MOST)
+    except OSError:
+        return None
+    return data.decode("utf-8", "replace")
+
+
+def described(file: Path, text: str, choices: Choices) -> str | None:
+    """The description in YAML, after saying what it leaves out; None after printing every complaint."""
+    from mbsym.source.robots import convert
+
+    complaints = Complaints()
+    made = convert(text, complaints, choices.floating, choices.symbols, choices.damping)
+    if made is not None:
+        _, doubts = read(made.yaml, f"{file.stem}.yaml")
+        for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's
+            said = f"the description that it gives: {doubt.message}"
+            (complaints.error if doubt.severity == "error" else complaints.warning)(doubt.code, said, None, doubt.hint)
+    for complaint in complaints.sorted():
+        print(render(complaint, text, str(file)), file=sys.stderr)
+    errors = len(complaints.errors)
+    if made is None or errors:
+        complain(file, f"{counted(errors, 'error', 'errors')}; nothing was written.")
+        return None
+    for told in made.left_out:
+        print(f"{printable(file)}: left out: {printable(told)}", file=sys.stderr)
+    for joint in made.still:
+        print(f"{printable(file)}: held still, because it moves no inertia: {printable(joint)}", file=sys.stderr)
+    return made.yaml

@@ -1,0 +1,47 @@
+"""The text of a robot's file to a description; which of the two formats it is, its first element says."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from mbsym.expressions.place import Complaints
+from mbsym.source.robots.describe import describe
+from mbsym.source.robots.elements import parsed
+from mbsym.source.robots.mjcf import read_mjcf
+from mbsym.source.robots.urdf import read_urdf
+
+_ROOT = re.compile(r"\s*(?:<\?xml[^>]*\?>)?\s*(?:<!--.*?-->\s*)*<(robot|mujoco)\b", re.DOTALL)
+_LOOK = 20_000
+
+
+@dataclass(frozen=True)
+class Converted:
+    """``yaml`` is the description; ``joints`` the file's joints in the order of the coordinates after a free base's.
+
+    ``left_out`` says what of the file the description has no place for; ``still`` which joints move no inertia.
+    """
+
+    yaml: str
+    joints: tuple[str, ...]
+    left_out: tuple[str, ...] = ()
+    still: tuple[str, ...] = ()
+
+
+def is_robot(text: str) -> bool:
+    """Whether a text is a robot's file, URDF or MJCF."""
+    return _ROOT.match(text[:_LOOK].removeprefix("\ufeff")) is not None
+
+
+def convert(
+    text: str, complaints: Complaints, floating: bool = False, symbols: bool = False, damping: bool = True
+) -> Converted | None:
+    """The description of a robot, or None with complaints.  The options are those of :func:`describe`."""
+    root = parsed(text, complaints)
+    if root is None:
+        return None
+    robot = read_mjcf(root, complaints) if root.tag == "mujoco" else read_urdf(root, complaints)
+    if robot is None or complaints.errors:
+        return None
+    made = describe(robot, floating, symbols, damping)
+    return Converted(made.yaml, made.joints, robot.left_out, made.still)

@@ -1,0 +1,242 @@
+"""A robot as a description in YAML: one body a link, massless frames where one does not suffice, nothing invented.
+
+* Links without inertia that carry none are left out; a joint that moves no inertia is held still at zero, as no
+  equation determines it.
+* A tensor in axes of its own, or a second inertia, is a body fixed to the link.
+* Tensors that no body has (rounded, or made up) are accepted as they stand.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from mbsym.source.bodies import is_body_name
+from mbsym.source.robots.numbers import NOWHERE, Texts, is_of_a_body, opposite
+from mbsym.source.robots.placing import Step, steps
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape
+from mbsym.source.yaml_writer import scalar_text
+
+_NUMBER = re.compile(r"[0-9.eE+-]+\Z")
+_FREE = Joint("", "free")
+
+
+@dataclass(frozen=True)
+class Described:
+    """``yaml`` is the description; ``joints`` the file's joints, in the order of the coordinates after a free base's.
+
+    ``frames`` counts the massless frames, ``still`` the joints that move no inertia.
+    """
+
+    yaml: str
+    joints: tuple[str, ...]
+    frames: int
+    still: tuple[str, ...]
+
+
+def describe(robot: Robot, floating: bool = False, symbols: bool = False, damping: bool = True) -> Described:
+    """The description of a robot.
+
+    ``floating`` frees its first link, which otherwise stands on the ground; with ``symbols`` masses, lengths and
+    moments are named parameters with the printed values; ``damping``: dampers and springs of joints are loads.
+    """
+    return _Writer(robot, floating, symbols, damping).described()
+
+
+@dataclass
+class _Writer:
+    robot: Robot
+    floating: bool
+    symbols: bool
+    damping: bool
+    bodies: list[str] = field(default_factory=list)
+    parameters: list[str] = field(default_factory=list)
+    loads: list[str] = field(default_factory=list)
+    limits: list[str] = field(default_factory=list)
+    joints: list[str] = field(default_factory=list)
+    still: list[str] = field(default_factory=list)
+    names: dict[str, str] = field(default_factory=dict)  # of the file's links
+    taken: set[str] = field(default_factory=set)
+    frames: int = 0
+    count: int = 0  # of coordinates that have a number
+
+    def described(self) -> Described:
+        carrying = self._carrying()
+        if any(part != "0" for part in self.robot.gravity):
+            self._load(f"uniform gravity: {{{self._gravity()}}}")
+        for link in self.robot.links:
+            if link.name in carrying:
+                self._link(link)
+            else:
+                self.still += [joint.name for joint in link.joints]
+        head = [f"# From the robot '{self._comment(self.robot.name)}'."]
+        if self.robot.left_out:
+            head.append(f"# Left out: {self._comment('; '.join(self.robot.left_out))}.")
+        if self.still:
+            head.append(f"# Held still, because they move no inertia: {self._comment(', '.join(self.still))}.")
+        lines = [*head, "mbsym: 1", f"name: {scalar_text(self.robot.name)}"]
+        lines += ["parameters:", *self.parameters] if self.parameters else []
+        lines += ["bodies:", *self.bodies]
+        lines += ["loads:", *self.loads] if self.loads else []
+        lines += ["limits:", *self.limits] if self.limits else []
+        return Described("\n".join(lines) + "\n", tuple(self.joints), self.frames, tuple(self.still))
+
+    @staticmethod
+    def _comment(text: str) -> str:
+        return "".join(character if character.isprintable() else " " for character in text)
+
+    def _carrying(self) -> set[str]:
+        """Links that have inertia, or bear something that has; of the others the ground is enough."""
+        carrying = {link.name for link in self.robot.links if _weighs(link)}
+        for link in reversed(self.robot.links):
+            if link.name in carrying:
+                carrying.add(link.parent)
+        return carrying or {link.name for link in self.robot.links[:1]}
+
+    # --- loads ---
+
+    def _load(self, text: str) -> None:
+        self.loads.append(f"  - {text}")
+
+    def _gravity(self) -> str:
+        known = [part for part in self.robot.gravity if part != "0"]
+        if len(known) > 1:
+            return f"vector: {_list(self.robot.gravity)}"
+        size = self._named("g", known[0].lstrip("-"), "acceleration of gravity")
+        direction = ["0" if part == "0" else "-1" if part.startswith("-") else "1" for part in self.robot.gravity]
+        return f"acceleration: {size}, direction: {_list(direction)}"
+
+    # --- bodies ---
+
+    def _link(self, link: Link) -> None:
+        moving = [(joint, self._coordinates(joint)) for joint in link.joints]
+        place, turned = link.place, link.turned
+        if link.parent == GROUND and self.floating:
+            moving.insert(0, (_FREE, ("x", "y", "z", "yaw", "pitch", "roll")))
+        if any(joint.kind == "free" for joint, _ in moving):
+            place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground
+        number = len(self.names) + 1
+        *before, last = steps(self._lengths(place, f"p{number}", link.name), turned, tuple(moving))
+        parent = self.names.get(link.parent, GROUND)
+        for index, step in enumerate(before, 1):
+            frame = self._free_name(f"{link.name} frame {index}")
+            self._body(frame, parent, step, ["mass: 0"])
+            self.frames += 1
+            parent = frame
+        own = self.names[link.name] = self._free_name(link.name)
+        first, *others = link.inertials or (Inertial("0"),)
+        matter, apart = (["mass: 0"], [first]) if first.turned else (self._matter(first, number, link.name), [])
+        self._body(own, parent, last, matter, link)
+        for inertial in [*apart, *others]:
+            if not _is_nothing(inertial):
+                name = self._free_name(f"{link.name} inertial")
+                there = Step(self._lengths(inertial.centre, f"c{number}", link.name), inertial.turned)
+                self._body(name, own, there, self._matter(inertial, number, link.name, apart=True))
+
+    def _free_name(self, wanted: str) -> str:
+        """A name that a body may have and no other has."""
+        name = re.sub(r"[^\w ./-]", "-", wanted, flags=re.ASCII)[:60]
+        name = name if is_body_name(name) else f"link {name}"
+        found, index = name, 2
+        while found in self.taken:
+            found, index = f"{name} {index}", index + 1
+        self.taken.add(found)
+        return found
+
+    def _coordinates(self, joint: Joint) -> tuple[str, ...]:
+        self.joints.append(joint.name)
+        self.count += 1
+        stem = f"q{self.count}"
+        if joint.kind == "free":
+            return tuple(f"{stem}{part}" for part in ("x", "y", "z", "yaw", "pitch", "roll"))
+        if joint.kind == "ball":
+            return tuple(f"{stem}{part}" for part in ("yaw", "pitch", "roll"))
+        if joint.limits is not None:
+            self.limits.append(f"  {stem}: {_list(joint.limits)}{self._note(joint.name)}")
+        if self.damping and joint.damping != "0":
+            value = self._named(f"b{self.count}", joint.damping, f"damping of joint {joint.name}")
+            self._load(f"damper: {{coordinate: {stem}, coefficient: {value}}}")
+        if self.damping and joint.stiffness != "0":
+            value = self._named(f"k{self.count}", joint.stiffness, f"stiffness of joint {joint.name}")
+            rest = "" if joint.rest == "0" else f", rest: {joint.rest}"
+            self._load(f"spring: {{coordinate: {stem}, stiffness: {value}{rest}}}")
+        return (stem,)
+
+    def _note(self, name: str) -> str:
+        return f" # {self._comment(name)}" if name else ""
+
+    def _body(self, name: str, parent: str, step: Step, matter: list[str], link: Link | None = None) -> None:
+        lines = [f"name: {scalar_text(name)}", f"attached to: {parent if parent == GROUND else scalar_text(parent)}"]
+        if step.place != NOWHERE:
+            lines.append(f"connection point: {_list(step.place)}")
+        if step.turns:
+            axes, angles = _list([str(axis) for axis, _ in step.turns]), _list([words for _, words in step.turns])
+            lines.append(f"rotation: {{axes: {axes}, angles: {angles}}}")
+        if step.coordinates:
+            note = self._note(", ".join(joint.name for joint in link.joints)) if link is not None else ""
+            lines.append(f"coordinates: {_list(list(dict.fromkeys(step.coordinates)))}{note}")
+        lines += matter
+        if link is not None and link.shapes:
+            lines += ["shapes:", *(f"  - {_shape(shape)}" for shape in link.shapes)]
+        self.bodies += [f"  {'-' if k == 0 else ' '} {line}" for k, line in enumerate(lines)]
+
+    def _matter(self, found: Inertial, number: int, link: str, apart: bool = False) -> list[str]:
+        lines = []
+        if not apart and found.centre != NOWHERE:
+            lines.append(f"mass centre: {_list(self._lengths(found.centre, f'c{number}', link))}")
+        lines.append(f"mass: {self._named(f'm{number}', found.mass, f'mass of {link}')}")
+        xx, xy, xz, yy, yz, zz = found.tensor
+        if any(value != "0" for value in found.tensor):
+            real = not all(map(_NUMBER.match, found.tensor)) or is_of_a_body(*map(Fraction, found.tensor))
+            parts = zip(("xx", "xy", "xz", "yy", "yz", "zz"), (xx, xy, xz, yy, yz, zz), strict=True)
+            named = {part: self._named(f"J{number}{part}", value, f"inertia of {link}") for part, value in parts}
+            keys = [["xx", "xy", "xz"], ["xy", "yy", "yz"], ["xz", "yz", "zz"]]
+            rows = [[named[key] for key in row] for row in keys]
+            diagonal = (xy, xz, yz) == NOWHERE
+            tensor = _list([rows[k][k] for k in range(3)]) if diagonal else _list([_list(row) for row in rows])
+            lines.append("inertia about: mass centre")
+            lines.append(f"inertia: {tensor if real else f'{{tensor: {tensor}, accept: true}}'}")
+        return lines
+
+    # --- symbols ---
+
+    def _lengths(self, values: Texts, stem: str, link: str) -> Texts:
+        named = [
+            self._named(f"{stem}{axis}", value, f"length of {link}") for axis, value in zip("xyz", values, strict=True)
+        ]
+        return named[0], named[1], named[2]
+
+    def _named(self, name: str, value: str, meaning: str) -> str:
+        """The number, or, with symbols, the name of a parameter that has it as its value."""
+        if not self.symbols or value == "0" or not _NUMBER.match(value):
+            return value
+        size = opposite(value) if value.startswith("-") and not name.startswith("J") else value
+        while any(line.startswith(f"  {name}:") for line in self.parameters):
+            name += "b"
+        sign = "nonzero" if size.startswith("-") else "positive"
+        note = scalar_text(self._comment(meaning))
+        self.parameters.append(f"  {name}: {{sign: {sign}, value: {size}, meaning: {note}}}")
+        return name if size == value else f"-{name}"
+
+
+def _weighs(link: Link) -> bool:
+    return any(not _is_nothing(inertial) for inertial in link.inertials)
+
+
+def _is_nothing(inertial: Inertial) -> bool:
+    return all(value == "0" for value in (inertial.mass, *inertial.tensor))
+
+
+def _shape(shape: Shape) -> str:
+    size = shape.size[0] if len(shape.size) == 1 else _list(shape.size)
+    at = "" if shape.place == NOWHERE else f", at: {_list(shape.place)}"
+    axes = _list([str(axis) for axis, _ in shape.turned])
+    turns = (
+        f", rotation: {{axes: {axes}, angles: {_list([words for _, words in shape.turned])}}}" if shape.turned else ""
+    )
+    return f"{{{shape.kind}: {size}{at}{turns}}}"
+
+
+def _list(items: list[str] | tuple[str, ...]) -> str:
+    return "[" + ", ".join(items) + "]"

@@ -1,0 +1,82 @@
+"""What both formats describe: a tree of links, each placed on its parent, moved by joints, with inertia and shapes.
+
+Numbers are texts as they are printed.  Turns are passive and in the order of turning, as in descriptions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from mbsym.expressions.place import Span
+from mbsym.source.robots.numbers import NOWHERE, Texts
+
+#: (axis, angle) of the turns that lead from one set of axes to another.
+Turns = tuple[tuple[int, str], ...]
+
+#: The link on which the first one stands.
+GROUND = "0"
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass, mass centre in axes of the link, turns to its own axes, and the tensor there (xx, xy, xz, yy, yz, zz)."""
+
+    mass: str
+    centre: Texts = NOWHERE
+    turned: Turns = ()
+    tensor: tuple[str, str, str, str, str, str] = ("0",) * 6
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A movement of a link.  ``kind`` is turn, slide, ball or free; ``axis`` and ``anchor`` are in axes of the link.
+
+    ``limits`` are the least and greatest value; ``damping`` and ``stiffness`` act on the joint's coordinate, the
+    latter about ``rest``.
+    """
+
+    name: str
+    kind: str
+    axis: Texts = ("0", "0", "1")
+    anchor: Texts = NOWHERE
+    limits: tuple[str, str] | None = None
+    damping: str = "0"
+    stiffness: str = "0"
+    rest: str = "0"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What a link looks like: ``kind`` box, sphere, cylinder, capsule or ellipsoid, its sizes, place and turns.
+
+    Sizes: the three edges of a box; a radius; radius and length along the third axis; three half axes.
+    """
+
+    kind: str
+    size: tuple[str, ...]
+    place: Texts = NOWHERE
+    turned: Turns = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """``place`` and ``turned`` lead from the axes of ``parent`` to this link's where all its joints are at zero."""
+
+    name: str
+    parent: str
+    place: Texts = NOWHERE
+    turned: Turns = ()
+    joints: tuple[Joint, ...] = ()
+    inertials: tuple[Inertial, ...] = ()
+    shapes: tuple[Shape, ...] = ()
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """Links, each after its parent; ``left_out`` says in words what of the file is no part of it."""
+
+    name: str
+    links: tuple[Link, ...]
+    gravity: Texts = ("0", "0", "-9.81")
+    left_out: tuple[str, ...] = ()

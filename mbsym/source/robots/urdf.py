@@ -1,0 +1,197 @@
+"""URDF: links and joints.
+
+``origin`` places the child's axes by xyz and the active rotation Rz(yaw) Ry(pitch) Rx(roll).  Passive and in the order
+of turning that is yaw, pitch, roll about the axes 3, 2, 1.  Angles that are a multiple of pi/4 or pi/6 rounded to the
+digits that were printed are spelled so.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints
+from mbsym.source.robots.elements import Element
+from mbsym.source.robots.numbers import Texts, angle, is_nonnegative
+from mbsym.source.robots.reader import Reader
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
+
+#: The attributes of an inertia.
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+_KINDS = {"revolute": "turn", "continuous": "turn", "prismatic": "slide", "floating": "free", "fixed": ""}
+
+#: Elements that rigid bodies in a tree have no place for.
+_LEFT_OUT = {
+    "transmission": "transmission",
+    "gazebo": "settings of a simulator (<gazebo>)",
+    "sensor": "sensor",
+    "ros2_control": "controller (<ros2_control>)",
+}
+
+
+def read_urdf(root: Element, complaints: Complaints) -> Robot | None:
+    """The robot of a URDF, or None with complaints."""
+    reader = Reader(complaints)
+    links = _links(root, reader)
+    joints = _joints(root, links, reader)
+    for element in root.walk():
+        if element.tag in _LEFT_OUT:
+            reader.leave_out(_LEFT_OUT[element.tag])
+        elif element.tag == "collision":
+            reader.leave_out("contact (<collision>)")
+    roots = [name for name in links if name not in joints]
+    if len(roots) != 1 and links and not complaints.errors:
+        told = (
+            "no link stands on the ground: the joints run in a circle" if not roots else f"links apart: {_few(roots)}"
+        )
+        reader.error("no-tree", told, root, "every link but one hangs on exactly one joint")
+    if not links:
+        reader.error("missing-key", "there is no <link>", root)
+    if complaints.errors:
+        return None
+    ordered = _ordered(roots[0], joints)
+    if len(ordered) != len(links):
+        lost = next(name for name in links if name not in ordered)
+        reader.error("no-tree", f"link {ascii_safe(lost)} hangs on itself", links[lost])
+        return None
+    made = tuple(_link(name, links[name], joints.get(name), reader) for name in ordered)
+    name = root.get("name") or "robot"
+    return None if complaints.errors else Robot(name, made, left_out=reader.left_out())
+
+
+def _few(names: list[str]) -> str:
+    return ", ".join(ascii_safe(name) for name in names[:5]) + (", ..." if len(names) > 5 else "")
+
+
+def _links(root: Element, reader: Reader) -> dict[str, Element]:
+    links: dict[str, Element] = {}
+    for element in root.all("link"):
+        name = reader.name(element)
+        if name in links:
+            reader.error("repeated-name", f"a second link called {ascii_safe(name)}", element)
+        links[name] = element
+    return links
+
+
+def _joints(root: Element, links: dict[str, Element], reader: Reader) -> dict[str, Element]:
+    """Child -> the joint that leads to it."""
+    joints: dict[str, Element] = {}
+    for element in root.all("joint"):
+        reader.name(element)
+        child = _end(element, "child", links, reader)
+        _end(element, "parent", links, reader)
+        if child in joints:
+            message = f"link {ascii_safe(child)} hangs on two joints: a closed loop"
+            reader.error("unsupported", message, element, "open trees only: take one of the joints out")
+        joints[child] = element
+        kind = element.get("type")
+        if kind not in _KINDS:
+            hint = f"one of {', '.join(_KINDS)}"
+            reader.error("unsupported", f"a joint of the type {ascii_safe(kind)}", element, hint)
+    return joints
+
+
+def _end(joint: Element, end: str, links: dict[str, Element], reader: Reader) -> str:
+    found = joint.first(end)
+    if found is None:
+        reader.error("missing-key", f"this joint has no <{end}>", joint)
+        return ""
+    name = reader.name(found, "link")
+    if name and name not in links:
+        reader.error("unknown-name", f"there is no link {ascii_safe(name)}", found)
+    return name
+
+
+def _ordered(first: str, joints: dict[str, Element]) -> list[str]:
+    """Links from the root, each after its parent, branches in alphabetical order."""
+    children: dict[str, list[str]] = {}
+    for child, joint in joints.items():
+        parent = joint.first("parent")
+        assert parent is not None
+        children.setdefault(parent.get("link"), []).append(child)
+    ordered, waiting = [], [first]
+    while waiting:
+        link = waiting.pop()
+        ordered.append(link)
+        waiting += sorted(children.get(link, ()), reverse=True)
+    return ordered
+
+
+def _link(name: str, element: Element, joint: Element | None, reader: Reader) -> Link:
+    inertial = element.first("inertial")
+    matter = () if inertial is None else (_inertial(inertial, reader),)
+    shapes = tuple(shape for visual in element.all("visual") if (shape := _shape(visual, reader)) is not None)
+    if joint is None:
+        return Link(name, GROUND, inertials=matter, shapes=shapes, span=element.span)
+    parent = joint.first("parent")
+    assert parent is not None
+    place, turned = _origin(joint, reader)
+    moved = _joint(joint, reader)
+    return Link(name, parent.get("link"), place, turned, moved, matter, shapes, element.span)
+
+
+def _joint(element: Element, reader: Reader) -> tuple[Joint, ...]:
+    kind = _KINDS[element.get("type")]
+    if not kind:
+        return ()
+    axis = reader.three(element.first("axis"), "xyz", "1 0 0")
+    if all(float(part) == 0 for part in axis):
+        reader.error("bad-axis", "an axis of length zero", element)
+        axis = ("1", "0", "0")
+    if element.first("mimic") is not None:
+        reader.leave_out("mimic: such a joint is a coordinate of its own")
+    if element.first("safety_controller") is not None:
+        reader.leave_out("safety controller")
+    dynamics, limit = element.first("dynamics"), element.first("limit")
+    damping = "0" if dynamics is None else reader.number(dynamics, "damping")
+    if dynamics is not None and float(reader.number(dynamics, "friction")):
+        reader.leave_out("dry friction of a joint")
+    limits = None
+    if limit is not None and element.get("type") in ("revolute", "prismatic"):
+        limits = (reader.number(limit, "lower"), reader.number(limit, "upper"))
+        limits = limits if float(limits[0]) < float(limits[1]) else None
+    return (Joint(element.get("name"), kind, axis, limits=limits, damping=damping),)
+
+
+def _inertial(element: Element, reader: Reader) -> Inertial:
+    """Tensors with which a kinetic energy could be negative (some are -5e-20) are taken for zero."""
+    mass, tensor = element.first("mass"), element.first("inertia")
+    centre, turned = _origin(element, reader)
+    xx, xy, xz, yy, yz, zz = ("0",) * 6 if tensor is None else (reader.number(tensor, part) for part in MOMENTS)
+    if not is_nonnegative(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
+        reader.leave_out("tensor of inertia with which a kinetic energy could be negative")
+        xx = xy = xz = yy = yz = zz = "0"
+    amount = "0" if mass is None else reader.number(mass, "value", None)
+    if float(amount) < 0:
+        reader.error("impossible-mass", "a mass is not negative", element)
+    return Inertial(amount, centre, turned, (xx, xy, xz, yy, yz, zz))
+
+
+def _shape(visual: Element, reader: Reader) -> Shape | None:
+    place, turned = _origin(visual, reader)
+    geometry = visual.first("geometry")
+    for element in geometry.children if geometry is not None else ():
+        match element.tag:
+            case "box":
+                return Shape("box", reader.three(element, "size", "0 0 0"), place, turned)
+            case "sphere":
+                return Shape("sphere", (reader.number(element, "radius", None),), place, turned)
+            case "cylinder" | "capsule":
+                sizes = (reader.number(element, "radius", None), reader.number(element, "length", None))
+                return Shape(element.tag, sizes, place, turned)
+            case "mesh":
+                reader.leave_out("mesh")
+    return None
+
+
+def _origin(element: Element, reader: Reader) -> tuple[Texts, Turns]:
+    """(place, turns)."""
+    found = element.first("origin")
+    return reader.three(found, "xyz"), fixed_turns(reader.three(found, "rpy", raw=True))
+
+
+def fixed_turns(rpy: Texts) -> Turns:
+    """Roll, pitch, yaw (active, about fixed axes) as passive turns in the order yaw, pitch, roll."""
+    roll, pitch, yaw = map(angle, rpy)
+    return tuple((axis, words) for axis, words in ((3, yaw), (2, pitch), (1, roll)) if words != "0")

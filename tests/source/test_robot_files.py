@@ -1,0 +1,194 @@
+"""Robots' files: hostile and wrong ones are answered with places; turns against matrices; URDF that nobody has seen."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from mbsym.expressions.place import Complaints
+from mbsym.expressions.tree import text as written
+from mbsym.source import read, to_text
+from mbsym.source.robots import Converted, convert, is_robot
+from mbsym.source.robots.elements import MAX_DEPTH
+from mbsym.source.robots.placing import turns_about
+from mbsym_cli.main import main
+
+PENDULUM = """<?xml version="1.0"?>
+<robot name="pen: # dulum">
+  <link name="world"/>
+  <link name="rod &lt;1&gt;">
+    <inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.01"/></inertial>
+    <visual><geometry><cylinder radius="0.02" length="1"/></geometry></visual>
+    <collision><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+  <joint name="pivot&#10;x: y" type="revolute">
+    <parent link="world"/><child link="rod &lt;1&gt;"/><axis xyz="0 1 0"/><origin rpy="0 0 0.3" xyz="0 0 2"/>
+    <limit lower="-2" upper="2.5"/><dynamics damping="0.7" friction="0.1"/>
+  </joint>
+</robot>
+"""
+
+
+def converted(text: str, **options: bool) -> Converted:
+    complaints = Complaints()
+    made = convert(text, complaints, **options)
+    assert made is not None, [one.message for one in complaints]
+    return made
+
+
+def complaints_of(text: str) -> list[tuple[str, int]]:
+    complaints = Complaints()
+    assert convert(text, complaints) is None
+    return [(one.code, one.span.line if one.span else 0) for one in complaints.items]
+
+
+def test_a_urdf_in_every_part() -> None:
+    made = converted(PENDULUM)
+    system, complaints = read(made.yaml, "p.yaml")
+    assert system is not None, [one.message for one in complaints]
+    assert not complaints.items
+    assert system.name == "pen: # dulum"
+    (rod,) = [body for body in system.bodies if body.coordinates]
+    assert rod.name == "rod -1-"
+    assert [written(angle) for angle in rod.rotation.angles] == ["0.3", "q1"]
+    assert rod.rotation.axes == (3, 2)
+    assert [(written(one.lower), written(one.upper)) for one in system.limits] == [("-2", "2.5")]
+    assert [(one.kind, [written(size) for size in one.size]) for one in rod.shapes] == [("cylinder", ["0.02", "1"])]
+    assert any("0.7" in repr(load) or "7, 10" in repr(load) for load in system.loads)
+    assert set(made.left_out) == {"contact (<collision>)", "dry friction of a joint"}
+    again, _ = read(to_text(system), "p.txt")
+    assert again == system
+
+
+def test_symbols_have_the_printed_values() -> None:
+    plain, _ = read(converted(PENDULUM).yaml, "p.yaml")
+    named, _ = read(converted(PENDULUM, symbols=True).yaml, "p.yaml")
+    assert plain is not None
+    assert named is not None
+    assert not plain.parameters
+    values = {one.name: written(one.value) for one in named.parameters if one.value is not None}
+    assert values == {
+        "g": "9.81", "p2z": "2", "c2z": "0.5", "m2": "2", "J2xx": "0.1", "J2yy": "0.1", "J2zz": "0.01", "b1": "0.7",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "line"),
+    [
+        ('value="2"', 'value="two"', "bad-number", 5),
+        ('value="2"', 'value="1e999"', "bad-number", 5),
+        ('value="2"', 'value="nan"', "bad-number", 5),
+        ('value="2"', 'value="-2"', "impossible-mass", 5),
+        ('value="2"', "", "missing-key", 5),
+        ('xyz="0 1 0"', 'xyz="0 0 0"', "bad-axis", 10),
+        ('xyz="0 1 0"', 'xyz="0 1"', "wrong-shape", 11),
+        ('type="revolute"', 'type="planar"', "unsupported", 10),
+        ('link="world"/><child', 'link="nowhere"/><child', "unknown-name", 11),
+        ('<parent link="world"/>', '<parent link="rod &lt;1&gt;"/>', "no-tree", 4),
+        ("</robot>", "", "syntax", 15),
+        ("<robot", '<!DOCTYPE r [<!ENTITY a "b">]><robot', "unsupported", 2),
+        ('<link name="world"/>', '<link name="world"/><link name="world"/>', "repeated-name", 3),
+        ('<link name="world"/>', '<link name="world"/><link name="alone"/>', "no-tree", 2),
+    ],
+)
+def test_what_is_wrong_has_its_place(old: str, new: str, code: str, line: int) -> None:
+    assert old in PENDULUM
+    assert (code, line) in complaints_of(PENDULUM.replace(old, new, 1))
+
+
+def test_depth_and_size_are_bounded() -> None:
+    deep = "<robot>" + "<a>" * (MAX_DEPTH + 5) + "</a>" * (MAX_DEPTH + 5) + "</robot>"
+    assert complaints_of(deep)[0][0] == "too-large"
+
+
+def rotation(axis: int, angle: float) -> np.ndarray:
+    c, s = math.cos(angle), math.sin(angle)
+    first, second = {1: (1, 2), 2: (2, 0), 3: (0, 1)}[axis]
+    matrix = np.eye(3)
+    matrix[first, first] = matrix[second, second] = c
+    matrix[first, second], matrix[second, first] = -s, s
+    return matrix
+
+
+def product(turns: list[tuple[int, str]], q: float = 0.0) -> np.ndarray:
+    """The active rotation whose columns are the new axes: turns about the turned axes multiply from the right."""
+    matrix = np.eye(3)
+    for axis, words in turns:
+        matrix = matrix @ rotation(axis, eval(words, {"pi": math.pi, "q": q}))
+    return matrix
+
+
+@pytest.mark.parametrize("axis", [("1", "2", "-1"), ("0", "-1", "0"), ("0.3", "0", "0.4"), ("-1", "-1", "0")])
+def test_a_turn_about_any_axis_is_rodrigues_s(axis: tuple[str, str, str]) -> None:
+    q = 0.7
+    n = np.array(list(map(float, axis)))
+    n /= np.linalg.norm(n)
+    cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+    expected = np.eye(3) + math.sin(q) * cross + (1 - math.cos(q)) * cross @ cross
+    assert np.allclose(product(list(turns_about(axis, "q")), q), expected, atol=1e-15)
+
+
+def orientation_of(attributes: str, compiler: str = "") -> np.ndarray:
+    """The rotation of a body that a file turns so."""
+    inertial = '<inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>'
+    body = f'<body name="b" {attributes}><joint name="j" type="slide"/>{inertial}</body>'
+    text = f"<mujoco><compiler {compiler}/><worldbody>{body}</worldbody></mujoco>"
+    system, _ = read(converted(text).yaml, "x.yaml")
+    assert system is not None
+    turns = [(axis, written(angle)) for body in system.bodies for axis, angle in body.rotation.turns()]
+    return product(turns)
+
+
+def test_euler_angles_about_fixed_and_about_turned_axes() -> None:
+    a, b, c = (math.radians(value) for value in (20, 30, 50))
+    moving = orientation_of('euler="20 30 50"')
+    assert np.allclose(moving, rotation(1, a) @ rotation(2, b) @ rotation(3, c))
+    fixed = orientation_of('euler="20 30 50"', 'eulerseq="XYZ"')
+    assert np.allclose(fixed, rotation(3, c) @ rotation(2, b) @ rotation(1, a))
+    radians = orientation_of('euler="0.2 0.3 0.5"', 'angle="radian" eulerseq="zyx"')
+    assert np.allclose(radians, rotation(3, 0.2) @ rotation(2, 0.3) @ rotation(1, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("attributes", "columns"),
+    [
+        ('axisangle="1 1 0 180"', [[0, 1, 0], [1, 0, 0], [0, 0, -1]]),  # of any length
+        ('quat="1 1 0 0"', [[1, 0, 0], [0, 0, 1], [0, -1, 0]]),
+        ('quat="0 0 0 -3"', [[-1, 0, 0], [0, -1, 0], [0, 0, 1]]),
+        ('xyaxes="0 2 0 5 7 0"', [[0, 1, 0], [1, 0, 0], [0, 0, -1]]),
+        ('zaxis="0 0 -2"', [[1, 0, 0], [0, -1, 0], [0, 0, -1]]),
+        ('zaxis="3 0 0"', [[0, 0, -1], [0, 1, 0], [1, 0, 0]]),
+        ('axisangle="0 -1 0 90"', [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
+    ],
+)
+def test_other_ways_to_turn(attributes: str, columns: list[list[float]]) -> None:
+    """The new axes, by hand, in the old ones."""
+    assert np.allclose(orientation_of(attributes).T, columns, atol=1e-12)
+
+
+def test_the_command_tells_what_it_leaves_out_and_writes_what_runs(tmp_path: Path) -> None:
+    file, out = tmp_path / "p.urdf", tmp_path / "p.yaml"
+    file.write_text(PENDULUM, encoding="utf-8")
+    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    assert "left out: contact" in done.stderr
+    assert CliRunner().invoke(main, ["check", str(out)]).exit_code == 0
+    done = CliRunner().invoke(main, ["convert", str(out), "--symbols"])
+    assert done.exit_code == 2
+    file.write_text(PENDULUM.replace('value="2"', 'value="two"'), encoding="utf-8")
+    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(tmp_path / "no.yaml")])
+    assert done.exit_code == 2
+    assert f"{file}:5:" in done.stderr
+    assert not (tmp_path / "no.yaml").exists()
+
+
+def test_what_is_a_robot() -> None:
+    assert is_robot('<?xml version="1.0"?>\n<!-- made by hand -->\n<robot name="x"/>')
+    assert is_robot("<mujoco model='x'/>")
+    assert not is_robot("mbsym: 1\nname: <robot>")
+    assert not is_robot("<sdf><robot/></sdf>")
