@@ -1,4 +1,4 @@
-"""The layout of the bodies' tree: every body once, every joint drawn, nothing over anything else, and a page is enough."""
+"""The layout of the bodies' tree: every body once, every joint drawn, nothing over anything else, within a page."""
 
 import json
 from itertools import combinations
