@@ -35,6 +35,8 @@ from mbsym_cli.simulation_run import run
 )
 @click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
 @click.option("--format", "-f", "formats", default="csv,svg,png", show_default=True)
+@click.option("--bodies", is_flag=True, help="What each body does, in bodies.csv; the same as format bodies-csv.")
+@click.option("--animate", is_flag=True, help="animation.html and animation.gif; the same as formats html,gif.")
 @click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
@@ -52,6 +54,8 @@ def command(
     estimate: bool | None,
     whole: bool,
     formats: str,
+    bodies: bool,
+    animate: bool,
     out: Path | None,
     quiet: bool,
 ) -> None:
@@ -62,6 +66,11 @@ def command(
     velocities, energy T - U, generalized_energy T2 - T0 - U where something is prescribed, relative drift), time
     histories, phase planes, drift, the moving system itself and the paths of its mass centres, and simulation.json.
     Whether an energy is conserved is proved, or seen along the run; the error is the difference from a better run.
+
+    Formats: csv (trajectory.csv), bodies-csv (bodies.csv: for each body the place, velocity and acceleration of its
+    mass centre in inertial axes, its angular velocity in its own axes, its kinetic energy; then T, U and T - U; all in
+    the units of the description), figures as svg, png and pdf, and the moving system in three dimensions as html (one
+    page with time controls, without network) and gif.
 
     Coordinates that provably rest (a spatial system that moves in a plane) are not integrated but put back into every
     state, as the summary says; --whole integrates everything.
@@ -78,6 +87,7 @@ def command(
     Examples:
       mbsym simulate systems/double-pendulum.yaml --time 60
       mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
+      mbsym simulate systems/double-pendulum.yaml --time 6 --animate --bodies --format csv,pdf
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4 --format csv --out top
     """
     texts = {
@@ -89,7 +99,7 @@ def command(
         "--step": step,
         "--arithmetic": arithmetic,
         "--step-limit": step_limit,
-        "--format": formats,
+        "--format": ",".join([formats, *(["bodies-csv"] if bodies else []), *(["html", "gif"] if animate else [])]),
     }
     folder = folder_for(file, out)
     try:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym_cli.console import status
 from mbsym_cli.files import deliver
-from mbsym_cli.simulation_request import Asked
+from mbsym_cli.simulation_request import FIGURES, Asked
 from mbsym_cli.simulation_summary import note
 
 if TYPE_CHECKING:
@@ -35,11 +36,14 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     if "csv" in asked.formats:
         further = {kept.column: kept.values for kept in run.invariants}
         files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further)
-    kinds = [kind for kind in asked.formats if kind != "csv"]
+    if "bodies-csv" in asked.formats:
+        files[f"bodies{mark}.csv"] = _bodies(run)
+    kinds = [kind for kind in asked.formats if kind in FIGURES]
     stopped: BaseException | None = None
     try:
         with status(asked.quiet, "drawing"):
             pictures = _pictures(run, kinds) if kinds else {}
+            pictures |= _animation(run, asked.formats)
     except (Exception, KeyboardInterrupt) as error:
         stopped, pictures = error, {}
     for name, content in pictures.items():
@@ -50,6 +54,38 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     if stopped is not None:
         raise stopped
     return paths
+
+
+def _bodies(run: Simulation) -> str:
+    from mbsym.numerics.between import accelerations
+    from mbsym.numerics.body_motion import body_motions
+    from mbsym.report.bodies_csv import bodies_csv
+
+    found = run.trajectory
+    rates = accelerations(run.dynamics, found.times, found.states)
+    return bodies_csv(body_motions(run.scenario, found.times, found.states, rates))
+
+
+def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
+    """The moving system; nothing, and a word about it, where there is nothing to be seen."""
+    if not {"html", "gif"} & set(formats):
+        return {}
+    from mbsym.report.animation import animation
+
+    found = animation(run)
+    if found is None:
+        print("no animation: no body has a place that could be drawn", file=sys.stderr)
+        return {}
+    files: dict[str, bytes] = {}
+    if "html" in formats:
+        from mbsym.report.animation_page import animation_page
+
+        files["animation.html"] = animation_page(found, run).encode()
+    if "gif" in formats:
+        from mbsym.report.animation_gif import animation_gif
+
+        files["animation.gif"] = animation_gif(found)
+    return files
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

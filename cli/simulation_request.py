@@ -13,7 +13,10 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
 
-FORMATS = ("csv", "svg", "png")
+FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
+
+#: Those that are figures.
+FIGURES = ("svg", "png", "pdf")
 ARITHMETIC = ("float64", "float32", "extended")
 
 #: No arithmetic here is finer, and nothing coarser is a solution.

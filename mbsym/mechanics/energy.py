@@ -22,7 +22,7 @@ def kinetic_energy(scene: Scene) -> Scalar:
     algebra = scene.algebra
     total = gyrostatic_term(scene)
     for motion in scene.motions.values():
-        total = total + _body_energy(scene, motion)
+        total = total + body_energy(scene, motion)
     return algebra.reduce(total)
 
 
@@ -36,7 +36,8 @@ def gyrostatic_term(scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def _body_energy(scene: Scene, motion: BodyMotion) -> Scalar:
+def body_energy(scene: Scene, motion: BodyMotion) -> Scalar:
+    """The kinetic energy of one body, without what a gyrostatic moment adds to T."""
     algebra = scene.algebra
     half = algebra.number(Fraction(1, 2))
     energy = algebra.zero

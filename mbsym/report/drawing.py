@@ -15,6 +15,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import fontManager
@@ -117,6 +118,10 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
         stream = BytesIO()
         if kind == "svg":
             FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": "mbsym"})
+            figure.set_dpi(RESOLUTION)
+        elif kind == "pdf":
+            nothing = dict.fromkeys(("CreationDate", "Producer"))
+            FigureCanvasPdf(figure).print_pdf(stream, metadata=nothing | {"Creator": "mbsym"})
             figure.set_dpi(RESOLUTION)
         else:
             canvas.draw()

@@ -1,4 +1,4 @@
-"""Figures of a trajectory: time histories, phase planes, drift of the energy, as SVG or PNG.
+"""Figures of a trajectory: time histories, phase planes, drift of the energy, as SVG, PNG or PDF.
 
 Drawn without a display, in settings of its own that are put back; equal trajectories give equal bytes (with one
 version of matplotlib).

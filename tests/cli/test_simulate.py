@@ -413,7 +413,7 @@ def test_everything_that_is_missing_is_listed_at_once(tmp_path: Path) -> None:
         (["--time", "1", "--method", "dop835"], ["did you mean 'dop853'"]),
         (["--time", "1", "--method", "dop853", "--step", "0.1"], ["--tolerance"]),
         (["--time", "1", "--method", "radau", "--arithmetic", "extended"], ["dop853"]),
-        (["--time", "1", "--format", "pdf"], ["csv, svg, png"]),
+        (["--time", "1", "--format", "eps"], ["csv, svg, png"]),
         (["--time", "1", "--set", "x"], ["name=value"]),
         (["--time", "1", "--set", 'm1=__import__("os")'], ["__import__"]),
         (["--time", "1", "--set", "tetha1=1", "--set", "m1=q"], ["did you mean 'theta1'", "unknown name 'q'"]),
@@ -798,3 +798,24 @@ def test_two_energies_are_two_columns(tmp_path: Path) -> None:
     assert (content["energy"]["is"], content["energy"]["conserved"]) == ("T - U", False)
     generalized = content["generalized_energy"]
     assert (generalized["is"], generalized["conserved"], generalized["how"]) == ("T2 - T0 - U", True, "proved")
+
+
+def test_bodies_and_the_moving_system_are_written_when_asked_for(tmp_path):
+    """--bodies and --animate add to the formats; without them nothing new is written."""
+    command = ["simulate", str(SHIPPED / "simple-pendulum.yaml"), "--time", "1", "--samples", "21", "--no-estimate"]
+    plain = CliRunner().invoke(main, [*command, "--format", "csv", "--out", str(tmp_path / "plain")])
+    assert plain.exit_code == 0
+    assert {path.name for path in (tmp_path / "plain").iterdir()} == {
+        "trajectory.csv",
+        "simulation.json",
+        ".mbsym.json",
+    }
+    more = [*command, "--format", "csv", "--bodies", "--animate", "--out", str(tmp_path / "more")]
+    assert CliRunner().invoke(main, more).exit_code == 0
+    written = {path.name for path in (tmp_path / "more").iterdir()}
+    assert {"trajectory.csv", "bodies.csv", "animation.html", "animation.gif"} < written
+    listed = json.loads((tmp_path / "more" / "simulation.json").read_text(encoding="utf-8"))["files"]
+    assert {"bodies.csv", "animation.html", "animation.gif"} < set(listed)
+    header, first, *_ = (tmp_path / "more" / "bodies.csv").read_text(encoding="utf-8").splitlines()
+    assert header.split(",")[1] == "pendulum.position_1"
+    assert len(first.split(",")) == len(header.split(","))

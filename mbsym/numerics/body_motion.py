@@ -1,0 +1,119 @@
+"""What each body does along a trajectory: place, velocity, acceleration, turning and kinetic energy.
+
+    r_C,  v_C = dr_C/dt,  a_C = dv_C/dt          of the mass centre, in the axes of a frame F, from its origin
+    R                                            direction cosines of the body's axes in F, v^body = R v^F
+    omega                                        absolute angular velocity, in the body's axes
+    T = 1/2 m V.V + 1/2 omega.Theta_C omega      absolute kinetic energy
+
+Velocity and acceleration are those seen in F: the rates of r_C's components.  They are exact derivatives of the
+straight-line program for r_C, along q' and q'', not differences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.energy import body_energy
+from mbsym.mechanics.frames import axis_vector
+from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.model.system import INERTIAL, acceleration_name
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import bound, substituted
+
+
+@dataclass(frozen=True)
+class BodyMotions:
+    """Bodies in the order of ``names``, times last: ``places``, ``velocities``, ``accelerations`` and
+    ``angular_velocities`` have shape (bodies, 3, m), ``axes`` (bodies, 3, 3, m) with body axis i in row i,
+    ``kinetic`` (bodies, m); ``force_function`` is U, shape (m,)."""
+
+    names: tuple[str, ...]
+    frame: str
+    times: Any
+    places: Any
+    velocities: Any
+    accelerations: Any
+    angular_velocities: Any
+    axes: Any
+    kinetic: Any
+    force_function: Any
+
+
+def body_motions(
+    scenario: Scenario, times: Any, states: Any, rates: Any, frame: str = INERTIAL, ring: Ring | None = None
+) -> BodyMotions:
+    """Of every body that ``frame`` carries, massless ones too, along ``states`` (2n, m) with q'' = ``rates`` (n, m).
+
+    Raises Failure where there is no program for the force function.
+    """
+    system = scenario.system
+    program = Program()
+    environment = program_environment(system, program)
+    scene = scene_without_accelerations(system, ring if ring is not None else ring_of(system), program, environment)
+    algebra = scene.algebra
+    names = tuple(body.name for body in system.bodies if frame in system.path(body.name)[:-1])
+    fixed: list[Node] = []
+    for name in names:
+        motion = scene.motions[name]
+        fixed += scene.position(name, motion.mass_centre, frame)
+        for axis in (1, 2, 3):
+            fixed += scene.to_axes(axis_vector(algebra, axis, algebra.one), name, frame)
+        fixed += [*motion.angular_velocity, body_energy(scene, motion)]
+    fixed.append(force_function(scene))
+    fresh = bound(scenario)
+    nodes = substituted(program, fixed, fresh)
+    each = 3 + 9 + 3 + 1
+    places = [node for k in range(len(names)) for node in nodes[each * k : each * k + 3]]
+    first = _rate(fresh, places, system.coordinates, system.velocities)
+    second = _rate(
+        fresh,
+        first,
+        (*system.coordinates, *system.velocities),
+        (*system.velocities, *map(acceleration_name, system.coordinates)),
+    )
+    inputs = ("t", *system.coordinates, *system.velocities, *map(acceleration_name, system.coordinates))
+    compiled = kernels({"bodies": Code(fresh, inputs, (*nodes, *first, *second))})
+    moments = np.vstack([times, np.asarray(states, dtype=float), np.asarray(rates, dtype=float)])
+    with np.errstate(all="ignore"):
+        found = np.array(compiled["bodies"](moments), dtype=float)
+    m, count = moments.shape[1], len(names)
+    own = found[: each * count].reshape(count, each, m)
+    moving = found[each * count + 1 :].reshape(2, count, 3, m)
+    return BodyMotions(
+        names=names,
+        frame=frame,
+        times=moments[0],
+        places=own[:, :3],
+        velocities=moving[0],
+        accelerations=moving[1],
+        angular_velocities=own[:, 12:15],
+        axes=own[:, 3:12].reshape(count, 3, 3, m),
+        kinetic=own[:, 15],
+        force_function=found[each * count],
+    )
+
+
+def _rate(program: Program, outputs: Sequence[Node], names: Sequence[str], rates: Sequence[str]) -> list[Node]:
+    """d/dt of nodes: the partial derivative by t, and those by ``names`` times their ``rates``."""
+    if not outputs:
+        return []
+    rows = jacobian(program, outputs, [program.input("t"), *map(program.input, names)])
+    moving = [program.input(name) for name in rates]
+    found = []
+    for row in rows:
+        total = row[0]
+        for partial, rate in zip(row[1:], moving, strict=True):
+            total = total + partial * rate
+        found.append(total)
+    return found
