@@ -8,7 +8,6 @@ outwards (``a*(-b)`` is ``-(a*b)``) so that more nodes turn out equal.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 from typing import Any, NamedTuple
@@ -21,12 +20,19 @@ from mbsym.expressions.angles import LinearForm
 MOST_BITS = 1_000
 
 
-@dataclass(frozen=True, slots=True)
 class Node:
     """One value of a program: ``number`` in the program's list of instructions."""
 
-    program: Program
-    number: int
+    __slots__ = ("number", "program")
+
+    def __init__(self, program: Program, number: int) -> None:
+        self.program, self.number = program, number
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Node) and self.number == other.number and self.program is other.program
+
+    def __hash__(self) -> int:
+        return hash((id(self.program), self.number))
 
     def __add__(self, other: Node) -> Node:
         return self.program.plus(self, other)

@@ -49,6 +49,8 @@ FORMULA_BUDGET = 24_000_000
 WORK_BUDGET = 300_000_000
 #: Below so many candidate terms a product, reduction or substitution is not looked at more closely.
 SMALL = 20_000
+#: Up to so many terms the total degree is had for less than the degrees in all generators.
+_FEW = 8
 #: The degree in one generator: powers of powers grow far beyond any formula without growing in terms.
 MOST_DEGREE = 1_000
 #: sin and cos of n*x are polynomials of degree n in sin and cos of x.
@@ -241,9 +243,12 @@ class Ring(Algebra):
 
     def reduce(self, x: Polynomial) -> Polynomial:
         """Normal form: each relation's leading term eliminated, sin^2 -> 1 - cos^2 among them."""
-        if x.is_constant():
-            if x:
-                _check_number(x.leading_coefficient())
+        if not x:
+            return x
+        if len(x) <= _FEW and (degree := x.total_degree()) <= 1:  # no relation has a leading term like that
+            if degree:
+                self.spend(len(x) + 8 * self._overhead)
+            _check_number(x.leading_coefficient())
             return x
         self._check(x)
         self.spend(len(x) + 8 * self._overhead)
@@ -752,9 +757,10 @@ class Ring(Algebra):
         """(numerator, [(factor, exponent), ...]) with x = numerator / product: reciprocals cleared, gcds removed."""
         denominators: list[tuple[Polynomial, int]] = []
         x = self.reduce(x)
+        degrees = x.degrees()
         for index in range(self._free + 1, self.spare):
             known = self.generators[index]
-            degree = int(x.degrees()[index])
+            degree = int(degrees[index])
             if known.kind != "reciprocal" or degree <= 0:
                 continue
             x = self.reduce(self._cleared(x, index, degree, known.argument))
@@ -762,6 +768,7 @@ class Ring(Algebra):
                 x, degree = quotient, degree - 1
             if degree:
                 denominators.append((known.argument, degree))
+            degrees = x.degrees()
         return x, denominators
 
     def _cleared(self, x: Polynomial, index: int, degree: int, argument: Polynomial) -> Polynomial:

@@ -27,6 +27,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
+from operator import sub
 from random import Random
 from typing import Any
 
@@ -259,6 +260,10 @@ class Signs:
         return tuple(known)
 
     @cached_property
+    def _known_terms(self) -> tuple[tuple[Polynomial, SignSet, tuple[Any, ...]], ...]:
+        return tuple((polynomial, allowed, tuple(polynomial.terms())) for polynomial, allowed in self._known)
+
+    @cached_property
     def _found(self) -> dict[tuple[str, int], SignSet]:
         return {}
 
@@ -417,9 +422,9 @@ class Signs:
             return self._by_terms(p)
         if depth == 0:
             return ANY
-        for polynomial, allowed in self._known:
-            for exponents, coefficient in polynomial.terms():
-                quotient = tuple(a - b for a, b in zip(wrong[0], exponents, strict=True))
+        for polynomial, allowed, terms in self._known_terms:
+            for exponents, coefficient in terms:
+                quotient = tuple(map(sub, wrong[0], exponents))
                 if min(quotient) < 0:
                     continue
                 ratio = wrong[1] / coefficient

@@ -38,33 +38,35 @@ class LinearForm:
         return not self.coefficients and not self.turns
 
 
+_ONE = Fraction(1)
+
+
 def linear_form(expression: Expression) -> LinearForm | None:
     """The linear form an expression is, or None where it is none with rational coefficients."""
     match expression:
         case Number(value):
             return LinearForm(constant=value)
         case Name("pi"):
-            return LinearForm(turns=Fraction(1))
+            return LinearForm(turns=_ONE)
         case Name(name):
-            return LinearForm(((name, Fraction(1)),))
+            return LinearForm(((name, _ONE),))
         case Negative(operand):
             inner = linear_form(operand)
-            return None if inner is None else inner.scaled(Fraction(-1))
+            return None if inner is None else inner.scaled(-_ONE)
         case Operation("+" | "-" as operator, left, right):
-            first, second = linear_form(left), linear_form(right)
-            if first is None or second is None:
+            if (first := linear_form(left)) is None or (second := linear_form(right)) is None:
                 return None
-            return first + second.scaled(Fraction(1 if operator == "+" else -1))
+            return first + (second if operator == "+" else second.scaled(-_ONE))
         case Operation("*", left, right):
-            first, second = linear_form(left), linear_form(right)
-            if first is None or second is None:
+            if (first := linear_form(left)) is None or (second := linear_form(right)) is None:
                 return None
             if first.is_constant:
                 return second.scaled(first.constant)
             return first.scaled(second.constant) if second.is_constant else None
         case Operation("/", left, right):
-            first, second = linear_form(left), linear_form(right)
-            if first is None or second is None or not second.is_constant or not second.constant:
+            if (second := linear_form(right)) is None or not second.is_constant or not second.constant:
+                return None
+            if (first := linear_form(left)) is None:
                 return None
             return first.scaled(1 / second.constant)
         case Operation("**", base, Number(exponent)):

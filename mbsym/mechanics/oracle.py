@@ -27,13 +27,13 @@ from mbsym.model.system import INERTIAL, System, velocity_name
 Triple = list["Series"]
 
 
-@dataclass(frozen=True, slots=True)
 class Series:
     """a + b s + c s^2, higher powers dropped."""
 
-    a: Scalar
-    b: Scalar
-    c: Scalar
+    __slots__ = ("a", "b", "c")
+
+    def __init__(self, a: Scalar, b: Scalar, c: Scalar) -> None:
+        self.a, self.b, self.c = a, b, c
 
     def __add__(self, other: Series) -> Series:
         return Series(self.a + other.a, self.b + other.b, self.c + other.c)
@@ -45,14 +45,36 @@ class Series:
         return Series(-self.a, -self.b, -self.c)
 
     def __mul__(self, other: Series) -> Series:
-        middle = self.a * other.c + self.b * other.b + self.c * other.a
-        return Series(self.a * other.a, self.a * other.b + self.b * other.a, middle)
+        a, b, first, second = self.a, self.b, other.a, other.b
+        return Series(a * first, a * second + b * first, a * other.c + b * second + self.c * first)
+
+
+class Dual:
+    """a + b s, higher powers dropped."""
+
+    __slots__ = ("a", "b")
+
+    def __init__(self, a: Scalar, b: Scalar) -> None:
+        self.a, self.b = a, b
+
+    def __add__(self, other: Dual) -> Dual:
+        return Dual(self.a + other.a, self.b + other.b)
+
+    def __sub__(self, other: Dual) -> Dual:
+        return Dual(self.a - other.a, self.b - other.b)
+
+    def __neg__(self) -> Dual:
+        return Dual(-self.a, -self.b)
+
+    def __mul__(self, other: Dual) -> Dual:
+        a, first = self.a, other.a
+        return Dual(a * first, a * other.b + self.b * first)
 
 
 class TaylorSeries(Algebra):
     """Series over numbers (rationals or balls)."""
 
-    def __init__(self, numbers: Algebra, angles: Mapping[str, Series]) -> None:
+    def __init__(self, numbers: Algebra, angles: Mapping[str, Any]) -> None:
         self.numbers = numbers
         self.angles = angles
         self.zero, self.one = self.number(0), self.number(1)
@@ -107,6 +129,19 @@ class TaylorSeries(Algebra):
             return self._compose(x, value, inverse, -half_number * inverse * inverse)
         inverse = self.numbers.reciprocal(self.numbers.one + x.a * x.a)
         return self._compose(x, value, inverse, -x.a * inverse * inverse)
+
+
+class FirstOrder(TaylorSeries):
+    """The same to first order only: what a small disturbance does."""
+
+    def constant(self, value: Scalar) -> Any:
+        return Dual(value, self.numbers.zero)
+
+    def vanishes(self, x: Any) -> bool:
+        return self.numbers.vanishes(x.a) and self.numbers.vanishes(x.b)
+
+    def _compose(self, x: Any, value: Scalar, slope: Scalar, half_curvature: Scalar) -> Any:
+        return Dual(value, slope * x.b)
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.oracle import Oracle, Series, State, TaylorSeries
+from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State, TaylorSeries
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED, Oracles
 from mbsym.mechanics.variables import ring_environment
@@ -167,16 +167,16 @@ def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, 
     """The state with a random disturbance as first coefficient, and the disturbance (dx, dx', dx'') itself."""
     source = random.Random(SEED + 1)
     zero = state.numbers.zero
-    values = {name: Series(value, zero, zero) for name, value in state.values.items()}
+    values = {name: Dual(value, zero) for name, value in state.values.items()}
     direction = []
     for name in system.coordinates:
         parts = []
         for key in (name, velocity_name(name), acceleration_name(name)):
             part = state.numbers.number(source.randint(1, 9))
-            values[key] = Series(state.values[key], part, zero)
+            values[key] = Dual(state.values[key], part)
             parts.append(part)
         direction.append((parts[0], parts[1], parts[2]))
-    return State(TaylorSeries(state.numbers, values), values), direction
+    return State(FirstOrder(state.numbers, values), values), direction
 
 
 def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral]) -> Check:
