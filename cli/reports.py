@@ -27,6 +27,7 @@ from mbsym_cli.files import deliver, obstacle
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.shape import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
     from mbsym.report.rendering import Rendered
@@ -44,6 +45,7 @@ class Request:
     ledger: bool = False
     brief: bool = False
     width: int = 0
+    angles: Angles | None = None  # None: what each kind of text usually has
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -70,13 +72,15 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.shape import angles_as
 
     started = time.perf_counter()
     analysis = Analysis(system, request.problems, request.terms)
     found = None
     with status(request.quiet) as say:
         derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))
-        files = list(rendered_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}")))
+        with angles_as(request.angles):
+            files = list(rendered_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}")))
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:
             say(f"{path.name}: ledger")
@@ -117,9 +121,11 @@ def _show(
 
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
+    from mbsym.formulas.shape import angles_as
     from mbsym.report.summary import summary
 
-    show(summary(analysis, analysis.problems, written), path, seconds)
+    with angles_as(request.angles or "shorter"):
+        show(summary(analysis, analysis.problems, written), path, seconds)
     if found is not None:
         from mbsym.report.ledger import ledger_lines
         from mbsym_cli.ledger import show_ledger

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import click
 
@@ -11,6 +12,9 @@ from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
+
+if TYPE_CHECKING:
+    from mbsym.formulas.shape import Angles
 
 
 @click.command("run")
@@ -21,6 +25,12 @@ from mbsym_cli.reports import Request, report_on
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
+@click.option(
+    "--angles",
+    metavar="FORM",
+    help="products, sums or shorter: sin and cos of sums of angles in every file.  [default: the shorter form of each "
+    "formula for people, products for programs]",
+)
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
@@ -31,6 +41,7 @@ def command(
     formats: str,
     out: Path | None,
     terms: str,
+    angles: str | None,
     strict_claims: bool,
     brief: bool,
     ledger: bool,
@@ -52,6 +63,9 @@ def command(
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
 
+    With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
+    products they have products of sines and cosines of single angles.
+
     \b
     Examples:
       mbsym run systems/satellite.yaml
@@ -59,13 +73,15 @@ def command(
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
+      mbsym run systems/tethered-satellites.yaml --angles sums
     """
-    from mbsym.report.targets import FORMATS, TARGETS, shown_by
+    from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     asked = Options()
     paths = asked.descriptions(files)
     chosen = None if problems is None else asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
+    form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
     budget = asked.whole("--terms", terms, 1, 10**12)
     if asked.complaints or budget is None:
         for path in paths:
@@ -74,7 +90,7 @@ def command(
         sys.exit(BAD_INPUT)
     width = max(len(path.name) for path in paths)
     request = Request(
-        shown_by(kinds) if chosen is None else chosen, kinds, budget, quiet, strict_claims, ledger, brief, width
+        shown_by(kinds) if chosen is None else chosen, kinds, budget, quiet, strict_claims, ledger, brief, width, form
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

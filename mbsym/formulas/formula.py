@@ -12,6 +12,7 @@ from typing import Any
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.latex import latex_text
 from mbsym.formulas.python import python_text
+from mbsym.formulas.shape import Angles, angles_as
 from mbsym.formulas.wolfram import wolfram_text
 
 
@@ -25,11 +26,27 @@ class Formula:
     def __str__(self) -> str:
         return python_text(self.ring, self.polynomial)
 
-    def latex(self) -> str:
-        return latex_text(self.ring, self.polynomial)
+    def text(self, angles: Angles = "shorter") -> str:
+        """Python syntax for people: sines and cosines in ``products``, in ``sums`` of angles, or what is ``shorter``.
 
-    def wolfram(self) -> str:
-        return wolfram_text(self.ring, self.polynomial)
+        ``str`` has products, one text for one formula, unless something else is asked for by ``angles_as``.
+        """
+        with angles_as(angles):
+            return python_text(self.ring, self.polynomial)
+
+    def latex(self, angles: Angles | None = None) -> str:
+        """LaTeX with amsmath; ``angles`` as for ``text``, and what is shorter unless it was asked otherwise."""
+        if angles is None:
+            return latex_text(self.ring, self.polynomial)
+        with angles_as(angles):
+            return latex_text(self.ring, self.polynomial)
+
+    def wolfram(self, angles: Angles | None = None) -> str:
+        """Wolfram Language; ``angles`` as for ``text``, and products unless it was asked otherwise."""
+        if angles is None:
+            return wolfram_text(self.ring, self.polynomial)
+        with angles_as(angles):
+            return wolfram_text(self.ring, self.polynomial)
 
     def to_sympy(self) -> Any:
         """A SymPy expression in plain symbols: ``theta``, ``theta_dot``, ``Jx``."""

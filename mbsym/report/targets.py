@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
+#: How formulas may have their angles; where none is asked for, texts for people have the shorter form of each formula,
+#: and those for programs products, one canonical form.
+ANGLES = ("products", "sums", "shorter")
+
+
 @dataclass(frozen=True)
 class Target:
     """``needs``: the problems whose results the file can hold (None: all); of these it shows those asked for.
