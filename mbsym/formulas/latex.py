@@ -235,9 +235,14 @@ class LatexPrinter:
     def _height(self, shape: Sum) -> int:
         """How deeply brackets are nested, this one included."""
         if shape not in self._heights:
-            inner = (f.base for term in shape.terms for f in term.over if isinstance(f.base, Sum))
-            self._heights[shape] = 1 + max(map(self._height, inner), default=0)
+            inner = (f.base for term in shape.terms for f in term.over)
+            self._heights[shape] = 1 + max(map(self._height_of_base, inner), default=0)
         return self._heights[shape]
+
+    def _height_of_base(self, base: int | Wave | Sum) -> int:
+        if isinstance(base, Sum):
+            return self._height(base)
+        return int(isinstance(base, Wave) and len(base.angle) > 1)
 
     def atom(self, index: int, exponent: int = 1) -> str:
         if index not in self._atoms:
