@@ -77,6 +77,8 @@ def deliver(
 ) -> list[Path]:
     """The paths of ``files`` (name -> content), delivered into ``folder`` as one set of ``command``.
 
+    A name may have one folder in it, ``fragments/energy.tex``.
+
     Of the files that ``command`` delivered there before and that are not in this set, those named in ``gone`` are
     removed (without ``gone``: all of them), unless somebody has changed them since.  Raises OSError where the set
     cannot be written; then the old one is whole.
@@ -89,12 +91,19 @@ def deliver(
         for name in (*files, MANIFEST):
             if (folder / name).is_dir() and not (folder / name).is_symlink():
                 raise IsADirectoryError(f"{folder / name} is a folder")
+            inner = (folder / name).parent
+            if inner != folder and (inner.is_symlink() or (inner.exists() and not inner.is_dir())):
+                raise NotADirectoryError(f"{inner} is no folder")
         stage = Path(tempfile.mkdtemp(prefix=_NEW, dir=folder))
         try:
             digests = {name: _staged(stage / name, content) for name, content in files.items()}
             manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
             _staged(stage / MANIFEST, manifest)
             os.chmod(stage, 0o777 & ~_umask())
+            for inner in stage.iterdir():
+                if inner.is_dir():
+                    os.chmod(inner, 0o777 & ~_umask())
+                    _flush_folder(inner)
             _flush_folder(stage)
             os.rename(stage, folder / _READY)
         except BaseException:
@@ -158,8 +167,12 @@ def _read_sets(file: Path) -> Sets:
 
 
 def _is_plain(name: str) -> bool:
-    """A name that stays in its folder and is none of our own."""
-    return bool(name) and name == os.path.basename(name) and name not in (".", "..") and not name.startswith(".mbsym")
+    """A name that stays in its folder, or in one folder inside, and is none of our own."""
+    parts = name.split("/")
+    return len(parts) <= 2 and all(
+        part and part == os.path.basename(part) and part not in (".", "..") and not part.startswith(".mbsym")
+        for part in parts
+    )
 
 
 def _recover(folder: Path, locked: bool) -> None:
@@ -174,19 +187,38 @@ def _install(folder: Path) -> None:
     ready = folder / _READY
     if not ready.is_dir():
         return
-    waiting = sorted(path.name for path in ready.iterdir() if path.name != MANIFEST)
+    staged = (path.relative_to(ready).as_posix() for path in ready.rglob("*") if not path.is_dir())
+    waiting = sorted(name for name in staged if name != MANIFEST)
     if (ready / MANIFEST).exists():
         staying = {name for _, files in _read_sets(ready / MANIFEST) for name in files}
         for _, files in read_manifest(folder):
             for name, digest in files.items():
-                if name not in staying and digest_of(folder / name) == digest:
+                if name not in staying and _is_inside(folder, name) and digest_of(folder / name) == digest:
                     (folder / name).unlink(missing_ok=True)
+                    _remove_empty(folder, name)
         for name in waiting:
             (folder / name).unlink(missing_ok=True)
         for name in [*waiting, MANIFEST]:
+            (folder / name).parent.mkdir(exist_ok=True)
             os.replace(ready / name, folder / name)
+    for inner in {(folder / name).parent for name in waiting}:
+        _flush_folder(inner)
     _flush_folder(folder)
+    for path in list(ready.iterdir()):
+        path.rmdir()
     ready.rmdir()
+
+
+def _is_inside(folder: Path, name: str) -> bool:
+    """Whether no link leads out of the folder on the way to a file."""
+    return not (folder / name).parent.is_symlink() or "/" not in name
+
+
+def _remove_empty(folder: Path, name: str) -> None:
+    """The folder inside that a removed file leaves empty."""
+    if "/" in name:
+        with suppress(OSError):
+            (folder / name).parent.rmdir()
 
 
 def _remove_strays(folder: Path, certain: bool) -> None:
@@ -206,6 +238,7 @@ def _remove_strays(folder: Path, certain: bool) -> None:
 
 def _staged(path: Path, content: str | bytes) -> str:
     """Writes a new file, flushed to the disk; its SHA-256."""
+    path.parent.mkdir(exist_ok=True)
     with path.open("xb") as stream:
         data = _fill(stream, content)
     return hashlib.sha256(data).hexdigest()

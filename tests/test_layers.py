@@ -27,7 +27,7 @@ BELOW = {
     "analysis": "expressions algebra model mechanics formulas problems",
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
-    "report": "expressions algebra model mechanics formulas problems analysis numerics simulation",
+    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation",
     "batch": "expressions algebra model source formulas problems analysis report __init__",
     "diff": "expressions algebra formulas report",
     "__init__": "source analysis numerics simulation",

@@ -111,6 +111,8 @@ class Analysis(Stages):
         #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
         self.withheld: dict[int, NoResult] = {}
         self.angles = tuple(angles)
+        #: Of the LaTeX reports, where it is not that of the description.
+        self.language = ""
 
     @property
     def asked(self) -> tuple[Problem[Any], ...]:

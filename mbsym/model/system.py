@@ -357,10 +357,20 @@ class InitialValue:
 
 
 @dataclass(frozen=True, slots=True)
+class WrittenSymbol:
+    """A name as LaTeX: ``latex`` holds symbols, indices, accents and fonts only, as the readers saw to."""
+
+    name: str
+    latex: str
+    span: Span | None = _span()
+
+
+@dataclass(frozen=True, slots=True)
 class System:
     """A whole description.
 
-    ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.
+    ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
+    the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English).
     """
 
     name: str
@@ -379,6 +389,9 @@ class System:
     claims: tuple[Claim, ...] = ()
     units: Units = Units()
     limits: tuple[Limit, ...] = ()
+    source: str = ""
+    symbols: tuple[WrittenSymbol, ...] = ()
+    language: str = ""
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -1,19 +1,24 @@
-"""``report.tex``: an appendix that compiles as it stands with plain pdflatex and amsmath."""
+"""What the LaTeX files show: the values and filters of their templates, and ``report.tex``, which stands alone."""
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from enum import StrEnum
 from fractions import Fraction
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym import __version__
+from mbsym.expressions.tree import ZERO
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_names, latex_text
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.model.system import System, Tensor
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
@@ -23,15 +28,23 @@ from mbsym.report.conditions import Reference, Shown, cases, provided, statement
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.language import Language
 from mbsym.report.latex_description import call, expression, load_in_words
+from mbsym.report.latex_diagram import diagram
+from mbsym.report.latex_displays import written_out
+from mbsym.report.latex_labels import Labels, prefix_of
+from mbsym.report.latex_references import keys_of, references, theorems_named
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 #: Matrices estimated wider than this (in ems) are written entry by entry.
 WIDEST = 40
+#: The same in a column of a two-column document, 229 pt in article, with an equation number beside it.
+NARROW = 17
 #: Longer lines of the file are broken: TeX reads whole lines into a buffer.
 LINE = 400
 #: Longer formulas are left to the machine-readable files: nobody reads them, and TeX's memory is finite.
@@ -48,36 +61,66 @@ DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
-    """The file's text."""
+    """The text of ``report.tex``."""
+    return filled("report.tex.j2", analysis, problems, Form.REPORT, figures=())
+
+
+class Form(StrEnum):
+    """Where a text is to stand: by itself on a wide page, or as a whole or in pieces in somebody's narrow column."""
+
+    REPORT = "report"
+    APPENDIX = "appendix"
+    FRAGMENT = "fragment"
+
+    @property
+    def widest(self) -> float:
+        """The widest matrix, in ems."""
+        return WIDEST if self is Form.REPORT else NARROW
+
+    @property
+    def picture(self) -> float:
+        """The widest picture, in cm."""
+        return 15.0 if self is Form.REPORT else 7.6
+
+
+def filled(template: str, analysis: Analysis, problems: Sequence[int], form: Form, **more: Any) -> str:
+    """A template with the results of some problems; ``more`` are values besides."""
     from mbsym.analysis import PROBLEMS
 
-    names = latex_names(analysis.ring)
     system = analysis.system
+    names = latex_names(analysis.ring)
     printed = claimed_names(analysis)
+    tongue = Language(analysis.language or system.language)
+    labels = Labels(prefix_of(system.name))
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     long = withheld([found[number] for number in COUNTED if number in found], PAPER)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
+    verdicts = found.get(6)
+    cited = references(verdicts, escaped(system.source)) if form is not Form.FRAGMENT else ()
     text = rendered(
-        "report.tex.j2",
+        template,
         {
             "tex": escaped,
+            "say": tongue.say,
+            "theorem": lambda name: escaped(tongue.say(name)),
             "name": lambda name: str(names[name]),
             "dotted": lambda name: names[name].accented("dot"),
             "math": lambda value: formula(value, long),
             "expression": lambda value: expression(value, names),
-            "matrix": lambda value: matrix(value, long),
-            "row": lambda values: row(values, long),
+            "matrix": lambda value: matrix(value, long, form.widest),
+            "tensor": lambda value: tensor(value, names, form.widest),
+            "row": lambda values: row(values, long, form.widest),
             "entries": entries,
             "sum": polynomial,
             "condition": condition,
             "eigenvalues": eigenvalues,
             "label": label,
             "refer": refer,
-            "load": lambda value: load_in_words(value, names, escaped),
+            "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
             "index": index,
-            "displays": displays,
+            "displays": lambda part, k: displays(part, k, form.widest),
             "prose": prose,
             "claim_line": claim_line,
             "counterexample": lambda found: counterexample(found).replace("for", "For", 1),
@@ -88,6 +131,19 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "same": lambda words: same(words, printed),
             "zero": lambda values: all(x.is_zero for x in values),
         },
+        tr=tongue.sentence,
+        # No filter: Jinja computes filters of constants when it compiles a template, and keeps what it compiled.
+        eq=labels.equation,
+        heading=lambda key, title: _heading(labels, form, key, title),
+        subheading=lambda title: _subheading(form, title),
+        wide=form is Form.REPORT,
+        summarised=form is Form.REPORT,
+        prefix=labels.prefix,
+        version=__version__,
+        digest=meaning(system),
+        babel=tongue.babel,
+        references=cited,
+        literature=_literature(verdicts, tongue) if form is Form.REPORT else [],
         system=system,
         accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
@@ -102,14 +158,66 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         Shown=Shown,
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
-        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        provided=provided(len(analysis.equilibrium.conditions)) if verdicts is not None else "",
         DEPENDS=Word.DEPENDS,
         decided=decided,
         claims=analysis.claims,
+        outcomes=Counter(claim_line(result).word for result in analysis.claims),
         repair=repair,
         checks=analysis.checks,
+        diagram=lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
+        cyrillic=tongue.name == "ru" or _is_cyrillic(system),
+        **more,
     )
-    return "\n".join(map(broken, text.split("\n")))
+    text = text if form is Form.REPORT else written_out(_set_apart(text))
+    return "\n".join(map(broken, _spared(text).split("\n")))
+
+
+def displayed(words: str) -> str:
+    """Formulas of a sentence that stand by themselves, as the others do."""
+    return re.sub(r"\\\[ (.*?) \\\]", lambda m: f"\\longformula{{{m[1]}}}", words)
+
+
+def _heading(labels: Labels, form: Form, key: str, title: str) -> str:
+    match form:
+        case Form.REPORT:
+            return f"\\section*{{{title}}}\\addcontentsline{{toc}}{{subsection}}{{{title}}}"
+        case Form.APPENDIX:
+            kind = "subsection" if key else "section"
+            return f"\\{kind}{{{title}}}\\label{{{labels.section(key)}}}"
+    return ""
+
+
+def _subheading(form: Form, title: str) -> str:
+    if form is Form.REPORT:
+        return f"\\subsection*{{{title}}}"
+    return f"\\par\\medskip\\noindent\\textbf{{{title}}}\\par\\nopagebreak"
+
+
+def _literature(found: Stability | None, tongue: Language) -> list[tuple[str, str]]:
+    """(name, keys) of each theorem that problem 6 names."""
+    named = [] if found is None else dict.fromkeys(theorems_named(found))
+    return [(escaped(tongue.say(name)), ",".join(keys_of(name))) for name in named if keys_of(name)]
+
+
+def _set_apart(text: str) -> str:
+    """What stands in anyone's document: paragraphs without indentation, and everything is as it was afterwards."""
+    head = "".join(f"{line}\n" for line in text.split("\n") if line.startswith("%"))
+    body = "\n".join(line for line in text.split("\n") if not line.startswith("%"))
+    looks = r"\raggedright\raggedbottom\emergencystretch=3em \parskip=2pt plus 3pt"
+    return f"{head}\\begingroup{looks}\n{body.strip()}\n\\par\\endgroup\n"
+
+
+def _spared(text: str) -> str:
+    """One empty line where there are several."""
+    return re.sub(r"\n{3,}", "\n\n", text)
+
+
+def _is_cyrillic(system: System) -> bool:
+    texts = [system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
+    texts += [item.meaning for item in system.prescribed] + [body.name for body in system.bodies]
+    texts += [claim.place for claim in system.claims]
+    return any("\u0400" <= c <= "\u045f" for text in texts for c in text)
 
 
 def decided(found: Stability) -> str:
@@ -132,8 +240,13 @@ _SPECIAL = {
 
 def escaped(words: str) -> str:
     """Plain text; characters that plain pdflatex cannot set become question marks."""
-    plain = "".join(_SPECIAL.get(c, c if c < "\u0100" else "?") for c in " ".join(words.split()))
+    plain = "".join(_SPECIAL.get(c, c if _can_be_set(c) else "?") for c in " ".join(words.split()))
     return plain.replace("--", "-{}-")
+
+
+def _can_be_set(character: str) -> bool:
+    """Whether inputenc knows it for Latin or Cyrillic letters."""
+    return character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451"
 
 
 def broken(line: str) -> str:
@@ -213,12 +326,12 @@ def width(latex: str) -> float:
     return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
 
 
-def matrix(value: Matrix, long: frozenset[int] = frozenset()) -> str:
+def matrix(value: Matrix, long: frozenset[int] = frozenset(), widest: float = WIDEST) -> str:
     """A pmatrix, or nothing if that would be too wide or holds one of the ``long`` formulas."""
-    return "" if any(id(x) in long for row in value for x in row) else _matrix(value)[0]
+    return "" if any(id(x) in long for row in value for x in row) else _matrix(value, widest)[0]
 
 
-def _matrix(value: Matrix) -> tuple[str, float]:
+def _matrix(value: Matrix, widest: float) -> tuple[str, float]:
     """The pmatrix and its width."""
     if any(x.terms > 60 for row in value for x in row):
         return "", 0.0
@@ -228,7 +341,7 @@ def _matrix(value: Matrix) -> tuple[str, float]:
     rows = [[x.latex() for x in row] for row in value]
     wide = sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True))
     text = latex_matrix(rows) if number == 1 else f"{number} {latex_matrix(rows)}"
-    return (text, wide) if wide <= WIDEST else ("", wide)
+    return (text, wide) if wide <= widest else ("", wide)
 
 
 def _common_number(value: Matrix) -> int:
@@ -241,13 +354,23 @@ def _common_number(value: Matrix) -> int:
     return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
-def displays(part: Subsystem, k: object) -> list[str]:
+def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
+    """A tensor of inertia; a wide one row by row."""
+    if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
+        return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"
+    rows = [[expression(x, names) for x in one] for one in value]
+    if sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True)) <= widest:
+        return latex_matrix(rows)
+    return "(" + ";\\; \\penalty0 ".join(",\\; ".join(one) for one in rows) + ")"
+
+
+def displays(part: Subsystem, k: object, widest: float = WIDEST) -> list[str]:
     """The matrices of a subsystem that are not zero and not too wide, side by side where they fit."""
     lines: list[str] = []
     room = 0.0
     for name in "MDGKN":
         value: Matrix = getattr(part, name)
-        text, wide = ("", 0.0) if value.is_zero else _matrix(value)
+        text, wide = ("", 0.0) if value.is_zero else _matrix(value, widest)
         if not text:
             continue
         needed = wide + 6
@@ -256,7 +379,7 @@ def displays(part: Subsystem, k: object) -> list[str]:
             lines[-1] += f",\\quad {shown}"
         else:
             lines.append(shown)
-            room = WIDEST
+            room = widest
         room -= needed
     return lines
 
@@ -265,12 +388,12 @@ def index(k: object) -> str:
     return f"_{{{k}}}" if k else ""
 
 
-def row(values: Column, long: frozenset[int] = frozenset()) -> str:
+def row(values: Column, long: frozenset[int] = frozenset(), widest: float = WIDEST) -> str:
     """Components side by side, or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long for x in values):
         return ""
     written = [x.latex() if x.terms <= 30 else "" for x in values]
-    fits = all(written) and sum(map(width, written)) <= WIDEST
+    fits = all(written) and sum(map(width, written)) <= widest
     return ",\\; ".join(written) if fits else ""
 
 

@@ -12,8 +12,10 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterator
-from itertools import takewhile
+from functools import partial
 from typing import Any
+
+from mbsym.report.latex_reading import read_latex
 
 #: Larger powers are not computed.
 _MOST_EXPONENT = 10_000
@@ -22,7 +24,7 @@ _MOST_EXPONENT = 10_000
 def unreadable(filename: str, content: str | bytes) -> str:
     """Why the file would not be taken, or ""."""
     ending = filename.rpartition(".")[2]
-    reader = _READERS.get(ending)
+    reader = partial(_latex, filename) if ending == "tex" else _READERS.get(ending)
     if reader is None and ending in ("m", "jl", "mo", "fmu"):
         from mbsym.report.parsing_exports import READERS
 
@@ -200,53 +202,9 @@ def _wolfram_brackets(text: str) -> Iterator[tuple[int, str]]:
         raise SyntaxError(f"{'(*' if depth else 'a string'} is never closed", ("", line, 0, None))
 
 
-_LATEX = re.compile(
-    r"""\\(?:begin|end)\s*\{[^{}]*\}|\\(?:left|right)\s*(?:\\[{}|]|.)|\\verb(?P<mark>[^a-zA-Z]).*?(?P=mark)|\\[^a-zA-Z]|\\[a-zA-Z]+|%[^\n]*|\$\$?|[{}]""",
-    re.DOTALL,
-)
-
-
-def _latex(text: str) -> None:
-    """Braces, environments, \\left with \\right, and dollars of mathematics."""
+def _latex(filename: str, text: str) -> None:
     printable(text)
-    opened: list[tuple[int, str]] = []
-    line, place = 1, 0
-    for match in _LATEX.finditer(text):
-        line += text.count("\n", place, match.start())
-        place, token = match.start(), match[0]
-        if token == "{" or token.startswith(("\\begin", "\\left")):
-            if re.fullmatch(r"\\left[a-zA-Z]+", token) is None:
-                opened.append((line, _opener(token)))
-        elif token == "}" or token.startswith(("\\end{", "\\right")):
-            if re.fullmatch(r"\\right[a-zA-Z]+", token) is None:
-                wanted = _opener(token)
-                if not opened or opened[-1][1] != wanted:
-                    raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
-                opened.pop()
-        elif token in ("$", "$$", "\\[", "\\(", "\\]", "\\)"):
-            opening = {"\\]": "\\[", "\\)": "\\("}.get(token, token)
-            if opened and opened[-1][1] == opening:
-                opened.pop()
-            elif token in ("\\]", "\\)") or _in_mathematics(opened):
-                raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
-            else:
-                opened.append((line, token))
-    if opened:
-        raise SyntaxError(f"{opened[-1][1]!r} is never closed", ("", opened[-1][0], 0, None))
-
-
-def _in_mathematics(opened: list[tuple[int, str]]) -> bool:
-    """Whether mathematics has begun since the last brace, in which there may be text with mathematics of its own."""
-    since = list(takewhile(lambda item: item[1] != "{", reversed(opened)))
-    return any(item in ("$", "$$", "\\[", "\\(") for _, item in since)
-
-
-def _opener(token: str) -> str:
-    if token in "{}":
-        return "{"
-    if token.startswith(("\\left", "\\right")):
-        return "\\left"
-    return token.replace("\\end", "\\begin").replace(" ", "")
+    read_latex(filename, text)
 
 
 def printable(text: str) -> None:
@@ -295,6 +253,5 @@ def _no_number(word: str) -> float:
 
 
 _READERS: dict[str, Callable[[Any], None]] = {
-    "py": _python, "c": c_text, "h": c_text, "wl": _wolfram, "tex": _latex, "html": _html,
-    "json": _json,
+    "py": _python, "c": c_text, "h": c_text, "wl": _wolfram, "json": _json, "html": _html,
 }  # fmt: skip

@@ -25,7 +25,8 @@ class Unreadable(Exception):
 
 @dataclass(frozen=True)
 class Rendered:
-    """``text`` of a file (the bytes of one that is no text), or None where there is none and ``failure`` says why.
+    """``text`` of a file (the bytes of one that is no text), or None where there is none and ``failure`` says why (no
+    failure: it was not wanted).
 
     ``withheld`` are the problems that it cannot show, with why.
     """
@@ -38,11 +39,13 @@ class Rendered:
 
 def rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> tuple[Rendered, ...]:
     """A target's files, its companions with it: all of them, or none."""
-    files = tuple(_rendered(part, analysis, problems) for part in (target, *target.companions))
+    wanted = [part for part in target.companions if part.wanted(analysis, problems)]
+    without = tuple(Rendered(part.filename, None) for part in target.companions if part not in wanted)
+    files = tuple(_rendered(part, analysis, problems) for part in (target, *wanted))
     failed = next((file for file in files if file.text is None), None)
     if failed is None:
-        return files
-    return tuple(Rendered(file.filename, None, file.failure or failed.failure) for file in files)
+        return files + without
+    return tuple(Rendered(file.filename, None, file.failure or failed.failure) for file in files) + without
 
 
 def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Rendered:

@@ -19,12 +19,17 @@ if TYPE_CHECKING:
 ANGLES = ("products", "sums", "shorter")
 
 
+def always(analysis: Analysis, problems: Sequence[int]) -> bool:
+    return True
+
+
 @dataclass(frozen=True)
 class Target:
     """``needs``: the problems whose results the file can hold (None: all); of these it shows those asked for.
 
     ``program``: it is made from the straight-line program, which is checked then.  ``companions`` are written beside
-    it, as a header is.  ``remark``: what is to be told of a file that was made here, or "".
+    it, as a header is, where they are ``wanted``: a part of a report is not, without what it would tell.  ``remark``:
+    what is to be told of a file that was made here, or "".
     """
 
     name: str
@@ -35,6 +40,7 @@ class Target:
     companions: tuple[Target, ...] = ()
     program: bool = False
     remark: Callable[[], str] | None = None
+    wanted: Callable[[Analysis, Sequence[int]], bool] = always
 
     @property
     def shows(self) -> tuple[int, ...]:
@@ -58,6 +64,44 @@ def _latex(analysis: Analysis, problems: Sequence[int]) -> str:
     from mbsym.report.latex_report import render
 
     return render(analysis, problems)
+
+
+def _appendix(analysis: Analysis, problems: Sequence[int]) -> str:
+    from mbsym.report.latex_appendix import render
+
+    return render(analysis, problems)
+
+
+def _fragment(name: str, number: int | None, title: str) -> Target:
+    """``fragments/NAME.tex``: of a problem, or of what is told besides."""
+
+    def text(analysis: Analysis, problems: Sequence[int]) -> str:
+        from mbsym.report.latex_appendix import fragment
+
+        return fragment(analysis, problems, name, title)
+
+    def wanted(analysis: Analysis, problems: Sequence[int]) -> bool:
+        if name in ("claims", "checks"):
+            return bool(getattr(analysis, name))
+        return number is None or number in problems
+
+    return Target(name, f"fragments/{name}.tex", None, f"a part of the appendix: {title}", text, wanted=wanted)
+
+
+_FRAGMENTS = (
+    ("system", None, "the system"),
+    ("diagram", None, "interconnection of the bodies"),
+    ("conventions", None, "conventions"),
+    ("kinematics", 1, "kinematics"),
+    ("energy", 2, "energy"),
+    ("equations", 3, "equations of motion"),
+    ("equilibrium", 4, "the unperturbed motion"),
+    ("linearisation", 5, "linearisation"),
+    ("stability", 6, "stability"),
+    ("integrals", 7, "first integrals"),
+    ("claims", None, "claims"),
+    ("checks", None, "self-check"),
+)
 
 
 def _wolfram(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -96,12 +140,18 @@ def _json(analysis: Analysis, problems: Sequence[int]) -> str:
     return render(analysis, problems)
 
 
+_IN_DOCUMENTS = (
+    Target("appendix", "appendix.tex", None, "an appendix for anyone's document", _appendix),
+    *(_fragment(*one) for one in _FRAGMENTS),
+)
 _HEADER = Target("header", "model.h", (), "declarations of the C source", _c_header)
 
 TARGETS = {
     target.name: target
     for target in (
-        Target("latex", "report.tex", None, "an appendix for pdflatex", _latex),
+        Target(
+            "latex", "report.tex", None, "a report for pdflatex, with appendix.tex and fragments", _latex, _IN_DOCUMENTS
+        ),
         Target("wolfram", "report.wl", None, "definitions in the Wolfram Language", _wolfram),
         Target(
             "python",

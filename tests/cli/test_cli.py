@@ -37,6 +37,8 @@ def test_run_writes_all_reports(tmp_path: Path) -> None:
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
         "report.tex",
+        "appendix.tex",
+        "fragments",
         "report.wl",
         "model.py",
         "model.c",

@@ -24,7 +24,17 @@ from mbsym_cli.main import main
 ROOT = Path(__file__).parents[2]
 PENDULUM = ROOT / "systems" / "simple-pendulum.yaml"
 HOSTILE = ROOT / "tests" / "cases" / "hostile"
-FILES = {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json"}
+FILES = {
+    "report.tex",
+    "appendix.tex",
+    "fragments",
+    "report.html",
+    "report.wl",
+    "model.py",
+    "model.c",
+    "model.h",
+    "results.json",
+}
 
 
 def run(*words: object) -> Result:
@@ -66,8 +76,8 @@ def test_in_a_problem(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert found["reason"] == "internal error: OverflowError: planted"
     independent = {"kinematics", "energy"} - set(PLACES[number].split("."))
     assert independent <= set(results) or number == 2
-    for name in FILES:
-        assert not unreadable(name, (tmp_path / name).read_text())
+    for path in tmp_path.rglob("*.*"):
+        assert not unreadable(path.relative_to(tmp_path).as_posix(), path.read_text())
 
 
 def test_the_traceback_is_there_for_who_wants_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,7 +162,7 @@ def test_in_a_whole_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     done = run(PENDULUM, "-o", tmp_path)
     assert done.exit_code == 1
     assert "report.tex cannot be written: internal error: OverflowError: planted" in done.stderr
-    assert names(tmp_path) == (FILES | {MANIFEST}) - {"report.tex"}
+    assert names(tmp_path) == (FILES | {MANIFEST}) - {"report.tex", "appendix.tex", "fragments"}
 
 
 @pytest.mark.parametrize(

@@ -406,3 +406,38 @@ def test_a_planted_link_is_not_followed(command: list[str], tmp_path: Path, monk
     assert done.exit_code == 1
     assert "is a link that leads out of reports" in done.stderr
     assert not list(victim.iterdir())
+
+
+# --- one folder inside ---
+
+
+def test_a_set_with_a_folder_inside_is_delivered_whole(tmp_path):
+    deliver(tmp_path, {"a.tex": "1", "parts/b.tex": "2", "parts/c.tex": "3"}, "run")
+    assert (tmp_path / "parts" / "b.tex").read_text() == "2"
+    assert {name for _, found in files.read_manifest(tmp_path) for name in found} == {
+        "a.tex",
+        "parts/b.tex",
+        "parts/c.tex",
+    }
+    (tmp_path / "parts" / "own.tex").write_text("mine")
+    deliver(tmp_path, {"a.tex": "4"}, "run")
+    assert [path.name for path in (tmp_path / "parts").iterdir()] == ["own.tex"]
+    (tmp_path / "parts" / "own.tex").unlink()
+    deliver(tmp_path, {"parts/b.tex": "5"}, "run")
+    deliver(tmp_path, {"a.tex": "6"}, "run")
+    assert not (tmp_path / "parts").exists()
+
+
+def test_a_folder_inside_is_no_way_out(tmp_path):
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "parts").symlink_to(outside)
+    with pytest.raises(NotADirectoryError):
+        deliver(out, {"a.tex": "1", "parts/b.tex": "2"}, "run")
+    assert not list(outside.iterdir())
+    assert not (out / "a.tex").exists()
+    for name in ("../a", "a/../../b", "a/b/c", "/a", "a//b", ".mbsym/a"):
+        with pytest.raises(ValueError, match="names of files"):
+            deliver(out, {name: "1"}, "run")

@@ -201,7 +201,17 @@ def test_a_signal_during_a_batch_leaves_whole_reports(tmp_path: Path) -> None:
     _, said = child.communicate(timeout=30)
     assert child.returncode == 143, said
     assert said == "interrupted; what has been written is whole\n"
-    names = {"report.tex", "report.wl", "model.py", "model.c", "model.h", "results.json", ".mbsym.json"}
+    names = {
+        "report.tex",
+        "appendix.tex",
+        "fragments",
+        "report.wl",
+        "model.py",
+        "model.c",
+        "model.h",
+        "results.json",
+        ".mbsym.json",
+    }
     for folder in tmp_path.iterdir():
         assert {path.name for path in folder.iterdir()} in (names, set())
 

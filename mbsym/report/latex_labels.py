@@ -1,0 +1,64 @@
+"""Labels of equations and sections: ``mbsym:NAME:eq:M``, one each, with the name of the system in it."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Collection
+
+_LONGEST = 40
+
+
+def slug(name: str) -> str:
+    """A system's name in labels: small letters, digits and hyphens; a hash where nothing of it can stand there."""
+    plain = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:_LONGEST].rstrip("-")
+    return plain or "system-" + hashlib.sha256(name.encode()).hexdigest()[:8]
+
+
+def prefix_of(name: str) -> str:
+    """What every label of a system begins with."""
+    return f"mbsym:{slug(name)}:"
+
+
+class Labels:
+    """Hands out labels with one prefix, none of them twice."""
+
+    def __init__(self, prefix: str) -> None:
+        self.prefix = prefix
+        self._taken: set[str] = set()
+
+    def equation(self, key: str) -> str:
+        return self._free(f"{self.prefix}eq:{key}")
+
+    def section(self, key: str) -> str:
+        return self._free(f"{self.prefix}sec:{key}" if key else f"{self.prefix}sec")
+
+    def _free(self, label: str) -> str:
+        found, count = label, 2
+        while found in self._taken:
+            found, count = f"{label}:{count}", count + 1
+        self._taken.add(found)
+        return found
+
+
+_LABEL = re.compile(r"\\(label|ref|eqref|pageref)\{([^{}]*)\}")
+
+
+def labels(text: str) -> list[str]:
+    """Every label that a text sets, in order."""
+    return [match[2] for match in _LABEL.finditer(text) if match[1] == "label"]
+
+
+def with_prefix(text: str, old: str, new: str) -> str:
+    """The text with labels, and references to them, that begin with ``new`` instead of ``old``."""
+    return _LABEL.sub(
+        lambda m: f"\\{m[1]}{{{new + m[2].removeprefix(old) if m[2].startswith(old) else m[2]}}}", text
+    ).replace(f"every label begins with {old}", f"every label begins with {new}")
+
+
+def free_prefix(prefix: str, taken: Collection[str]) -> str:
+    """The prefix, or one like it that is not taken."""
+    found, count = prefix, 2
+    while found in taken:
+        found, count = f"{prefix.rstrip(':')}-{count}:", count + 1
+    return found

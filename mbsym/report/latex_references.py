@@ -1,0 +1,77 @@
+"""Literature behind the theorems of problem 6, of which a report lists those that it names, and the system's source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from mbsym.problems.stability import Stability
+from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+
+
+@dataclass(frozen=True)
+class Reference:
+    """``key`` is that of ``\\cite``; ``text`` is LaTeX."""
+
+    key: str
+    text: str
+
+
+_LITERATURE = {
+    "lagrange": r"J.-L. Lagrange, \textit{M\'ecanique analytique}, Paris, 1788.",
+    "dirichlet": (
+        r"G. Lejeune Dirichlet, \"Uber die Stabilit\"at des Gleichgewichts, "
+        r"\textit{J. reine angew. Math.} \textbf{32} (1846), 85--88."
+    ),
+    "routh": (
+        r"E. J. Routh, \textit{A Treatise on the Stability of a Given State of Motion}, Macmillan, London, 1877."
+    ),
+    "thomson-tait": (
+        r"W. Thomson, P. G. Tait, \textit{Treatise on Natural Philosophy}, Cambridge University Press, 1879."
+    ),
+    "chetaev": r"N. G. Chetayev, \textit{The Stability of Motion}, Pergamon Press, Oxford, 1961.",
+    "lyapunov": (
+        r"A. M. Lyapunov, \textit{The General Problem of the Stability of Motion}, Kharkov, 1892; "
+        r"English translation: Taylor \& Francis, London, 1992."
+    ),
+    "malkin": (
+        r"I. G. Malkin, \textit{Theory of Stability of Motion}, Gostekhizdat, Moscow, 1952; "
+        r"English translation: US Atomic Energy Commission, AEC-tr-3352, 1958."
+    ),
+}
+
+#: The key of the system's source.
+SOURCE = "source"
+
+_OF_THEOREM = {
+    LAGRANGE: ("lagrange", "dirichlet"),
+    ROUTH: ("routh",),
+    KELVIN_CHETAEV: ("thomson-tait", "chetaev"),
+    LYAPUNOV: ("lyapunov",),
+    MALKIN: ("lyapunov", "malkin"),
+    CHETAEV: ("chetaev",),
+    CONVERSE: ("lyapunov", "chetaev"),
+}
+
+
+def keys_of(theorem: str) -> tuple[str, ...]:
+    """The keys of a theorem's literature; nothing for a name that is not listed."""
+    return _OF_THEOREM.get(theorem, ())
+
+
+def theorems_named(found: Stability) -> Iterator[str]:
+    """Every theorem that problem 6 names, in the order of the report, with repetitions."""
+    for part in found.subsystems:
+        yield from (case.verdict.theorem for case in part.theory.cases if not case.never)
+        yield part.theory.verdict.theorem
+    yield found.verdict.theorem
+    if found.numerical is not None:
+        yield found.numerical.theorem
+
+
+def references(found: Stability | None, source: str = "") -> tuple[Reference, ...]:
+    """The literature that is needed, each once: the ``source`` of the system (in LaTeX), and that of the theorems."""
+    named = [] if found is None else list(theorems_named(found))
+    keys = dict.fromkeys(key for theorem in named for key in keys_of(theorem))
+    own = (Reference(SOURCE, source),) if source else ()
+    return own + tuple(Reference(key, text) for key, text in _LITERATURE.items() if key in keys)

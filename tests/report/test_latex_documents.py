@@ -1,0 +1,167 @@
+"""LaTeX in the hands of its consumer: pdflatex says nothing against the report, nor against its parts in documents of
+others, be their columns wide or narrow."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.report.latex_appendix import joined
+from mbsym.report.latex_labels import labels, slug
+from mbsym.report.parsing import unreadable
+from mbsym.report.rendering import rendered
+from mbsym.report.targets import TARGETS
+from mbsym.source.meaning import meaning
+from tests.conftest import SHIPPED, needs_pdflatex
+
+SYSTEMS = ("satellite.yaml", "double-pendulum.yaml", "heavy-top.yaml")
+CLASSES = {
+    "article": r"\documentclass{article}",
+    "two columns": r"\documentclass[twocolumn]{article}",
+    "revtex4-2": r"\documentclass[aps,pre,twocolumn,10pt]{revtex4-2}",
+}
+PREAMBLE = "\\usepackage[utf8]{inputenc}\n\\usepackage[T1]{fontenc}\n\\usepackage{amsmath}\n\\usepackage{tikz}\n"
+
+
+@cache
+def files_of(name: str) -> dict[str, str]:
+    return written(mbsym.load(SHIPPED / name))
+
+
+def written(analysis: Analysis) -> dict[str, str]:
+    found = rendered(TARGETS["latex"], analysis, analysis.problems)
+    assert not [file.failure for file in found if file.failure]
+    return {file.filename: file.text for file in found if file.text is not None}
+
+
+def complaints(folder: Path, runs: int = 3) -> list[str]:
+    """What pdflatex has against ``main.tex`` in a folder after so many runs; it must compile."""
+    for _ in range(runs):
+        command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "main.tex"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=120)
+        assert done.returncode == 0, done.stdout[-2000:]
+    log = (folder / "main.log").read_text(errors="replace")
+    return [line for line in log.split("\n") if re.match(r"(Over|Under)full|!|.*Warning", line)]
+
+
+def has(document_class: str) -> bool:
+    """Whether TeX finds the class."""
+    name = re.search(r"\{([\w-]+)\}$", document_class)[1]
+    return subprocess.run(["kpsewhich", f"{name}.cls"], capture_output=True).returncode == 0
+
+
+@needs_pdflatex
+def test_the_report_compiles_without_a_word(tmp_path: Path) -> None:
+    (tmp_path / "main.tex").write_text(files_of("satellite.yaml")["report.tex"])
+    assert complaints(tmp_path) == []
+
+
+@needs_pdflatex
+@pytest.mark.parametrize("which", CLASSES)
+def test_appendices_of_a_folder_in_documents_of_others(which: str, tmp_path: Path) -> None:
+    if not has(CLASSES[which]):
+        pytest.skip(f"no {which}")
+    whole = joined([files_of(name)["appendix.tex"] for name in SYSTEMS])
+    assert not unreadable("appendix.tex", whole)
+    (tmp_path / "appendix.tex").write_text(whole)
+    body = "Text of the author.\n\\section{Own}\n\\appendix\\input{appendix}\n"
+    text = f"{CLASSES[which]}\n{PREAMBLE}\\begin{{document}}\n{body}\\end{{document}}\n"
+    (tmp_path / "main.tex").write_text(text)
+    assert complaints(tmp_path, 2) == []
+    # What the author set before is as it was: no paragraph is ragged or without indentation afterwards.
+    aux = (tmp_path / "main.aux").read_text()
+    assert len(re.findall(r"\\newlabel\{mbsym:", aux)) == len(labels(whole))
+
+
+@needs_pdflatex
+def test_fragments_stand_where_they_are_put_and_change_nothing_around(tmp_path: Path) -> None:
+    files = files_of("satellite.yaml")
+    parts = [name for name in files if name.startswith("fragments/")]
+    assert len(parts) == 12
+    (tmp_path / "fragments").mkdir()
+    for name in parts:
+        (tmp_path / name).write_text(files[name])
+    kept = r"\typeout{kept \the\parindent, \the\parskip, \the\rightskip, \the\emergencystretch, \the\binoppenalty}"
+    body = "\n".join(f"\\subsection{{Part}}\\input{{{name}}}" for name in parts)
+    text = f"{CLASSES['two columns']}\n{PREAMBLE}\\begin{{document}}\n{kept}\n{body}\n{kept}\n\\end{{document}}\n"
+    (tmp_path / "main.tex").write_text(text)
+    assert complaints(tmp_path, 2) == []
+    before, after = re.findall(r"^kept .*$", (tmp_path / "main.log").read_text(errors="replace"), re.MULTILINE)
+    assert before == after
+
+
+def test_parts_have_no_preamble_no_macro_and_labels_of_their_own() -> None:
+    for name in SYSTEMS:
+        files = files_of(name)
+        prefix = f"mbsym:{slug(mbsym.load(SHIPPED / name).system.name)}:"
+        for part in [key for key in files if key != "report.tex"]:
+            text = files[part]
+            assert not re.search(r"\\((re)?newcommand|def|let|usepackage|documentclass|begin\{document)\b", text)
+            assert all(label.startswith(prefix) for label in labels(text))
+            assert "Needs amsmath" in text.split("\n")[2]
+            assert prefix in text.split("\n")[2]
+    fragments = [label for key, text in files_of(SYSTEMS[0]).items() if "/" in key for label in labels(text)]
+    for texts in (fragments, labels(joined([files_of(name)["appendix.tex"] for name in (*SYSTEMS, SYSTEMS[1])]))):
+        assert texts
+        assert [label for label, count in Counter(texts).items() if count > 1] == []
+
+
+def test_two_systems_of_one_name_have_labels_of_their_own() -> None:
+    text = files_of("double-pendulum.yaml")["appendix.tex"]
+    whole = joined([text, text, text])
+    assert not unreadable("appendix.tex", whole)
+    assert len(labels(whole)) == 3 * len(labels(text))
+    assert unreadable("appendix.tex", text + text), "the planted repetition of all labels"
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_version_and_description_are_at_the_foot(name: str) -> None:
+    digest = meaning(mbsym.load(SHIPPED / name, ()).system)
+    text = files_of(name)["report.tex"]
+    foot = text.partition(r"\@oddfoot}")[2].partition("\n\\title")[0]
+    assert digest in foot
+    assert mbsym.__version__ in foot
+    other = mbsym.loads((SHIPPED / name).read_text().replace("name: ", "name: Other ", 1), ())
+    assert meaning(other.system) not in text
+
+
+@needs_pdflatex
+def test_the_foot_is_printed(tmp_path: Path) -> None:
+    if shutil.which("pdftotext") is None:
+        pytest.skip("no pdftotext")
+    (tmp_path / "main.tex").write_text(files_of("double-pendulum.yaml")["report.tex"])
+    complaints(tmp_path, 2)
+    pages = subprocess.run(["pdftotext", "main.pdf", "-"], cwd=tmp_path, capture_output=True, text=True).stdout
+    first = pages.split("\f")[0]
+    assert meaning(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system) in first
+    assert "What was found" in first
+    assert "Contents" in first
+    assert all(str(number) in page.split("\n") for number, page in enumerate(pages.split("\f")[:-1], start=1))
+
+
+PLANTED = {
+    "an unknown command": (r"\displaystyle", r"\displaystile"),
+    "a label set twice": (":eq:U}", ":eq:A:zero}"),
+    "a missing brace": (r"\par\endgroup", r"}\par\endgroup"),
+    "a definition": (r"\par\endgroup", r"\def\x{1}\par\endgroup"),
+    "a package": (r"\par\endgroup", r"\usepackage{breqn}\par\endgroup"),
+    "an open group": (r"\par\endgroup", r"\par"),
+    "a dollar": (r"$\displaystyle", r"\displaystyle"),
+}
+
+
+@pytest.mark.parametrize("mistake", PLANTED)
+def test_planted_mistakes_are_caught(mistake: str) -> None:
+    text = files_of("satellite.yaml")["appendix.tex"]
+    assert not unreadable("appendix.tex", text)
+    right, wrong = PLANTED[mistake]
+    assert right in text
+    assert unreadable("appendix.tex", text.replace(right, wrong, 1)).startswith("line "), mistake
