@@ -27,6 +27,7 @@ from mbsym.report.functions import moving
 from mbsym.report.html_description import expression, load_in_words
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
+from mbsym.report.html_told import told_equations
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
@@ -77,6 +78,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis) if 3 in stages and 3 not in found else None,
+        told=told_equations(analysis) if 3 in found else None,
         variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         decided=_decided,

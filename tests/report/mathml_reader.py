@@ -29,19 +29,19 @@ def formulas(root: ET.Element) -> dict[str, list[Token]]:
     found: dict[str, list[Token]] = {}
     for line in root.iter("div"):
         if line.get("class") == "formula":
-            tokens = [token for part in line.iter("math") for token in _tokens_of(part)]
+            tokens = [token for part in line.iter("math") for token in tokens_of(part)]
             place = next((k for k, token in enumerate(tokens) if token == ("mo", "=")), None)
             if place is not None:
                 found["".join(str(value) for _, value in tokens[:place])] = tokens[place + 1 :]
     return found
 
 
-def _tokens_of(parent: ET.Element) -> list[Token]:
+def tokens_of(parent: ET.Element) -> list[Token]:
     """Children one after the other; what a function is applied to belongs together."""
     found: list[Token] = []
     for child in parent:
         if child.tag == "mrow" and found[-1:] == [("mo", APPLY)]:
-            found.append(("group", _tokens_of(child)))
+            found.append(("group", tokens_of(child)))
         else:
             found += _tokens(child)
     return found
@@ -61,17 +61,17 @@ def _tokens(node: ET.Element) -> Iterator[Token]:
         case "mspace":
             return
         case "mrow" | "math" | "mtd":
-            yield from _tokens_of(node)
+            yield from tokens_of(node)
         case "msup":
             yield from _tokens(node[0])
-            yield "power", _tokens_of(node[1]) if node[1].tag == "mrow" else list(_tokens(node[1]))
+            yield "power", tokens_of(node[1]) if node[1].tag == "mrow" else list(_tokens(node[1]))
         case "msubsup":
             yield "mi", f"{_name(node[0])}_{''.join(node[1].itertext())}"
             yield "power", list(_tokens(node[2]))
         case "mfrac":
             yield "fraction", (list(_tokens(node[0])), list(_tokens(node[1])))
         case "msqrt":
-            yield "root", _tokens_of(node)
+            yield "root", tokens_of(node)
         case "mtable":
             yield "table", [[list(_tokens(cell)) for cell in line] for line in node]
         case other:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from conftest import SHIPPED, browsed, needs_chromium, precision
 from flint import arb, fmpq
-from mathml_reader import Reader, formulas, tree, written
+from mathml_reader import Reader, formulas, tokens_of, tree, written
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -86,12 +86,54 @@ def test_formulas_are_worth_what_the_exact_results_are(name: str) -> None:
     assert checked >= len(analysis.system.coordinates) + 1
 
 
+def told_values(page: str, known: dict[str, arb]) -> dict[str, arb]:
+    """What is told through named intermediates, read from top to bottom: each line may use those above it."""
+    root = tree(page)
+    (problem,) = [section for section in root.iter("section") if section.get("id") == "problem-3"]
+    found = dict(known)
+    for line in (item for item in problem if item.tag == "div"):
+        equations: list[list[tuple[str, object]]] = []
+        for part in line.iter("math"):
+            tokens = tokens_of(part)
+            if ("mo", "=") in tokens:
+                equations.append([])
+            equations[-1] += tokens
+        for tokens in equations:
+            place = tokens.index(("mo", "="))
+            name = "".join(str(value) for _, value in tokens[:place])
+            found[name] = Reader(tokens[place + 1 :], found).value()
+    return found
+
+
+def test_what_is_told_through_intermediates_is_worth_the_same() -> None:
+    """From the first definition to M and f, read as a person would; a slip in a definition is seen below it."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    page = page_of(analysis, (3,))
+    assert page.count('class="formula told"') > 10
+    values = point(analysis, 11)
+    # What relations and prescribed motion determine is no free value: nu = omega0^2 R^3 is used from problem 4 on only.
+    with precision(200):
+        known = balls(analysis, values)
+        wanted_of = {
+            **{f"f_{k}": x for k, x in enumerate(analysis.equations.forcing, start=1)},
+            **{f"M_{i}{i}": analysis.equations.mass_matrix[i - 1, i - 1] for i in range(1, 6)},
+        }
+
+        def wrong(text: str) -> list[str]:
+            found = told_values(text, known)
+            return [name for name, x in wanted_of.items() if not found[name].overlaps(exact(analysis, x, values))]
+
+        assert wrong(page) == []
+        place = page.index("<mo>\u2212</mo>", page.index("Moment about the connection point that body 2"))
+        assert wrong(page[:place] + "<mo>+</mo>" + page[place + len("<mo>\u2212</mo>") :]) != []
+
+
 def test_a_wrong_sign_exponent_or_name_is_seen() -> None:
     """Each planted into the page: the reader finds another value, or nothing that it can read."""
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     page = page_of(analysis, (2, 3))
     values, source = point(analysis, 3), random.Random(1)
-    start = page.index("<div", page.index('id="problem-3"'))
+    start = page.index("<details><summary>The same, expanded")
     end = page.index("</section>", start)
     slips = (
         (r"<mo>\+</mo>", "<mo>\u2212</mo>"),
