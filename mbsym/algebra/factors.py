@@ -17,7 +17,7 @@ def irreducible_factors(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]
     Raises NoClosedForm where the number library refuses.
     """
     try:
-        unit, powers = _factored_among_its_own(p) if isinstance(p, fmpq_mpoly) else _factored(p)
+        unit, powers = _factored_among_its_own(p) if isinstance(p, fmpq_mpoly | fmpz_mpoly) else _factored(p)
         return unit, [(factor, int(exponent)) for factor, exponent in powers]
     except (ArithmeticError, ValueError, RuntimeError) as error:
         reason = f"a polynomial cannot be factored: {type(error).__name__}: {error}"
@@ -31,12 +31,42 @@ def _factored_among_its_own(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, 
     """
     whole = p.context()
     used = [k for k, degree in enumerate(p.degrees()) if degree > 0]
-    if not used or len(used) == whole.nvars():
+    if not used:
         return _factored(p)
-    names = whole.names()
-    unit, powers = _factored(p.project_to_context(fmpq_mpoly_ctx.get([names[k] for k in used], whole.ordering())))
-    own = [whole.gen(k) for k in used]
-    return unit, [(factor.compose(*own, ctx=whole), exponent) for factor, exponent in powers]
+    own = p
+    if len(used) < whole.nvars():
+        names = whole.names()
+        own = p.project_to_context(type(whole).get([names[k] for k in used], whole.ordering()))
+    if _is_irreducible(own):
+        unit = _content(p)
+        return unit, [(p / unit, 1)]
+    unit, powers = _factored(own)
+    if own is p:
+        return unit, powers
+    places = [whole.gen(k) for k in used]
+    return unit, [(factor.compose(*places, ctx=whole), exponent) for factor, exponent in powers]
+
+
+def _is_irreducible(p: Polynomial) -> bool:
+    """Whether p = a x + b in one of its generators, with a and b without a common factor: sufficient, quickly seen.
+
+    A factor of such a polynomial either does not hold x, and divides a and b, or its cofactor does.
+    """
+    for k, degree in enumerate(p.degrees()):
+        if degree == 1:
+            slope = p.derivative(k)
+            return bool(slope.is_constant() or slope.gcd(p - slope * p.context().gen(k)).is_constant())
+    return False
+
+
+def _content(p: Polynomial) -> Any:
+    """The number by which p has to be divided to be primitive, with whole coefficients and a positive leading one."""
+    coefficients = p.coeffs()
+    found = coefficients[0]
+    for coefficient in coefficients[1:]:
+        found = found.gcd(coefficient)
+    found = abs(found)
+    return found if coefficients[0] > 0 else -found
 
 
 def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:

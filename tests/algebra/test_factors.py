@@ -6,7 +6,7 @@ from math import prod
 from random import Random
 
 import pytest
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
@@ -37,17 +37,25 @@ def test_a_refusal_is_a_failure_with_its_limit() -> None:
     assert refused.value.limit is Limit.FACTORS
 
 
-def test_a_wide_context_has_the_factors_that_the_library_finds_there() -> None:
-    """Factored among the generators that occur, and by the library in all hundred: the same, in the same order."""
-    wide = fmpq_mpoly_ctx.get([f"x{k}" for k in range(100)], Ordering.lex)
-    source = Random(3)
-    for _ in range(60):
-        own = source.sample(wide.gens(), source.randint(1, 4))
-        product = wide.constant(fmpq(source.choice((-6, 1, 5)), 7))
+@pytest.mark.parametrize("over", CONTEXTS)
+@pytest.mark.parametrize("generators", [4, 100])
+def test_the_factors_are_those_that_the_library_finds_by_itself(over: str, generators: int) -> None:
+    """Factored among the generators that occur, or seen to be irreducible: the same, in the same order."""
+    context = CONTEXTS[over].get([f"x{k}" for k in range(generators)], Ordering.lex)
+    source, irreducible = Random(3), 0
+    for _ in range(150):
+        own = source.sample(context.gens(), source.randint(1, 4))
+        product = context.constant(source.choice((-6, 1, 5)))
         for _ in range(source.randint(1, 3)):
-            part = sum(
-                (source.randint(-3, 3) * x * source.choice(own) for x in own), wide.constant(source.randint(1, 4))
-            )
+            part = context.constant(source.randint(-4, 4))
+            for x in own:
+                part += source.randint(-3, 3) * x * source.choice(own) ** source.randint(0, 1)
             product *= part ** source.randint(1, 2)
+        if over == "rationals":
+            product = product / 7
+        if product.is_zero():
+            continue
         unit, powers = product.factor()
         assert irreducible_factors(product) == (unit, list(powers))
+        irreducible += len(powers) == 1 and powers[0][1] == 1
+    assert 10 < irreducible < 100
