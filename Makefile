@@ -11,7 +11,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery robots robot-data bench clean
+.PHONY: all lint types test demo systems gallery robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -66,6 +66,10 @@ robots: robot-data
 
 robot-data: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'
+
+# Who reads the exports, for their tests: 700 MB.
+consumers: $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[consumers]'
 
 bench: robot-data
 	$(BIN)/python tests/bench/run.py

@@ -171,3 +171,29 @@ def _replaced(text: str, pattern: re.Pattern[str], chance: Random, new: str, aft
         return text
     place = chance.choice(places)
     return text[: place.start()] + new + text[place.end() :]
+
+
+#: Changes of generated code that change what it computes at a random state: signs, products, entries, numbers, names.
+_CODE: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
+    (re.compile(r"(?<=[\w)\]]) \+ (?=[\w(])"), lambda _: " - "),
+    (re.compile(r"(?<=[\w)\]]) - (?=[\w(])"), lambda _: " + "),
+    (re.compile(r"(?<=[a-z\d])\*(?=[a-z])"), lambda _: " + "),
+    (re.compile(r"\bsin\("), lambda _: "cos("),
+    (re.compile(r"(?<=[ *+(-])s(\d+)(?=[*; )])"), lambda match: f"s{max(1, int(match[1]) - 1)}x"),
+    (re.compile(r"(?<=[*+/( -])(\d)\.(\d)"), lambda match: f"{int(match[1]) + 1}.{match[2]}"),
+)
+
+
+def corrupted(code: str, chance: Random) -> str:
+    """One sign, product, function, number or name of generated code is another."""
+    lines = code.split("\n")
+    places = [
+        (number, match, change(match))
+        for number, line in enumerate(lines)
+        if " = " in line and '"' not in line and "return" not in line
+        for pattern, change in _CODE
+        for match in pattern.finditer(line, line.index(" = ") + 3)
+    ]
+    number, match, new = chance.choice(places)
+    lines[number] = lines[number][: match.start()] + new + lines[number][match.end() :]
+    return "\n".join(lines)

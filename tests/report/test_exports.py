@@ -1,0 +1,492 @@
+"""Exports, each run by who reads it, against d'Alembert's principle and closed formulas at random states.
+
+Every check is run on corrupted files, too, and has to find each of them.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import math
+import re
+import shutil
+import subprocess
+import zipfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import SHIPPED
+from mutants import corrupted
+from test_reports import NASTY
+from truth_at_states import Point, differences, random_point, truth
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.report.exports import fmu
+from mbsym.report.exports.modelica import proposed
+from mbsym.report.parsing import unreadable
+from mbsym.report.targets import EXPORTS
+
+#: Functions of every kind, the time, a spring and a damper between points, a length that is driven.
+FUNCTIONS = """
+mbsym: 1
+name: Functions of 漢字 "kinds" \\ $x # % //
+parameters: {m: positive, end: positive, g: positive, k: {positive: true, value: 7/3}, model: positive, c: 0.1}
+prescribed: {lift: {rate: c, initial: end/3}}
+relations: {model: k**2/end}
+bodies:
+  - {name: "first/body", attached to: 0, connection point: [0, lift, 0], rotation: {axes: [3], angles: [phi]},
+     mass centre: [end, 0, 0], mass: m, inertia about: mass centre, inertia: [k, k, k]}
+  - {name: "end", attached to: "first/body", connection point: [u, 0, 0], coordinates: [u], mass: model}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - spring: {coordinate: u, stiffness: k, rest: end}
+  - damper: {coordinate: phi, coefficient: c}
+  - generalized force: {u: log(1 + u**2)*exp(-c*t) + atan(phi)/3, phi: tanh(u_dot) - sinh(phi)*cosh(u)/11}
+  - potential: sqrt(1 + u**2)*k
+motion: {phi: 0, u: 0}
+initial: {phi: {position: pi/6, velocity: 1/3}, u: {position: end/2}}
+"""
+#: Name -> description; how many states.
+SYSTEMS = {
+    "double-pendulum": 2,
+    "satellite": 1,
+    "satellite-with-damper-driven": 1,
+    "clebsch": 1,
+    "nasty": 1,
+    "functions": 2,
+}
+SMALL = ("double-pendulum", "functions")
+COMPILER = shutil.which("cc")
+
+
+@cache
+def analysis_of(name: str) -> Analysis:
+    own = {"nasty": NASTY, "functions": FUNCTIONS}
+    return mbsym.loads(own[name]) if name in own else mbsym.load(SHIPPED / f"{name}.yaml")
+
+
+@cache
+def points(name: str) -> list[Point]:
+    return [random_point(analysis_of(name), seed) for seed in range(SYSTEMS[name])]
+
+
+@cache
+def expected(name: str) -> list[dict[str, Any]]:
+    return [truth(analysis_of(name), point) for point in points(name)]
+
+
+@cache
+def text_of(name: str, kind: str) -> str:
+    analysis = analysis_of(name)
+    text = EXPORTS[kind].render(analysis, (7,))
+    assert isinstance(text, str)
+    assert not unreadable(EXPORTS[kind].filename, text)
+    return text
+
+
+# --- who reads them ---
+
+
+def module(text: str, folder: Path) -> Any:
+    path = folder / "exported.py"
+    path.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location("exported", path)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
+
+
+def by_casadi(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    pytest.importorskip("casadi")
+    functions = module(text, folder).functions()
+    return [
+        {key: np.array(function(at.t, list(at.x), list(at.p))) for key, function in functions.items()}
+        for at in points(name)
+    ]
+
+
+def by_jax(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    model = module(text, folder)
+    return [
+        {key: np.array(getattr(model, key)(at.t, np.array(at.x), np.array(at.p))) for key in wanted}
+        for at, wanted in zip(points(name), expected(name), strict=True)
+    ]
+
+
+def by_octave(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    if shutil.which("octave-cli") is None:
+        pytest.skip("no Octave")
+    (folder / "model.m").write_text(text, encoding="utf-8")
+    lines = ["m = model();"]
+    for at, wanted in zip(points(name), expected(name), strict=True):
+        lines += [f"t = {at.t!r}; x = {list(at.x)}; p = {list(at.p)};"]
+        lines += [f"printf('%.17g ', m.{key}(t, x, p)'); printf('\\n');" for key in wanted]
+    done = subprocess.run(
+        ["octave-cli", "--no-gui", "--norc", "--eval", " ".join(lines)], cwd=folder, capture_output=True, text=True
+    )
+    rows = iter(done.stdout.split("\n"))
+    found = []
+    for wanted in expected(name):
+        found.append({key: np.array(next(rows, "").split(), float) for key in wanted})
+    return found
+
+
+def by_julia(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    """Julia where it is installed; its functions translated line by line where it is not."""
+    if shutil.which("julia") is not None:
+        return by_julia_itself(text, name, folder)
+    functions = translated(text)
+    return [
+        {key: np.array(functions[key](at.t, np.array(at.x), np.array(at.p))) for key in wanted}
+        for at, wanted in zip(points(name), expected(name), strict=True)
+    ]
+
+
+def by_julia_itself(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    kind = re.findall(r"^module (\w+)$", text, re.MULTILINE)[0]
+    lines = [text]
+    for at, wanted in zip(points(name), expected(name), strict=True):
+        state = f"{at.t!r}, Float64{list(at.x)}, Float64{list(at.p)}"
+        lines += [f"println(join(permutedims([{kind}.{key}({state});;]), ' '))" for key in wanted]
+    (folder / "model.jl").write_text("\n".join(lines), encoding="utf-8")
+    done = subprocess.run(["julia", "--startup-file=no", "model.jl"], cwd=folder, capture_output=True, text=True)
+    rows = iter(done.stdout.split("\n"))
+    return [{key: np.array(next(rows, "").split(), float) for key in wanted} for wanted in expected(name)]
+
+
+def translated(text: str) -> dict[str, Any]:
+    """The functions of (t, x, p) of a module of Julia as functions of Python: what differs are indices and zeros."""
+    names: dict[str, Any] = {"np": np, "zeros": lambda _, *shape: np.zeros(shape)}
+    names |= {key: getattr(math, key) for key in ("sin", "cos", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")}
+    names |= dict.fromkeys(("promote_type", "typeof", "eltype"), lambda *_: None) | {"Float64": None}
+    for head, body in re.findall(r"^function (\w+\(t, x, p\))\n(.*?)^end\n", text, re.MULTILINE | re.DOTALL):
+        indexed = re.sub(r"\[([\d, ]+)\]", lambda m: str([int(k) - 1 for k in m[1].split(",")]), body)
+        indexed = re.sub(r"\[(\d+), (\d+)\]", r"[\1][\2]", indexed)
+        if not head.startswith("right_hand_side"):
+            exec(f"def {head}:\n{indexed}", names)
+    return names
+
+
+def by_modelica(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    """Parsed by pymoca, which gives left - right of all equations; as no variable needs itself, they are solved by
+    putting right sides in place of left ones until nothing changes."""
+    pytest.importorskip("pymoca")
+    casadi = pytest.importorskip("casadi")
+    from pymoca.backends.casadi import generator
+    from pymoca.backends.casadi.api import transfer_model
+
+    generator.OP_MAP["/"] = "__truediv__"  # pymoca says __div__, which Python no longer has
+    casadi.MX.atan = casadi.MX.arctan  # it looks for Modelica's own names
+    (folder / "model.mo").write_text(text, encoding="utf-8")
+    model = transfer_model(str(folder), re.findall(r"^model (\w+)", text)[0], {"cache": False})
+    residual, system = model.dae_residual_function, analysis_of(name).system
+    states, slopes, others = ([v.symbol for v in part] for part in (model.states, model.der_states, model.alg_states))
+    assert len(states) == len(slopes) == 2 * len(system.coordinates)
+    places = {key.name(): k for k, key in enumerate(slopes)}
+    for symbol in others:
+        first, size = len(places), symbol.numel()
+        places |= {f"{symbol.name()}[{k + 1}]" if size > 1 else symbol.name(): first + k for k in range(size)}
+    left = re.findall(r"^  (\S+) = ", text.partition("equation\n")[2], re.MULTILINE)
+    order = [places[key] for key in left]
+    assert sorted(order) == list(range(len(places)))
+    parameters = [v.symbol.name() for v in model.parameters]
+    own_names = [proposed(key) for key in system.parameter_names]
+    found = []
+    for at in points(name):
+        given = dict(zip(own_names, at.p, strict=True))
+        p = [given[key] for key in parameters]
+        values = np.ones(len(places))
+        for _ in range(len(places) + 2):
+            sides = residual(at.t, at.x, values[: len(slopes)], values[len(slopes) :], [], [], p)
+            new = values[order] - np.array(sides).ravel()
+            new[~np.isfinite(new)] = 1.0
+            if np.array_equal(values[order], new):
+                break
+            values[order] = new
+        own: dict[str, Any] = {"accelerations": values[len(slopes) // 2 : len(slopes)]}
+        own |= {key: values[places[key]] for key in ("energy", "generalized_energy")}
+        own["integrals"] = [values[k] for key, k in places.items() if key.startswith("integral_")]
+        for key, stem in (("joints", "joint"), ("mass_centres", "centre")):
+            bodies = range(1, len(system.bodies) + 1)
+            own[key] = [[values[places[f"{stem}{k}[{axis}]"]] for axis in (1, 2, 3)] for k in bodies]
+        found.append(own)
+    return found
+
+
+Reader = Callable[[str, str, Path], list[dict[str, Any]]]
+READERS: dict[str, Reader] = {
+    "casadi": by_casadi,
+    "jax": by_jax,
+    "octave": by_octave,
+    "julia": by_julia,
+    "modelica": by_modelica,
+}
+#: Modelica's tools make these themselves.
+LEFT = {"modelica": {"mass_matrix", "forcing", "jacobian"}}
+
+
+def wrong(kind: str, text: str, name: str, folder: Path) -> list[str]:
+    found = READERS[kind](text, name, folder)
+    wanted = [{key: value for key, value in one.items() if key not in LEFT.get(kind, ())} for one in expected(name)]
+    return [key for own, one in zip(found, wanted, strict=True) for key in differences(own, one)]
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("kind", READERS)
+def test_numbers_are_those_of_mechanics(kind: str, name: str, tmp_path: Path) -> None:
+    assert wrong(kind, text_of(name, kind), name, tmp_path) == []
+
+
+@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("kind", READERS)
+def test_a_corrupted_file_is_found(kind: str, name: str, tmp_path: Path) -> None:
+    text, computed = text_of(name, kind), 0
+    for seed in range(4):
+        chance = Random(f"{kind} {name} {seed}")
+        changed = corrupted(text, chance)
+        assert changed != text
+        if unreadable(EXPORTS[kind].filename, changed):
+            continue
+        try:
+            assert wrong(kind, changed, name, tmp_path), changed
+            computed += 1
+        except (NameError, RuntimeError, ValueError, TypeError, AttributeError, IndexError, KeyError):
+            continue  # its reader refuses it
+    assert computed
+
+
+# --- values, states, what is missing ---
+
+
+def test_parameters_and_states_are_the_description_s(tmp_path: Path) -> None:
+    """lift = c t + end/3, model = k^2/end; m, end and g have no value and must be given."""
+    for kind in ("casadi", "jax"):
+        pytest.importorskip(kind)
+        model = module(text_of("functions", kind), tmp_path)
+        with pytest.raises(ValueError, match=r"no value for m, end, g, model$"):
+            model.parameters()
+        with pytest.raises(ValueError, match="no parameter mm"):
+            model.parameters(mm=1)
+        p = model.parameters(m=1, end=2, g=3)
+        assert p == pytest.approx([1, 2, 3, 7 / 3, 49 / 18, 0.1], rel=1e-15)
+        assert model.parameters(m=1, end=2, g=3, model=5)[4] == 5
+        assert model.initial_state(p) == pytest.approx([math.pi / 6, 1.0, 1 / 3, 0.0], rel=1e-15)
+    assert "parameter Real m;" in text_of("functions", "modelica")
+    assert "parameter Real model_ = k*k/end_;" in text_of("functions", "modelica")
+
+
+@pytest.mark.skipif(shutil.which("octave-cli") is None, reason="no Octave")
+def test_octave_takes_parameters_by_name(tmp_path: Path) -> None:
+    (tmp_path / "model.m").write_text(text_of("functions", "octave"), encoding="utf-8")
+    code = """m = model(); try, m.parameters(struct()); catch e, disp(e.message); end
+    given = struct('m', 1, 'g', 3); given.('end') = 2; p = m.parameters(given);
+    printf('%.17g ', p, m.initial_state(p));
+    [~, x] = ode45(@(t, x) m.right_hand_side(t, x, p), [0 0.1], m.initial_state(p)); disp(size(x, 2));"""
+    done = subprocess.run(
+        ["octave-cli", "--no-gui", "--norc", "--eval", code], cwd=tmp_path, capture_output=True, text=True
+    )
+    first, numbers = done.stdout.strip().split("\n")
+    assert first == "no value for m, end, g, model"
+    expected_ = [1, 2, 3, 7 / 3, 49 / 18, 0.1, math.pi / 6, 1, 1 / 3, 0, 4]
+    assert [float(x) for x in numbers.split()] == pytest.approx(expected_, rel=1e-15)
+
+
+# --- FMUs ---
+
+needs_compiler = pytest.mark.skipif(fmu.compiler() is None, reason="no C compiler")
+
+
+def unzipped(content: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+class Instance:
+    """An FMU of either version, ready to be asked at a point."""
+
+    def __init__(self, path: Path, version: int) -> None:
+        fmpy = pytest.importorskip("fmpy")
+        self.description = fmpy.read_model_description(str(path))
+        folder = fmpy.extract(str(path), unzipdir=str(path.with_suffix("")))
+        kind = {2: "fmi2.FMU2Model", 3: "fmi3.FMU3Model"}[version].split(".")
+        made = getattr(importlib.import_module(f"fmpy.{kind[0]}"), kind[1])
+        identifier = self.description.modelExchange.modelIdentifier
+        self.version = version
+        self.model = made(
+            guid=self.description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="it"
+        )
+        self.model.instantiate()
+        self.references = {item.name: item.valueReference for item in self.description.modelVariables}
+
+    def set(self, name: str, value: float) -> None:
+        (self.model.setReal if self.version == 2 else self.model.setFloat64)([self.references[name]], [value])
+
+    def get(self, name: str) -> float:
+        return float((self.model.getReal if self.version == 2 else self.model.getFloat64)([self.references[name]])[0])
+
+    def start(self, at: float = 0.0) -> None:
+        if self.version == 2:
+            self.model.setupExperiment(startTime=at)
+            self.model.enterInitializationMode()
+        else:
+            self.model.enterInitializationMode(startTime=at)
+        self.model.exitInitializationMode()
+
+
+def by_fmu(path: Path, version: int, name: str) -> list[dict[str, Any]]:
+    """x' by its states, energies, and J by seeds of one column each."""
+    system, found = analysis_of(name).system, []
+    names = [*system.coordinates, *system.velocities]
+    for at in points(name):
+        instance = Instance(path, version)
+        related = {item.name for item in system.relations}
+        for key, value in zip(system.parameter_names, at.p, strict=True):
+            if key not in related:
+                instance.set(key, value)
+        for key, value in zip(names, at.x, strict=True):
+            instance.set(key, value)
+        instance.start(at.t)
+        unknowns = [instance.references[f"der({key})"] for key in names]
+        knowns = [instance.references[key] for key in names]
+        derivative = instance.model.getDirectionalDerivative
+        columns = [derivative(unknowns, [known], [1.0]) for known in knowns]
+        found.append(
+            {
+                "accelerations": [instance.get(f"der({key})") for key in system.velocities],
+                "jacobian": np.array(columns, float).T,
+                "energy": instance.get("energy"),
+                "generalized_energy": instance.get("generalized_energy"),
+            }
+        )
+        instance.model.freeInstance()
+    return found
+
+
+def related_points(name: str, monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """The truth where parameters keep to their relations, as in an FMU: these points take the place of the others."""
+    from fractions import Fraction
+
+    from mbsym.numerics.scenario import exact
+
+    system, kept = analysis_of(name).system, []
+    for at in points(name):
+        known = dict(zip(system.parameter_names, map(Fraction, at.p), strict=True))
+        for _ in system.relations:
+            known |= {item.name: exact(item.value, known) for item in system.relations}
+        kept.append(Point(at.t, at.x, tuple(float(known[key]) for key in system.parameter_names)))
+    monkeypatch.setitem(globals(), "points", lambda _: kept)
+    keys = ("accelerations", "jacobian", "energy", "generalized_energy")
+    return [{key: truth(analysis_of(name), at)[key] for key in keys} for at in kept]
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", ["double-pendulum", "functions"])
+def test_an_fmu_is_valid_and_its_numbers_are_those_of_mechanics(
+    version: int, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("fmpy")
+    from fmpy.validation import validate_fmu
+
+    path = tmp_path / "model.fmu"
+    content = EXPORTS[f"fmu{version}"].render(analysis_of(name), ())
+    assert isinstance(content, bytes)
+    assert not unreadable("model.fmu", content)
+    path.write_bytes(content)
+    assert validate_fmu(str(path)) == []
+    wanted = related_points(name, monkeypatch)
+    found = by_fmu(path, version, name)
+    assert [differences(own, one) for own, one in zip(found, wanted, strict=True)] == [[]] * len(wanted)
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_fmu_moves_as_the_simulation_does(version: int, tmp_path: Path) -> None:
+    fmpy = pytest.importorskip("fmpy")
+    path = tmp_path / "model.fmu"
+    content = EXPORTS[f"fmu{version}"].render(analysis_of("double-pendulum"), ())
+    path.write_bytes(bytes(content))
+    run = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 3, tolerance=1e-12)
+    names = ["theta1", "theta2"]
+    result = fmpy.simulate_fmu(
+        str(path), stop_time=3, solver="CVode", relative_tolerance=1e-10, output=names, output_interval=0.1
+    )
+    assert [result[key][-1] for key in names] == pytest.approx([run[key][-1] for key in names], abs=1e-6)
+
+
+@needs_compiler
+def test_an_fmu_wants_what_has_no_value(tmp_path: Path) -> None:
+    pytest.importorskip("fmpy")
+    for version in (2, 3):
+        path = tmp_path / f"model{version}.fmu"
+        path.write_bytes(bytes(EXPORTS[f"fmu{version}"].render(analysis_of("functions"), ())))
+        instance = Instance(path, version)
+        instance.set("m", 1.0)
+        instance.set("end", 2.0)
+        assert instance.get("model") == pytest.approx(49 / 18, rel=1e-15)
+        assert math.isnan(instance.get("g"))
+        with pytest.raises(Exception, match="ExitInitializationMode"):
+            instance.start()
+        with pytest.raises(Exception, match="Set"):
+            instance.set("model", 1.0)
+
+
+@needs_compiler
+def test_a_corrupted_source_of_an_fmu_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("fmpy")
+    wanted = related_points("double-pendulum", monkeypatch)
+    files = fmu.sources(analysis_of("double-pendulum"), 2)
+    head, mark, code = files["sources/model.c"].decode().partition("double double_pendulum_energy(")
+    for seed in range(3):
+        changed = corrupted(code, Random(f"fmu {seed}"))
+        broken = files | {"sources/model.c": (head + mark + changed).encode()}
+        path = tmp_path / f"{seed}.fmu"
+        try:
+            path.write_bytes(fmu._zip(broken | fmu._library(analysis_of("double-pendulum"), broken, 2)))
+        except RuntimeError:
+            continue  # the compiler refuses it
+        found = by_fmu(path, 2, "double-pendulum")
+        assert any(differences(own, one) for own, one in zip(found, wanted, strict=True)), changed
+
+
+def test_the_same_fmu_whenever_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the same compiler even the binary; without one the sources alone, and that is told."""
+    first, again = (EXPORTS["fmu3"].render(mbsym.load(SHIPPED / "simple-pendulum.yaml"), ()) for _ in range(2))
+    assert first == again
+    monkeypatch.setattr(fmu, "compiler", lambda: None)
+    without = EXPORTS["fmu3"].render(mbsym.load(SHIPPED / "simple-pendulum.yaml"), ())
+    assert not any(name.startswith("binaries") for name in unzipped(bytes(without)))
+    assert "sources/buildDescription.xml" in unzipped(bytes(without))
+    assert "no C compiler" in fmu.remark()
+    assert not unreadable("model.fmu", without)
+    assert unreadable("model.fmu", without[:-30])
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("version", [2, 3])
+def test_sources_of_an_fmu_compile_without_a_warning(version: int, compiler: str, tmp_path: Path) -> None:
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no {compiler}")
+    for name in ("nasty", "functions"):
+        for path, content in fmu.sources(analysis_of(name), version).items():
+            (tmp_path / Path(path).name).write_bytes(content)
+        options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"]
+        done = subprocess.run([compiler, *options, f"fmi{version}.c"], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def test_exports_are_made_only_where_they_are_named() -> None:
+    from mbsym.report.targets import FORMATS, TARGETS
+
+    assert not TARGETS.keys() & EXPORTS.keys()
+    assert FORMATS.keys() == TARGETS.keys() | EXPORTS.keys()
