@@ -252,7 +252,7 @@ class _Presenter:
         product = product._replace(coefficient=product.coefficient / scale)
         if under:
             return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
-        return _opened(product)
+        return self._opened(product)
 
     def _as_fraction(self, polynomial: Polynomial, angles: Angles) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
@@ -494,7 +494,7 @@ class _Presenter:
         products: list[Product] = []
         for (over, under), heads in shared.items():
             products += self._shared(over, under, heads, factored)
-        return _tidy(products)
+        return _tidy(self._consistent(products))
 
     def _shared(
         self, over: tuple[Factor, ...], under: tuple[Factor, ...], heads: Terms, factored: bool
@@ -508,7 +508,7 @@ class _Presenter:
                 products.append(self._times(self._assembled(coefficient, head, [], False), over, under))
             else:
                 product = self._signed(Product(fmpq(coefficient), over, under))
-                products += _opened(product).terms if abs(coefficient) == 1 else [product]
+                products += self._opened(product).terms if abs(coefficient) == 1 else [product]
         return products
 
     def _times(self, product: Product, over: Sequence[Factor], under: Sequence[Factor]) -> Product:
@@ -524,6 +524,34 @@ class _Presenter:
                 factor, coefficient = Factor(original, factor.exponent), -coefficient
             over.append(factor)
         return Product(coefficient, tuple(over), product.under) if coefficient != product.coefficient else product
+
+    def _consistent(self, products: Sequence[Product]) -> list[Product]:
+        """No bracket in one term and its negative in another: (A - B)*x - (A - B)*y."""
+        held = {f.base for product in products for f in product.over if isinstance(f.base, Sum)}
+        if not held:
+            return list(products)
+        return [
+            self._unsigned(product)
+            if any(isinstance(f.base, Sum) and self._turned.get(f.base) in held for f in product.over)
+            else product
+            for product in products
+        ]
+
+    def _opened(self, product: Product) -> Sum:
+        """A lone bracket without its brackets, unless its content is worth standing in front."""
+        if product.under or len(product.over) != 1:
+            return Sum((product,))
+        (factor,) = product.over
+        if not isinstance(factor.base, Sum) or factor.exponent != 1:
+            return Sum((product,))
+        content = product.coefficient
+        terms = [Product(content * term.coefficient, term.over, term.under) for term in factor.base.terms]
+        broken = sum(term.coefficient.q != 1 for term in terms)
+        if abs(content.p) != 1 or 2 * broken > len(terms):
+            return Sum((product,))
+        terms = self._consistent([self._signed(term) for term in terms]) if content < 0 else terms
+        inner = [self._opened(term).terms if abs(term.coefficient) == 1 else (term,) for term in terms]
+        return _tidy([term for opened in inner for term in opened])
 
     def _signed(self, product: Product) -> Product:
         """With its minus sign in a bracket that has one already."""
@@ -791,18 +819,3 @@ def _tidy(products: Sequence[Product]) -> Sum:
     first = next((i for i, product in enumerate(ordered) if product.coefficient > 0), 0)
     ordered.insert(0, ordered.pop(first))
     return Sum(tuple(ordered))
-
-
-def _opened(product: Product) -> Sum:
-    """A lone bracket without its brackets, unless its content is worth standing in front."""
-    if product.under or len(product.over) != 1:
-        return Sum((product,))
-    (factor,) = product.over
-    if not isinstance(factor.base, Sum) or factor.exponent != 1:
-        return Sum((product,))
-    content = product.coefficient
-    terms = [Product(content * term.coefficient, term.over, term.under) for term in factor.base.terms]
-    broken = sum(term.coefficient.q != 1 for term in terms)
-    if abs(content.p) != 1 or 2 * broken > len(terms):
-        return Sum((product,))
-    return _tidy([inner for term in terms for inner in (_opened(term).terms if abs(term.coefficient) == 1 else [term])])

@@ -177,7 +177,7 @@ def test_what_differs_by_its_sign_is_one_bracket(text, brackets):
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_no_sum_of_a_system_has_a_bracket_and_its_negative_with_one_cofactor(name):
+def test_no_sum_of_a_system_has_a_bracket_and_its_negative(name):
     analysis = mbsym.load(SHIPPED / f"{name}.yaml")
     for number in (1, 2, 3):
         for formula in formulas(analysis.stage(number).value):
@@ -195,7 +195,7 @@ def test_without_the_joining_such_brackets_are_seen(monkeypatch):
 
 
 def opposite(shape: Sum) -> bool:
-    """Whether two terms of a sum, or of a sum in it, could be joined: all but one factor alike, that one negated."""
+    """Whether in a sum, or a sum in it, there is a bracket in one term and its negative in another."""
     for place, one in enumerate(shape.terms):
         for factor in (*one.over, *one.under):
             if isinstance(factor.base, Sum) and opposite(factor.base):
@@ -207,12 +207,10 @@ def opposite(shape: Sum) -> bool:
 
 
 def negatives(one: Product, two: Product) -> bool:
-    first = {key(factor.base): factor for factor in one.over if isinstance(factor.base, Sum)}
-    second = [factor for factor in two.over if isinstance(factor.base, Sum)]
-    return any(key(factor.base, -1) in first and key(factor.base) not in first for factor in second) and not (
-        {factor.base for factor in one.over if not isinstance(factor.base, Sum)}
-        ^ {factor.base for factor in two.over if not isinstance(factor.base, Sum)}
-    )
+    """A common bracket stands in front of what it multiplies, so its negative cannot stand beside it."""
+    first = {key(factor.base) for factor in one.over if isinstance(factor.base, Sum)}
+    second = [factor.base for factor in two.over if isinstance(factor.base, Sum)]
+    return any(key(bracket, -1) in first for bracket in second)
 
 
 def key(shape: Sum, sign: int = 1) -> frozenset:
