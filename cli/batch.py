@@ -30,6 +30,13 @@ _MEGABYTE = 2**20
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
+@click.option(
+    "--output-format",
+    type=click.Choice(("text", "github", "sarif", "junit", "json")),
+    default="text",
+    show_default=True,
+    help="Standard output for people, or for a program: annotations, a log, cases, an object a finding.",
+)
 @click.option("--quiet", "-q", is_flag=True, help="Print only complaints.")
 def command(
     folders: tuple[Path, ...],
@@ -45,6 +52,7 @@ def command(
     formats: str,
     terms: str,
     strict_claims: bool,
+    output_format: str,
     quiet: bool,
 ) -> None:
     """Derive every description in each FOLDER, and in the folders in it, and write a summary.
@@ -57,8 +65,10 @@ def command(
     version of mbsym, and every file as it was written.  A batch that was stopped or killed goes on where it was.
 
     OUT/summary.json has what became of everything: outcomes, verdicts, claims, self-checks, complaints with their
-    places, digests of the files.  Exit code, that of the worst: 0 everything holds, 1 a self-check failed, or an
-    internal error or a crash, 2 a description has errors, 4 a budget was met, 130 interrupted.
+    places, digests of the files; index.html shows it, junit.xml and mbsym.sarif tell it to CI systems.
+
+    Exit code, that of the worst: 0 everything holds, 1 a self-check failed, or an internal error or a crash, 2 a
+    description has errors, 4 a budget was met, 130 interrupted.
 
     \b
     Examples:
@@ -99,6 +109,7 @@ def command(
         strict_claims=strict_claims,
         changed=changed,
         quiet=quiet,
+        output_format=output_format,
     )
     sys.exit(run(request))
 

@@ -10,12 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mbsym
+from mbsym.batch import index_page, junit
 from mbsym.batch.coordinator import Batch, Place
 from mbsym.batch.digests import derivation
+from mbsym.batch.findings import findings
 from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
 from mbsym.batch.summary_json import FILENAME, summary_text
 from mbsym.batch.task import Asked, Budget
 from mbsym.expressions.counting import counted
+from mbsym.report.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch_folders import Found, chosen, found_in, share
 from mbsym_cli.batch_machine import memory_is_bounded
 from mbsym_cli.batch_store import FolderStore
@@ -43,6 +46,7 @@ class Request:
     strict_claims: bool = False
     changed: bool = False
     quiet: bool = False
+    output_format: str = "text"
 
 
 def run(request: Request) -> int:
@@ -63,7 +67,9 @@ def run(request: Request) -> int:
         print("--memory has no effect here: this system has no such bound", file=sys.stderr)
     summary, stopped = _summed_up(request, places, found, started)
     write_files(request, summary)
-    if not request.quiet:
+    if request.output_format != "text":
+        sys.stdout.write(_for_programs(request, summary))
+    elif not request.quiet:
         where = printable(request.out / summary_name(request))
         print(f"{totals(summary)}; {summary.seconds:.2f} s; {where}")
     if stopped:
@@ -77,7 +83,7 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
     version = derivation()
     refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
     width = max((len(printable(place.file)) for place in places), default=0)
-    told = watcher(len(places), width, request.quiet, request.changed)
+    told = watcher(len(places), width, request.quiet or request.output_format != "text", request.changed)
     store = FolderStore(request.out, request.asked, version)
     batch = Batch(places, store, told, request.budget, request.fail_fast, request.strict_claims)
     stopped = False
@@ -115,15 +121,35 @@ def _executor(request: Request) -> Executor:
 
 def summary_name(request: Request) -> str:
     """``summary.json``; of one of several parts ``summary-3-of-8.json``."""
+    return _of_part(request, FILENAME)
+
+
+def _of_part(request: Request, name: str) -> str:
     if request.shard is None:
-        return FILENAME
-    stem, dot, ending = FILENAME.partition(".")
+        return name
+    stem, dot, ending = name.partition(".")
     return "{}-{}-of-{}{}{}".format(stem, *request.shard, dot, ending)
 
 
 def summary_files(request: Request, summary: Summary) -> Mapping[str, str]:
     """The files about the whole batch, by their names in its folder."""
-    return {summary_name(request): summary_text(summary)}
+    name = summary_name(request)
+    return {
+        name: summary_text(summary),
+        _of_part(request, junit.FILENAME): junit.junit(summary),
+        _of_part(request, "mbsym.sarif"): sarif(findings(summary), summary.version),
+        _of_part(request, index_page.FILENAME): index_page.index_page(summary, name),
+    }
+
+
+def _for_programs(request: Request, summary: Summary) -> str:
+    """Standard output for a program that reads it."""
+    found = findings(summary)
+    if request.output_format == "junit":
+        return junit.junit(summary)
+    if request.output_format == "sarif":
+        return sarif(found, summary.version)
+    return github_annotations(found) if request.output_format == "github" else json_lines(found)
 
 
 def write_files(request: Request, summary: Summary) -> None:

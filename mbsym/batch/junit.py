@@ -1,0 +1,117 @@
+"""``junit.xml``: a suite a description; a case for its reading, each problem, claim and self-check.
+
+A case has failed where something of the description's is wrong (it has errors, a self-check disagrees, a claim is
+refuted where claims must hold), an error where mbsym or a budget ended it, and is skipped where there is no answer and
+none is owed: a problem without a closed form, a claim that is undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from mbsym.batch.outcome import ClaimRow, Outcome, Row, Summary
+from mbsym.expressions.safe import safe
+
+FILENAME = "junit.xml"
+
+#: Outcomes that are no fault of the description.
+_ENDED = (Outcome.CRASHED, Outcome.TIMEOUT, Outcome.MEMORY, Outcome.NOT_WRITTEN, Outcome.INCOMPLETE)
+_UNTRIED = (Outcome.SKIPPED, Outcome.INTERRUPTED)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """``kind`` is "" for what holds, else failure, error or skipped, with what to say."""
+
+    name: str
+    kind: str = ""
+    message: str = ""
+    text: str = ""
+
+
+def junit(summary: Summary) -> str:
+    """The file's text; the times are those of the batch, 0 for what was up to date."""
+    suites = Element("testsuites", {"name": "mbsym"})
+    totals = {"tests": 0, "failures": 0, "errors": 0}
+    for row in summary.rows:
+        for key, count in _suite(suites, row, summary).items():
+            totals[key] += count
+    suites.attrib |= {key: str(count) for key, count in totals.items()} | {"time": f"{summary.seconds:.3f}"}
+    indent(suites)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(suites, encoding="unicode") + "\n"
+
+
+def _suite(suites: Element, row: Row, summary: Summary) -> dict[str, int]:
+    """One description; how many cases there are, and how many did not hold."""
+    found = list(cases(row, strict=row.outcome is Outcome.CLAIMS))
+    count = {kind: sum(case.kind == kind for case in found) for kind in ("failure", "error", "skipped")}
+    seconds = 0.0 if row.cached else row.seconds
+    numbers = {"tests": len(found), "failures": count["failure"], "errors": count["error"]}
+    told = {key: str(value) for key, value in numbers.items()}
+    attributes = {"name": safe(row.file), **told, "skipped": str(count["skipped"]), "time": f"{seconds:.3f}"}
+    suite = SubElement(suites, "testsuite", attributes)
+    properties = SubElement(suite, "properties")
+    shown = {
+        "system": row.name,
+        "outcome": str(row.outcome),
+        "mbsym": summary.version,
+        "cached": str(row.cached).lower(),
+    }
+    for name, value in shown.items():
+        SubElement(properties, "property", {"name": name, "value": safe(value)})
+    for case in found:
+        element = SubElement(suite, "testcase", {"classname": safe(row.file), "name": safe(case.name), "time": "0"})
+        if case.kind:
+            inner = SubElement(element, case.kind, {"message": safe(case.message)})
+            if case.kind != "skipped":
+                inner.set("type", "mbsym")
+                inner.text = _lines(case.text or case.message)
+    return numbers
+
+
+def _lines(text: str) -> str:
+    return "\n".join(safe(line) for line in text.split("\n"))
+
+
+def cases(row: Row, strict: bool = False) -> Iterator[Case]:
+    """The cases of one description.  ``strict``: a claim that is not proved to hold has failed."""
+    yield _reading(row)
+    if row.outcome in _ENDED:
+        told = row.message or "; ".join(row.notes)
+        yield Case("derivation", "error", f"{row.outcome}: {told}" if told else str(row.outcome), "\n".join(row.notes))
+    elif row.outcome in _UNTRIED:
+        yield Case("derivation", "skipped", str(row.outcome))
+    for problem in row.problems:
+        name = f"problem {problem.number}: {problem.title}"
+        reason = problem.reason or problem.code or ""
+        kind = "" if problem.status == "derived" else "error" if problem.defect else "skipped"
+        yield Case(name, kind, reason, "\n".join(filter(None, (reason, problem.hint))))
+    for number, claim in enumerate(row.claims, start=1):
+        yield _claim(number, claim, strict)
+    for check in row.checks:
+        kind = "failure" if check.failed else "skipped" if check.outcome == "undecided" else ""
+        told = f"{check.first} against {check.second}: {check.outcome}"
+        yield Case(f"self-check: {check.name}", kind, told, f"{told}\n{check.detail}")
+
+
+def _reading(row: Row) -> Case:
+    errors = [one for one in row.complaints if one.severity == "error"]
+    if not errors:
+        return Case("description")
+    places = [f"{row.file}:{one.line}:{one.column}: " if one.line else f"{row.file}: " for one in errors]
+    lines = [
+        f"{place}{one.code}: {one.message}" + (f" (hint: {one.hint})" if one.hint else "")
+        for place, one in zip(places, errors, strict=True)
+    ]
+    return Case("description", "failure", lines[0], "\n".join(lines))
+
+
+def _claim(number: int, claim: ClaimRow, strict: bool) -> Case:
+    """A refuted claim is a finding, no failure, unless claims must hold: it is skipped with its reason."""
+    name = f"claim {number}: " + (f"{claim.place}: " if claim.place else "") + claim.title
+    if claim.word == "held":
+        return Case(name)
+    kind = "failure" if strict else "skipped"
+    return Case(name, kind, f"{claim.word}: {claim.outcome}", "\n".join([claim.outcome, *claim.lines]))
