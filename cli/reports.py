@@ -46,6 +46,7 @@ class Request:
     brief: bool = False
     width: int = 0
     angles: Angles | None = None  # None: what each kind of text usually has
+    animate: float | None = None  # the time until which report.html shows the motion
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -73,13 +74,14 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
     from mbsym.formulas.shape import angles_as
+    from mbsym.report.html_motion import animated
 
     started = time.perf_counter()
     analysis = Analysis(system, request.problems, request.terms)
     found = None
     with status(request.quiet) as say:
         derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))
-        with angles_as(request.angles):
+        with angles_as(request.angles), animated(request.animate):
             files = list(rendered_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}")))
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:

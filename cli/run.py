@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     help="products, sums or shorter: sin and cos of sums of angles in every file.  [default: the shorter form of each "
     "formula for people, products for programs]",
 )
+@click.option("--animate", metavar="T", help="The motion from 0 to T in report.html, in three dimensions.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
@@ -42,6 +43,7 @@ def command(
     out: Path | None,
     terms: str,
     angles: str | None,
+    animate: str | None,
     strict_claims: bool,
     brief: bool,
     ledger: bool,
@@ -57,7 +59,7 @@ def command(
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
     unless --strict-claims is given.
 
-    Formats: latex, wolfram, python, c, json are all of them; the exports casadi, jax, octave (MATLAB too), julia,
+    Formats: latex, wolfram, python, c, html, json are all of them; the exports casadi, jax, octave (MATLAB too), julia,
     modelica, fmu2 and fmu3 are made where they are named.
 
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
@@ -66,9 +68,13 @@ def command(
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.
 
+    With --animate T the equations are integrated from the description's initial state and values (as 'mbsym simulate'
+    does), and report.html shows the moving bodies with time controls; where a number is missing it says which.
+
     \b
     Examples:
       mbsym run systems/satellite.yaml
+      mbsym run systems/satellite.yaml --animate 20
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --ledger
@@ -83,6 +89,10 @@ def command(
     kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
     form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
     budget = asked.whole("--terms", terms, 1, 10**12)
+    until = asked.number("--animate", animate)
+    if animate is not None and "html" not in kinds:
+        hint = "add html to --format, or use 'mbsym simulate --animate'"
+        asked.complain("--animate", "conflicting-options", "the motion is shown in report.html", hint)
     if asked.complaints or budget is None:
         for path in paths:
             read_description(path)
@@ -90,7 +100,16 @@ def command(
         sys.exit(BAD_INPUT)
     width = max(len(path.name) for path in paths)
     request = Request(
-        shown_by(kinds) if chosen is None else chosen, kinds, budget, quiet, strict_claims, ledger, brief, width, form
+        shown_by(kinds) if chosen is None else chosen,
+        kinds,
+        budget,
+        quiet,
+        strict_claims,
+        ledger,
+        brief,
+        width,
+        form,
+        until,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

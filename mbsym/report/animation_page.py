@@ -43,16 +43,21 @@ def animation_page(found: Animation, run: Simulation) -> str:
     start = dict(zip([*system.coordinates, *system.velocities], map(float, run.scenario.state), strict=True))
     parameters = [(item.name, f"{float(values[item.name]):.9g}", item.meaning) for item in system.parameters]
     parameters += [(name, f"{value:.9g}", "initial value") for name, value in start.items()]
-    shown = motion(found, tuple(_sentences(found, run)))
     return page(
         "animation.html.j2",
         {},
         ("motion.js",),
         system=system,
-        motion=replace(shown, drift_of=run.conservation.quantity),
+        motion=run_motion(found, run),
         parameters=parameters,
         version=__version__,
     )
+
+
+def run_motion(found: Animation, run: Simulation) -> Motion:
+    """What the template needs of a run, with what is to be said of it."""
+    shown = motion(found, tuple(_sentences(found, run)))
+    return replace(shown, drift_of=run.conservation.quantity)
 
 
 def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:

@@ -27,6 +27,7 @@ from mbsym.report.functions import moving
 from mbsym.report.html_description import expression, load_in_words
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
+from mbsym.report.html_motion import asked_motion
 from mbsym.report.html_told import told_equations
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
@@ -64,13 +65,16 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "printed": lambda value: expression(value, printed),
         "printed_name": lambda name: Markup(str(printed[name])),
         "load": lambda value: load_in_words(value, names),
-        "motion": lambda: _motion(analysis, names),
+        "unperturbed": lambda: _motion(analysis, names),
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
+    motion, no_motion = asked_motion(system)
     return page(
         "report.html.j2",
         known,
-        ("report.js",),
+        ("report.js", "motion.js") if motion is not None else ("report.js",),
+        motion=motion,
+        no_motion=no_motion,
         system=system,
         accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},

@@ -22,7 +22,9 @@ from mbsym.report.animation import Animation, animation, projection, view
 from mbsym.report.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.animation_page import animation_page
 from mbsym.report.figures import figures
+from mbsym.report.html_motion import animated
 from mbsym.report.parsing import unreadable
+from mbsym.report.targets import TARGETS
 from mbsym.simulation import Simulation
 
 
@@ -219,3 +221,26 @@ def test_figures_as_pdf_can_be_read(tmp_path: Path) -> None:
         assert done.stderr == b""
         with Image.open(tmp_path / f"{name}-1.png") as image:
             assert len(image.convert("L").getcolors()) > 10
+
+
+# --- in report.html ---
+
+
+@needs_chromium
+def test_the_report_shows_the_motion_where_that_is_asked_for(tmp_path: Path) -> None:
+    """Nothing is integrated unless it is; then the page moves; a missing number is named."""
+    analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
+    assert "motion-canvas" not in TARGETS["html"].render(analysis, (3,))
+    with animated(3.0):
+        text = TARGETS["html"].render(analysis, (3,))
+    assert unreadable("report.html", text) == ""
+    (tmp_path / "report.html").write_text(text, encoding="utf-8")
+    dom, said = browsed(tmp_path / "report.html")
+    assert said == []
+    assert ">Pause</button>" in dom
+    assert "Integrated from t = 0 to 3 by" in dom
+    bare = mbsym.loads((SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").split("initial:")[0])
+    with animated(3.0):
+        text = TARGETS["html"].render(bare, (3,))
+    assert "No motion is shown: no value for theta1 (its initial position)" in text
+    assert "motion-canvas" not in text
