@@ -91,7 +91,7 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
         for text in complaints(row):
             told.complain(text)
     try:
-        batch.run(lambda: _executor(request))
+        batch.run(lambda tasks: _executor(request, tasks))
     except KeyboardInterrupt:
         stopped = True
     finally:
@@ -113,10 +113,10 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
     return summary, stopped
 
 
-def _executor(request: Request) -> Executor:
+def _executor(request: Request, tasks: int) -> Executor:
     from mbsym.batch.executor import Local
 
-    return Local(request.jobs)
+    return Local(request.jobs, tasks, request.asked.formats)
 
 
 def summary_name(request: Request) -> str:

@@ -79,15 +79,15 @@ class Batch:
         self._fail_fast, self._strict_claims = fail_fast, strict_claims
         self._failed = False
 
-    def run(self, executor: Callable[[], Executor]) -> None:
-        """Until every place has its row.  An executor is made only where something has to be derived.
+    def run(self, executor: Callable[[int], Executor]) -> None:
+        """Until every place has its row.  An executor is made where something has to be derived, for so many tasks.
 
         Raises KeyboardInterrupt when the batch is stopped: then no process is left, and ``rows`` has every place.
         """
         try:
             waiting = [place for place in self.places if not self._up_to_date(place)]
             if waiting and not self._stopped:
-                self._derive(waiting, executor())
+                self._derive(waiting, executor(len(waiting)))
             self._rest(Outcome.SKIPPED)
         finally:
             self._rest(Outcome.INTERRUPTED)

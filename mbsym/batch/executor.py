@@ -6,7 +6,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Protocol
 
 from mbsym.batch.isolation import Processes, isolated
+from mbsym.batch.nursery import Nursery, available
 from mbsym.batch.task import Budget, Finished, Task
+
+#: From so many tasks on it pays to load everything once.
+_WORTH_A_NURSERY = 3
 
 
 class Executor(Protocol):
@@ -28,12 +32,13 @@ class Executor(Protocol):
 
 
 class Local:
-    """Processes of this machine, ``jobs`` at a time."""
+    """Processes of this machine, ``jobs`` at a time; forked from one that has loaded everything, where that pays."""
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, tasks: int = 1, formats: tuple[str, ...] = ()) -> None:
         self.width = jobs
         self._threads = ThreadPoolExecutor(jobs, thread_name_prefix="mbsym-batch")
-        self._processes = Processes()
+        self._nursery = Nursery(formats) if tasks >= _WORTH_A_NURSERY and available() else None
+        self._processes = Processes(self._nursery)
 
     def submit(self, task: Task, budget: Budget) -> Future[Finished]:
         return self._threads.submit(isolated, task, budget, self._processes)
@@ -41,3 +46,5 @@ class Local:
     def close(self) -> None:
         self._processes.close()
         self._threads.shutdown(wait=True, cancel_futures=True)
+        if self._nursery is not None:
+            self._nursery.close()

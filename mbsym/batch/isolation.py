@@ -10,11 +10,15 @@ import threading
 import time
 from contextlib import suppress
 from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
 
 from mbsym.batch.outcome import Outcome, Row
 from mbsym.batch.task import Budget, Finished, Task
 from mbsym.batch.transport import MALFORMED, read_finished, task_text
-from mbsym.batch.worker import OUT_OF_MEMORY
+from mbsym.batch.worker import OUT_OF_MEMORY, SINGLE
+
+if TYPE_CHECKING:
+    from mbsym.batch.nursery import Nursery
 
 #: What libraries write before they abort for want of memory: FLINT, C++, LLVM, Python itself.
 _MEMORY_WORDS = ("unable to allocate", "bad_alloc", "out of memory", "memoryerror", "cannot allocate memory")
@@ -22,45 +26,97 @@ _MEMORY_WORDS = ("unable to allocate", "bad_alloc", "out of memory", "memoryerro
 #: So much of what a process wrote before it died is told.
 _LAST_WORDS = 300
 
-#: One thread of arithmetic a process: there are as many processes as the machine has work for.
-_SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+class Running(Protocol):
+    """A process with its task."""
+
+    def talk(self, seconds: float | None) -> tuple[int | None, bytes, bytes] | None:
+        """How it ended, its answer and its complaints; None where it was late, and is ended."""
+        ...
+
+    def kill(self) -> None:
+        """Ends it."""
+        ...
 
 
-class Processes:
-    """Those that run, so that all can be ended at once."""
+class Fresh:
+    """A process that begins with nothing loaded."""
 
-    def __init__(self) -> None:
-        self._running: set[subprocess.Popen[bytes]] = set()
-        self._lock = threading.Lock()
-        self.closed = False
-
-    def start(self, command: list[str], lifeline: int) -> subprocess.Popen[bytes] | None:
-        """A process in a group of its own; None after ``close``."""
-        with self._lock:
-            if self.closed:
-                return None
-            process = subprocess.Popen(
-                command,
+    def __init__(self, task: Task, memory: int | None) -> None:
+        self._task = task
+        inner, self._lifeline = os.pipe()
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "mbsym.batch.worker", str(memory or 0), str(inner)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env=os.environ | _SINGLE,
-                pass_fds=(lifeline,) if os.name == "posix" else (),
+                env=os.environ | SINGLE,
+                pass_fds=(inner,) if os.name == "posix" else (),
                 start_new_session=True,
             )
-            self._running.add(process)
-            return process
+        except BaseException:
+            os.close(self._lifeline)
+            raise
+        finally:
+            os.close(inner)
 
-    def ended(self, process: subprocess.Popen[bytes]) -> None:
+    def talk(self, seconds: float | None) -> tuple[int | None, bytes, bytes] | None:
+        try:
+            answer, said = self._process.communicate(task_text(self._task).encode(), timeout=seconds)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            self._process.communicate()
+            return None
+        finally:
+            self.kill()
+            self._process.wait()
+            os.close(self._lifeline)
+        return self._process.returncode, answer, said
+
+    def kill(self) -> None:
+        """With everything that it started."""
+        if self._process.returncode is not None:  # its number may be somebody else's by now
+            return
+        with suppress(OSError):
+            if os.name == "posix":
+                os.killpg(self._process.pid, signal.SIGKILL)
+            else:
+                self._process.kill()
+
+
+class Processes:
+    """Those that run, so that all can be ended at once; from a ``nursery`` where there is one."""
+
+    def __init__(self, nursery: Nursery | None = None) -> None:
+        self._nursery = nursery
+        self._running: set[Running] = set()
+        self._lock = threading.Lock()
+        self.closed = False
+
+    def start(self, task: Task, memory: int | None) -> Running | None:
+        """A process for a task; None after ``close``.  Raises OSError where there can be none."""
         with self._lock:
-            self._running.discard(process)
+            if self.closed:
+                return None
+            running: Running | None = None
+            if self._nursery is not None and self._nursery.lives:
+                with suppress(OSError):
+                    running = self._nursery.begin(task, memory)
+            running = running or Fresh(task, memory)
+            self._running.add(running)
+            return running
+
+    def ended(self, running: Running) -> None:
+        with self._lock:
+            self._running.discard(running)
 
     def close(self) -> None:
         """Ends those that run, and lets no other one begin."""
         with self._lock:
             self.closed = True
-            for process in self._running:
-                kill(process)
+            for running in self._running:
+                running.kill()
 
 
 def isolated(task: Task, budget: Budget, processes: Processes | None = None) -> Finished:
@@ -75,49 +131,35 @@ def isolated(task: Task, budget: Budget, processes: Processes | None = None) -> 
 
 
 def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
-    inner, outer = os.pipe()
     try:
-        command = [sys.executable, "-P", "-m", "mbsym.batch.worker", str(budget.memory or 0), str(inner)]
-        try:
-            process = processes.start(command, inner)
-        except OSError as error:
-            return _failed(task, Outcome.CRASHED, f"its process cannot be started: {error.strerror or error}")
-        if process is None:
-            return _failed(task, Outcome.INTERRUPTED)
-        late = False
-        try:
-            answer, said = _talked(process, task, budget.seconds)
-        except subprocess.TimeoutExpired:
-            late = True
-            kill(process)
-            answer, said = process.communicate()
-        finally:
-            kill(process)
-            process.wait()
-            processes.ended(process)
+        running = processes.start(task, budget.memory)
+    except OSError as error:
+        return _failed(task, Outcome.CRASHED, f"its process cannot be started: {error.strerror or error}")
+    if running is None:
+        return _failed(task, Outcome.INTERRUPTED)
+    try:
+        ended = running.talk(budget.seconds)
     finally:
-        os.close(inner)
-        os.close(outer)
-    if late:
+        processes.ended(running)
+    if ended is None:
         return _failed(task, Outcome.TIMEOUT, f"stopped after {budget.seconds:g} s")
-    if process.returncode == 0:
+    code, answer, said = ended
+    if code == 0:
         with suppress(*MALFORMED):
             return read_finished(answer)
     if processes.closed:
         return _failed(task, Outcome.INTERRUPTED)
-    return _ended(task, budget, process.returncode, said.decode("utf-8", "replace"))
+    return _ended(task, budget, code, said.decode("utf-8", "replace"))
 
 
-def _talked(process: subprocess.Popen[bytes], task: Task, seconds: float | None) -> tuple[bytes, bytes]:
-    return process.communicate(task_text(task).encode(), timeout=seconds)
-
-
-def _ended(task: Task, budget: Budget, code: int, said: str) -> Finished:
+def _ended(task: Task, budget: Budget, code: int | None, said: str) -> Finished:
     """Why a process ended without an answer."""
     if code == OUT_OF_MEMORY or any(word in said.lower() for word in _MEMORY_WORDS):
         bound = f"more than {budget.memory // 2**20} MB were wanted" if budget.memory else "the memory was not enough"
         return _failed(task, Outcome.MEMORY, bound)
-    if code < 0:
+    if code is None:
+        what = "its process is gone"
+    elif code < 0:
         what = f"its process was ended by {_signal_name(-code)}"
     else:
         what = f"its process ended with code {code}"
@@ -134,14 +176,3 @@ def _signal_name(number: int) -> str:
         return signal.Signals(number).name
     except ValueError:
         return f"signal {number}"
-
-
-def kill(process: subprocess.Popen[bytes]) -> None:
-    """Ends a process with everything that it started."""
-    if process.returncode is not None:  # its number may be somebody else's by now
-        return
-    with suppress(OSError):
-        if os.name == "posix":
-            os.killpg(process.pid, signal.SIGKILL)
-        else:
-            process.kill()

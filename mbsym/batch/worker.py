@@ -9,29 +9,43 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from contextlib import suppress
+from typing import NoReturn
 
 #: The exit code of a process that met its bound on memory.
 OUT_OF_MEMORY = 75
 
+#: One thread of arithmetic a process: there are as many processes as the machine has work for.
+SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
 
 def main() -> None:
     memory, lifeline = map(int, sys.argv[1:])
-    _hang_on(lifeline)
-    _bounded(memory)
-    # What a library prints must not come between: the result has a way of its own.
-    with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
-        os.dup2(2, 1)
-        try:
-            from mbsym.batch.transport import finished_text, read_task
-            from mbsym.batch.work import work
+    answer = os.dup(1)
+    os.dup2(2, 1)  # what a library prints must not come between
+    attend(memory, lifeline, answer)
 
-            answer.write(finished_text(work(read_task(sys.stdin.read()))))
-            answer.flush()
-        except MemoryError:
-            os._exit(OUT_OF_MEMORY)
+
+def attend(memory: int, lifeline: int, answer: int) -> NoReturn:
+    """Reads a task from handle 0, writes what became of it to ``answer``, and ends the process."""
+    code = 1
+    try:
+        _hang_on(lifeline)
+        _bounded(memory)
+        from mbsym.batch.transport import finished_text, read_task
+        from mbsym.batch.work import work
+
+        with open(0, encoding="utf-8", closefd=False) as task, open(answer, "w", encoding="utf-8") as out:
+            out.write(finished_text(work(read_task(task.read()))))
+        code = 0
+    except MemoryError:
+        code = OUT_OF_MEMORY
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
     # What is left is to take down what was built up, for nobody.
-    os._exit(0)
+    os._exit(code)
 
 
 def _bounded(memory: int) -> None:

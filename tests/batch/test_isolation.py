@@ -20,11 +20,23 @@ pytestmark = needs_posix
 PATIENCE = 60.0
 
 
+def descendants(process: subprocess.Popen[str]) -> list[tuple[int, int, str]]:
+    """Everything that a batch has started, as the system lists it: number, generation, command."""
+    done = subprocess.run(["ps", "-A", "-o", "pid=,ppid=,args="], capture_output=True, text=True, check=True)
+    listed = [
+        (int(pid), int(parent), args) for pid, parent, args in (x.split(None, 2) for x in done.stdout.splitlines())
+    ]
+    found, generation = [], {process.pid}
+    for age in (1, 2, 3):
+        born = [(pid, age, args) for pid, parent, args in listed if parent in generation]
+        found, generation = found + born, {pid for pid, _, _ in born}
+    return found
+
+
 def children(process: subprocess.Popen[str]) -> list[int]:
-    """The processes of descriptions that run, as the system lists them."""
-    done = subprocess.run(["ps", "-A", "-o", "pid=,ppid="], capture_output=True, text=True, check=True)
-    pairs = [tuple(map(int, line.split())) for line in done.stdout.splitlines()]
-    return [pid for pid, parent in pairs if parent == process.pid]
+    """The processes of descriptions: begun by the batch itself, or by a nurse in the nursery."""
+    every = descendants(process)
+    return [pid for pid, age, args in every if (age == 1 and "mbsym.batch.worker" in args) or age == 3]
 
 
 def runs(pid: int) -> bool:
@@ -68,15 +80,16 @@ def test_a_budget_that_is_met_costs_a_row(tmp_path: Path) -> None:
     assert not (tmp_path / "out" / "big").exists()
 
 
-@pytest.mark.parametrize("number", [signal.SIGSEGV, signal.SIGKILL])
-def test_a_crash_costs_a_row(tmp_path: Path, number: signal.Signals) -> None:
-    folder_of(tmp_path / "in", big=chain(14), z=pendulum())
+@pytest.mark.parametrize(("number", "more"), [(signal.SIGSEGV, "xy"), (signal.SIGKILL, "x")])
+def test_a_crash_costs_a_row(tmp_path: Path, number: signal.Signals, more: str) -> None:
+    """From three descriptions on they are forked."""
+    folder_of(tmp_path / "in", big=chain(14), **{name: pendulum(name) for name in more})
     with started("in", "-o", "out", *QUICK, *ENDLESS, "--jobs", "1", cwd=tmp_path) as process:
         until(lambda: children(process))
         os.kill(children(process)[0], number)
         out, _ = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
-    assert outcomes(tmp_path / "out") == {"big": "crashed", "z": "derived"}
+    assert outcomes(tmp_path / "out") == {"big": "crashed", **dict.fromkeys(more, "derived")}
     assert f"its process was ended by {number.name}" in out
 
 
@@ -85,7 +98,7 @@ def test_a_batch_that_is_stopped_keeps_what_is_finished(tmp_path: Path, number: 
     folder_of(tmp_path / "in", a=pendulum(), big=chain(14), z=pendulum("Z"))
     with started("in", "-o", "out", *QUICK, *ENDLESS, "--jobs", "1", cwd=tmp_path) as process:
         until(lambda: (tmp_path / "out" / "a" / "outcome.json").exists() and children(process))
-        left = children(process)
+        left = [pid for pid, _, _ in descendants(process)]
         process.send_signal(number)
         _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == code
@@ -101,7 +114,8 @@ def test_a_batch_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     folder_of(tmp_path / "in", a=pendulum(), big=chain(14), z=pendulum("Z"))
     with started("in", "-o", "out", *QUICK, *ENDLESS, "--jobs", "1", cwd=tmp_path) as process:
         until(lambda: (tmp_path / "out" / "a" / "outcome.json").exists() and children(process))
-        left = children(process)
+        left = [pid for pid, _, _ in descendants(process)]
+        assert len(left) >= 3  # the nursery, a nurse and the process that derives
         time.sleep(1.0)  # into the algebra, which lets no other thread run
         process.kill()
         process.wait()
