@@ -29,6 +29,7 @@ _MEGABYTE = 2**20
 @click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show]")
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
+@click.option("--angles", metavar="FORM", help="Of formulas, as in run: products, sums or shorter.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option(
     "--output-format",
@@ -51,6 +52,7 @@ def command(
     problems: str | None,
     formats: str,
     terms: str,
+    angles: str | None,
     strict_claims: bool,
     output_format: str,
     quiet: bool,
@@ -78,6 +80,7 @@ def command(
       mbsym batch systems/ --shard 3/8
     """
     from mbsym.batch.task import Asked, Budget
+    from mbsym.report.targets import ANGLES
 
     asked = Options()
     for path in folders:
@@ -86,6 +89,7 @@ def command(
     kinds = _formats(asked, formats)
     numbers = None if problems is None else asked.problems(problems)
     bound = asked.whole("--terms", terms, 1, 10**12)
+    form = None if angles is None else asked.word("--angles", angles, ANGLES, "form")
     width = asked.whole("--jobs", jobs, 1, 1024)
     seconds = _seconds(asked, timeout)
     megabytes = asked.whole("--memory", memory, 0, 10**9)
@@ -100,7 +104,7 @@ def command(
     request = Request(
         folders=folders,
         out=out,
-        asked=Asked(kinds, numbers, bound),
+        asked=Asked(kinds, numbers, bound, form),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,

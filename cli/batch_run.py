@@ -105,6 +105,7 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
         problems=asked.problems,
         formats=asked.formats,
         terms=asked.terms,
+        angles=asked.angles,
         shard=None if request.shard is None else "{}/{}".format(*request.shard),
         timeout=request.budget.seconds,
         memory=request.budget.memory,

@@ -44,6 +44,7 @@ class FolderStore:
             "problems": problems,
             "formats": list(asked.formats),
             "terms": asked.terms,
+            "angles": asked.angles,
         }
         self._locks = Locks(out)
 

@@ -146,7 +146,7 @@ class Row:
 
     ``file`` is its path as it was found from the current folder, ``folder`` that of its files inside the batch's; both
     with ``/`` on every system.  ``message`` says in a sentence what happened where nothing else does (a crash, a
-    budget, a full disk); ``notes`` are further complaints about derivation and writing.
+    budget, a full disk); ``notes`` are what else is to be told of derivation and files.
     """
 
     file: str
@@ -189,6 +189,7 @@ class Summary:
     problems: tuple[int, ...] | None
     formats: tuple[str, ...]
     terms: int
+    angles: str | None = None
     shard: str | None = None
     timeout: float | None = field(default=None, compare=False)
     memory: int | None = field(default=None, compare=False)

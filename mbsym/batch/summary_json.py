@@ -33,6 +33,7 @@ def summary_data(summary: Summary) -> dict[str, Any]:
             "problems": None if summary.problems is None else list(summary.problems),
             "formats": list(summary.formats),
             "terms": summary.terms,
+            "angles": summary.angles,
         },
         "shard": summary.shard,
         "exit_code": summary.exit_code,

@@ -10,11 +10,16 @@ from mbsym.batch.outcome import Row
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of every description of a batch.  ``problems`` None: those that the formats show."""
+    """What is asked of every description of a batch.
+
+    ``problems`` None: those that the formats show.  ``angles`` is ``products``, ``sums``, ``shorter``, or None: what
+    each kind of text usually has.
+    """
 
     formats: tuple[str, ...]
     problems: tuple[int, ...] | None = None
     terms: int = 60_000
+    angles: str | None = None
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.task import Finished, Task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
 
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
     from mbsym.expressions.place import Complaint
+    from mbsym.formulas.shape import Angles
     from mbsym.model.system import System
 
 
@@ -49,6 +50,7 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
 
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.shape import angles_as
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
@@ -56,7 +58,8 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     problems = shown_by(asked.formats) if asked.problems is None else asked.problems
     analysis = Analysis(system, problems, asked.terms)
     derive_all(analysis, asked.formats, _silent)
-    rendered = list(rendered_all(analysis, asked.formats, _silent))
+    with angles_as(cast("Angles | None", asked.angles)):
+        rendered = list(rendered_all(analysis, asked.formats, _silent))
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)
     outcome = _outcome(analysis, defects)
@@ -72,7 +75,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
         ),
         files=tuple(FileRow(name, _digest(content)) for name, content in sorted(files.items())),
         message="there was not enough memory for a part of it" if outcome is Outcome.MEMORY else "",
-        notes=tuple(_notes(analysis, defects)),
+        notes=tuple(_notes(analysis, defects, asked.formats, files)),
     )
     return row, files
 
@@ -136,8 +139,15 @@ def _claim_rows(analysis: Analysis) -> Iterable[ClaimRow]:
         yield ClaimRow(line.place, line.title, line.word, line.outcome, line.lines)
 
 
-def _notes(analysis: Analysis, defects: Iterable[tuple[str, NoResult]]) -> Iterable[str]:
-    """What the program is at fault for, each once."""
+def _notes(
+    analysis: Analysis, defects: Iterable[tuple[str, NoResult]], formats: Iterable[str], files: Collection[str]
+) -> Iterable[str]:
+    """What the program is at fault for, and what is to be told of files that were made, each once."""
+    from mbsym.report.targets import FORMATS
+
     told = [f"{where}: {why.reason}" for where, why in defects]
     told += [f"internal error: {type(error).__name__}: {error}".removesuffix(": ") for error in analysis.defects]
+    for target in (FORMATS[name] for name in formats):
+        words = target.remark() if target.remark is not None and target.filename in files else ""
+        told += [f"{target.filename}: {words}"] if words else []
     return dict.fromkeys(told)

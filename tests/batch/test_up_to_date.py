@@ -80,8 +80,9 @@ def test_a_warning_is_said_again_and_where_it_stands_now(tmp_path: Path) -> None
         (pendulum(), ("--format", "json", "--problems", "1-4")),
         (pendulum(), ("--format", "json,python", "--problems", "1-3")),
         (pendulum(), (*QUICK, "--terms", "59999")),
+        (pendulum(), (*QUICK, "--angles", "sums")),
     ],
-    ids=["expression", "name", "load", "problems", "format", "terms"],
+    ids=["expression", "name", "load", "problems", "format", "terms", "angles"],
 )
 def test_another_description_or_option_is_derived(place: Path, text: str, options: tuple[str, ...]) -> None:
     folder_of(place / "in", a=text)
