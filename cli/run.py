@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     "--format", "formats", "-f", default="all", show_default=True, help="Some of them; exports only where named."
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
+@click.option("--detail", default="compact", show_default=True, metavar="WORD", help="Long formulas: compact, or full.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option(
     "--angles",
@@ -41,6 +42,7 @@ def command(
     problems: str | None,
     formats: str,
     out: Path | None,
+    detail: str,
     terms: str,
     angles: str | None,
     animate: str | None,
@@ -62,6 +64,9 @@ def command(
     Formats: latex, wolfram, python, c, html, json are all of them; the exports casadi, jax, octave (MATLAB too), julia,
     modelica, fmu2 and fmu3 are made where they are named.
 
+    Reports for people tell long formulas through quantities that have a meaning (angular velocities, composite
+    inertias, forces and moments of the bodies), each defined once; --detail full writes them out.
+
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
 
@@ -77,10 +82,12 @@ def command(
       mbsym run systems/satellite.yaml --animate 20
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/ --brief
+      mbsym run systems/satellite.yaml --detail full
       mbsym run systems/satellite.yaml --ledger
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
       mbsym run systems/tethered-satellites.yaml --angles sums
     """
+    from mbsym.report.detail import DETAILS, detailed
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     asked = Options()
@@ -88,6 +95,7 @@ def command(
     chosen = None if problems is None else asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
     form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
+    wanted = asked.word("--detail", detail, DETAILS, "detail")
     budget = asked.whole("--terms", terms, 1, 10**12)
     until = asked.number("--animate", animate)
     if animate is not None and "html" not in kinds:
@@ -113,8 +121,9 @@ def command(
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS
-    for path, folder in zip(paths, _folders(paths, out, base), strict=True):
-        worst = max(worst, report_on(path, folder, base, request))
+    with detailed(wanted or detail):
+        for path, folder in zip(paths, _folders(paths, out, base), strict=True):
+            worst = max(worst, report_on(path, folder, base, request))
     sys.exit(worst)
 
 

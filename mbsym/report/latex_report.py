@@ -24,6 +24,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
+from mbsym.report.compact import compact
 from mbsym.report.conditions import Reference, Shown, cases, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
@@ -34,6 +35,7 @@ from mbsym.report.latex_diagram import diagram
 from mbsym.report.latex_displays import written_out
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_references import keys_of, references, theorems_named
+from mbsym.report.latex_told import packed, paragraphs
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 from mbsym.source.meaning import meaning
@@ -129,6 +131,8 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
             "printed": lambda value: expression(value, printed),
             "printed_name": lambda name: str(printed[name]),
             "same": lambda words: same(words, printed),
+            "paragraphs": lambda item: paragraphs(item.system.told, item.passages, escaped),
+            "packed": lambda value, symbol, key: packed(entries(value, True), symbol, key),
             "zero": lambda values: all(x.is_zero for x in values),
         },
         tr=tongue.sentence,
@@ -149,6 +153,7 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         moving=moving,
         found=found,
+        told=compact(analysis, {number: found.get(number) for number in problems}),
         parts=[f"latex/{PROBLEMS[number].attribute}.j2" for number in problems],
         problems=problems,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},

@@ -6,24 +6,22 @@ Everything expands to plain LaTeX with amsmath: a section is put into other peop
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_names, latex_text
 from mbsym.formulas.told import Told
 from mbsym.report.passages import Passage
 
-#: How a paragraph of formulas is set: TeX breaks lines only where the formulas say so, before plus and minus.
-OPENING = (
-    r"{\raggedright\binoppenalty=10000 \relpenalty=10000 \linepenalty=200 \lineskiplimit=1pt \lineskip=2pt"
-    r" \hangindent=1.2em \hangafter=1 \noindent "
-)
-CLOSING = r"\par}"
+#: How paragraphs of formulas are set: TeX breaks lines only where the formulas say so, before plus and minus.
+OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=200 \\lineskiplimit=1pt \\lineskip=2pt\n"
+PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
 
 
-def paragraphs(told: Told[object], found: Iterable[Passage], escaped: Callable[[str], str]) -> list[str]:
-    """Every passage as a paragraph."""
+def paragraphs(told: Told[Any], found: Iterable[Passage], escaped: Callable[[str], str]) -> str:
+    """Every passage as a paragraph, in one group."""
     names = latex_names(told.ring)
-    return [OPENING + _sentence(passage, names, escaped) + CLOSING for passage in found]
+    return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in found) + "}"
 
 
 def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]) -> str:
@@ -35,3 +33,10 @@ def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]
 def equation(symbol: str, formula: Formula) -> str:
     """``$symbol = formula$``, which may be broken."""
     return f"$\\displaystyle {symbol} = {latex_text(formula.ring, formula.polynomial, breaks=True)}$"
+
+
+def packed(entries: Iterable[tuple[str, Formula]], symbol: str, key: str) -> str:
+    """Entries of a matrix, by their indices, side by side in one paragraph with one number, which ``key`` labels."""
+    written = ";\\quad ".join(equation(f"{symbol}_{{{index}}}", entry) for index, entry in entries)
+    number = f"\\refstepcounter{{equation}}\\label{{{key}}}%\n"
+    return f"{OPENING}{PARAGRAPH}{number}{written}.\\quad\\hfill\\hbox{{(\\theequation)}}{CLOSING}}}"

@@ -149,7 +149,7 @@ def test_the_foot_is_printed(tmp_path: Path) -> None:
 
 PLANTED = {
     "an unknown command": (r"\displaystyle", r"\displaystile"),
-    "a label set twice": (":eq:U}", ":eq:A:zero}"),
+    "a label set twice": (":eq:U}", ":eq:T}"),
     "a missing brace": (r"\par\endgroup", r"}\par\endgroup"),
     "a definition": (r"\par\endgroup", r"\def\x{1}\par\endgroup"),
     "a package": (r"\par\endgroup", r"\usepackage{breqn}\par\endgroup"),

@@ -1,0 +1,104 @@
+"""Which problems' formulas a report for people tells through named intermediates, and what it says then.
+
+A formula longer than some lines is told compactly; short systems keep closed formulas.  ``--detail full`` asks for the
+closed formulas of everything.  Every target for people makes the same choice here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mbsym.formulas.formula import Formula
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.telling import ToldSystem
+from mbsym.report.detail import FULL, detail
+from mbsym.report.passages import Passage, passages
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: A formula of so many terms takes some eight lines: longer ones are told through intermediates.
+LONGEST = 56
+#: So are the formulas of a problem that have more terms than this together, which is about a page.
+WHOLE = 200
+#: If at least so many times fewer terms are left to read.
+SHORTER = 2
+#: More definitions than this nobody follows: some eight pages.
+MOST_DEFINITIONS = 400
+
+
+@dataclass(frozen=True)
+class Compact:
+    """A problem told: ``passages`` introduce every name that the formulas of ``system`` for this problem need.
+
+    ``expanded``: the terms of the closed formulas; 0 where there are none.
+    """
+
+    system: ToldSystem
+    passages: tuple[Passage, ...]
+    expanded: int
+
+    @property
+    def definitions(self) -> int:
+        return sum(len(x.definitions) for x in self.passages)
+
+
+def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compact]:
+    """By number, the problems that are told; ``problems`` holds the results of those shown, None where there is none.
+
+    Nothing is derived unless some problem is long.
+    """
+    if detail() == FULL:
+        return {}
+    wanted = {n: _lengths(n, problems[n]) for n in (1, 2, 3) if n in problems}
+    wanted = {n: (longest, total) for n, (longest, total) in wanted.items() if longest > LONGEST or total > WHOLE}
+    told = analysis.optional("told") if wanted else None
+    if told is None:
+        return {}
+    found = {}
+    for number, (_, total) in wanted.items():
+        formulas = told_formulas(told, number)
+        listed = passages(told.told, analysis.system, formulas)
+        length = sum(x.terms for x in formulas) + sum(y.formula.terms for x in listed for y in x.definitions)
+        one = Compact(told, listed, 0 if problems[number] is None else total)
+        if one.definitions <= MOST_DEFINITIONS and (not one.expanded or SHORTER * length <= total):
+            found[number] = one
+    return found
+
+
+def told_formulas(told: ToldSystem, number: int) -> list[Formula]:
+    """The formulas of problems 1, 2 and 3 in terms of intermediates."""
+    if number == 1:
+        vectors = (
+            v
+            for body in told.kinematics.values()
+            for v in (body.angular_velocity, body.velocity_origin, body.velocity_mass_centre)
+        )
+        return [x for v in vectors for x in v]
+    if number == 2:
+        return [told.kinetic_energy, told.force_function]
+    return [*_upper(told.mass_matrix.rows), *told.forcing]
+
+
+def _upper(rows: tuple[tuple[Formula, ...], ...]) -> list[Formula]:
+    return [x for i, row in enumerate(rows) for x in row[i:]]
+
+
+def _lengths(number: int, found: Any) -> tuple[int, int]:
+    """(terms of the longest formula, of all of them) of a result as a report prints it; endless where it has none."""
+    match found:
+        case Kinematics():
+            vectors = (v for x in found.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre))
+            formulas = [x for v in vectors for x in v]
+        case Energy():
+            formulas = [*found.A1, found.A0, found.force_function]
+        case Equations():
+            formulas = [*_upper(found.mass_matrix.rows), *found.forcing]
+        case _:
+            return 10**9, 10**9
+    terms = [x.terms for x in formulas]
+    return max(terms, default=0), sum(terms)

@@ -1,0 +1,97 @@
+"""Long formulas as people get them: short, every symbol defined, on a page or two, and whole with --detail full."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import SHIPPED, compiled_latex, needs_pdflatex
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.report import compact as choice
+from mbsym.report import latex_report
+from mbsym.report.compact import compact, told_formulas
+from mbsym.report.detail import detailed
+from mbsym.report.passages import passages
+from mbsym.report.targets import TARGETS
+
+#: The systems of which some problem is told, by problem; all others keep closed formulas.
+TOLD = {"satellite": {1, 2, 3}, "tethered-satellites": {3}, "spatial-arm": {3}}
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
+def test_only_long_formulas_are_told(path: Path) -> None:
+    analysis = mbsym.load(path)
+    found = compact(analysis, {n: analysis.stage(n).value for n in (1, 2, 3)})
+    assert set(found) == TOLD.get(path.stem, set())
+    with detailed("full"):
+        assert compact(analysis, {3: analysis.equations}) == {}
+
+
+@pytest.mark.parametrize("name", sorted(TOLD))
+def test_passages_define_what_is_used_before_it_is_used(name: str) -> None:
+    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    told = analysis.told
+    for number in (1, 2, 3):
+        formulas = told_formulas(told, number)
+        listed = passages(told.told, analysis.system, formulas)
+        order = [item.name for passage in listed for item in passage.definitions]
+        assert sorted(order) == sorted(item.name for item in told.told.wanted(formulas))
+        seen: set[str] = set()
+        for passage in listed:
+            assert passage.words
+            for item in passage.definitions:
+                used = {x.name for x in told.told.wanted([item.formula])}
+                assert used <= seen, f"{item.name} uses {used - seen} before they are told"
+                seen.add(item.name)
+        # One phrase is one quantity of one body, said once.
+        said = [(passage.words, passage.coordinate) for passage in listed if passage.words != "Abbreviations"]
+        assert len(set(said)) == len(said)
+
+
+def equations_alone(text: str) -> str:
+    """The section of the equations with the preamble of report.tex: a document of its own."""
+    head, body = text.split(r"\maketitle")
+    start = body.index("Problem 3. ", body.index("The system}"))
+    start = body.rindex("\n", 0, start)
+    return head + body[start : body.index(r"\section*{", start + 30)] + "\n\\end{document}\n"
+
+
+@needs_pdflatex
+def test_the_equations_of_the_satellite_take_two_pages_at_most(tmp_path: Path) -> None:
+    """All five equations with every symbol defined; written out they are five pages."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    said = {}
+    for wanted in ("compact", "full"):
+        with detailed(wanted):
+            text = latex_report.render(analysis, (1, 2, 3))
+        said[wanted] = compiled_latex(equations_alone(text), tmp_path)
+    pages = {k: int(re.search(r"Output written on .*?\((\d+) page", x, re.S)[1]) for k, x in said.items()}  # type: ignore[index]
+    assert pages["compact"] <= 2 < 4 <= pages["full"]
+    assert "Overfull" not in said["compact"]
+
+
+@needs_pdflatex
+@pytest.mark.parametrize("name", sorted(TOLD))
+def test_nothing_overflows(name: str, tmp_path: Path) -> None:
+    system = mbsym.load(SHIPPED / f"{name}.yaml").system
+    text = TARGETS["latex"].render(Analysis(replace(system, claims=())), (1, 2, 3))
+    assert "Overfull" not in compiled_latex(text, tmp_path)
+
+
+def test_passages_stand_in_anyones_document() -> None:
+    """They use no macro of report.tex."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    listed = compact(analysis, {3: analysis.equations})[3]
+    text = latex_report.paragraphs(listed.system.told, listed.passages, latex_report.escaped)
+    assert "longformula" not in text
+    assert text.count(r"\par") == len(listed.passages)
+
+
+def test_a_chain_that_nobody_follows_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    monkeypatch.setattr(choice, "MOST_DEFINITIONS", 10)
+    assert compact(analysis, {3: analysis.equations}) == {}
