@@ -10,7 +10,8 @@
 are derived when they are first asked for.  Matrices print as LaTeX in a notebook and convert with ``.to_sympy()``.
 
 ``simulate`` integrates the equations of motion and returns times, coordinates, velocities and energy as arrays, with
-how far the energy is known to be conserved and an estimate of the error.
+how far the energy is known to be conserved and an estimate of the error.  ``tradeoff``, ``extremes`` and
+``equilibria`` return what the commands of these names measure and find, as tables of arrays.
 """
 
 from __future__ import annotations
@@ -23,10 +24,12 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from mbsym.analysis import Analysis
+    from mbsym.model.system import System
     from mbsym.simulation import Simulation
+    from mbsym.studies import EquilibriaStudy, ExtremesStudy, TradeoffStudy
 
 __version__ = "0.1.0"
-__all__ = ["DescriptionError", "load", "loads", "simulate"]
+__all__ = ["DescriptionError", "equilibria", "extremes", "load", "loads", "simulate", "tradeoff"]
 
 
 class DescriptionError(ValueError):
@@ -84,11 +87,70 @@ def simulate(
     from mbsym import simulation
     from mbsym.numerics.scenario import scenario
 
-    system = (load(source, ()) if isinstance(source, (str, Path)) else source).system
+    system = _system(source)
     request = simulation.Request(
         time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole
     )
     return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
+
+
+def tradeoff(
+    source: str | Path | Analysis,
+    time: float,
+    *,
+    target: float = 1e-9,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    budget: float = 60.0,
+    methods: Iterable[str] | None = None,
+    models: bool = True,
+) -> TradeoffStudy:
+    """What accuracy costs from 0 to ``time`` on this machine, in about ``budget`` seconds: ``mbsym tradeoff``.
+
+    ``study.runs`` is a table (``study.runs["error"]``), ``study.advice`` the sentence about ``target``.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where there is no reference
+    solution up to ``time``.
+    """
+    from mbsym import studies
+
+    names = None if methods is None else tuple(methods)
+    return studies.tradeoff(_system(source), time, values or {}, target, budget, names, models)
+
+
+def extremes(
+    source: str | Path | Analysis,
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    budget: float = 60.0,
+) -> ExtremesStudy:
+    """How many digits each quantity keeps at the extremes, in about ``budget`` seconds: ``mbsym extremes``.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    from mbsym import studies
+
+    return studies.extremes(_system(source), values or {}, budget)
+
+
+def equilibria(
+    source: str | Path | Analysis, *, values: Mapping[str, Fraction | int | str] | None = None, within: float = 10.0
+) -> EquilibriaStudy:
+    """All relative equilibria at exact values of the parameters, each with its verdict: ``mbsym equilibria``.
+
+        >>> import mbsym
+        >>> found = mbsym.equilibria("systems/double-pendulum.yaml")
+        >>> found.complete, list(found.table["verdict"])
+        (True, ['stable', 'unstable', 'unstable', 'unstable'])
+
+    Raises DescriptionError, ValueError for a parameter without a number, Failure where they cannot be listed.
+    """
+    from mbsym import studies
+
+    return studies.equilibria(_system(source), values or {}, within)
+
+
+def _system(source: str | Path | Analysis) -> System:
+    return (load(source, ()) if isinstance(source, (str, Path)) else source).system
 
 
 def _analysis(system, complaints, text, name, problems) -> Analysis:  # type: ignore[no-untyped-def]

@@ -28,9 +28,10 @@ BELOW = {
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation",
+    "studies": "expressions algebra model mechanics formulas problems analysis numerics simulation",
     "batch": "expressions algebra model source formulas problems analysis report __init__",
     "diff": "expressions algebra formulas report",
-    "__init__": "source analysis numerics simulation",
+    "__init__": "source model analysis numerics simulation studies",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
     " diff __init__",
 }

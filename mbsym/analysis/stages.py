@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Self, TypeVar, overload
 
 from mbsym.algebra.failures import Defect, Failure, Limit, Severity, SingularPoint
+from mbsym.expressions.guessing import GuessesNames
 
 T = TypeVar("T")
 Owner = TypeVar("Owner", bound="Stages")
@@ -74,7 +75,7 @@ class Stage:
     seconds: float
 
 
-class Stages:
+class Stages(GuessesNames):
     """Remembers every stage by its name, and which of them are withdrawn because a check they stand on has failed.
 
     While a stage is being derived the others are taken as they are (a check compares what is derived, right or wrong);

@@ -1,15 +1,17 @@
 """Results that a person can look at: formulas and matrices of the exact ring.
 
-They hold ring polynomials in normal form and print themselves; they do not compute.  Equality is decided in the ring.
+They hold ring polynomials in normal form and print themselves.  Equality and arithmetic are exact, in the ring.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
 from mbsym.formulas.python import python_text
 from mbsym.formulas.shape import Angles, angles_as
@@ -17,8 +19,13 @@ from mbsym.formulas.wolfram import wolfram_text
 
 
 @dataclass(frozen=True, eq=False)
-class Formula:
-    """One scalar result."""
+class Formula(GuessesNames):
+    """One scalar result.
+
+    Formulas of one system, integers and fractions can be added, multiplied, divided and raised to whole and half
+    powers; ``subs`` replaces names.  Raises TypeError for floats, ValueError for formulas of different systems,
+    SingularPoint (a ZeroDivisionError) for a division by zero.
+    """
 
     ring: Ring
     polynomial: Polynomial
@@ -54,6 +61,57 @@ class Formula:
 
         return to_sympy(self.ring, self.polynomial)
 
+    def _sympy_(self) -> Any:
+        """What ``sympify`` asks for."""
+        return self.to_sympy()
+
+    def subs(self, values: Mapping[str, int | Fraction | str | Formula] | None = None, /, **named: Any) -> Formula:
+        """The formula with names replaced, all at once: ``formula.subs(m=2, theta="pi/6", theta_dot=other)``.
+
+        Text is an expression as in a description.  Raises ValueError for an unknown name, with a guess, and as the
+        arithmetic does.
+        """
+        from mbsym.formulas.arithmetic import substituted
+
+        return Formula(*substituted(self, {**(values or {}), **named}))
+
+    def __add__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(x + y))
+
+    def __sub__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(x - y))
+
+    def __rsub__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(y - x))
+
+    def __mul__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(ring.times(x, y)))
+
+    def __truediv__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(ring.times(x, ring.reciprocal(y))))
+
+    def __rtruediv__(self, other: object) -> Formula:
+        return self._with(other, lambda ring, x, y: ring.reduce(ring.times(y, ring.reciprocal(x))))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __pow__(self, exponent: object) -> Formula:
+        from mbsym.formulas.arithmetic import power
+
+        return Formula(*power(self, exponent))
+
+    def __neg__(self) -> Formula:
+        return Formula(self.ring, -self.polynomial)
+
+    def __pos__(self) -> Formula:
+        return self
+
+    def _with(self, other: object, operation: Callable[[Ring, Polynomial, Polynomial], Polynomial]) -> Formula:
+        from mbsym.formulas.arithmetic import together
+
+        found = together(self, other)
+        return NotImplemented if found is None else Formula(found[0], operation(*found))
+
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex()}$"
 
@@ -80,8 +138,8 @@ class Formula:
     __hash__ = None  # type: ignore[assignment]
 
 
-@dataclass(frozen=True, eq=False)
-class Matrix:
+@dataclass(frozen=True, eq=False, repr=False)
+class Matrix(GuessesNames):
     """A rectangular array of formulas; indexed ``matrix[i, j]`` from zero."""
 
     rows: tuple[tuple[Formula, ...], ...]
@@ -123,6 +181,10 @@ class Matrix:
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex()}$"
+
+    def __repr__(self) -> str:
+        written = "x".join(map(str, self.shape))
+        return f"Matrix({self})" if self.terms <= 40 else f"Matrix(<{written}, {self.terms} terms>)"
 
     def __str__(self) -> str:
         return "[" + ", ".join("[" + ", ".join(map(str, row)) + "]" for row in self.rows) + "]"

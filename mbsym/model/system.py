@@ -24,6 +24,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
@@ -365,8 +366,8 @@ class WrittenSymbol:
     span: Span | None = _span()
 
 
-@dataclass(frozen=True, slots=True)
-class System:
+@dataclass(frozen=True, slots=True, repr=False)
+class System(GuessesNames):
     """A whole description.
 
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
@@ -392,6 +393,9 @@ class System:
     source: str = ""
     symbols: tuple[WrittenSymbol, ...] = ()
     language: str = ""
+
+    def __repr__(self) -> str:
+        return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -23,13 +23,14 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, column
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 
 
-@dataclass(frozen=True)
-class Energy:
+@dataclass(frozen=True, repr=False)
+class Energy(Shown):
     """``A2`` is n x n and symmetric, ``A1`` has n entries; ``cyclic`` lists coordinates and prescribed quantities."""
 
     kinetic_energy: Formula

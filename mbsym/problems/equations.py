@@ -22,13 +22,14 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Matrix, column
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.energy import Energy
 
 
-@dataclass(frozen=True)
-class Equations:
+@dataclass(frozen=True, repr=False)
+class Equations(Shown):
     """M (n x n), f (n) and the part Q (n) of f that comes from loads without a force function."""
 
     mass_matrix: Matrix

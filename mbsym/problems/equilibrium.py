@@ -24,13 +24,14 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed_with, unsteady
 from mbsym.model.system import System
 
 
-@dataclass(frozen=True)
-class Equilibrium:
+@dataclass(frozen=True, repr=False)
+class Equilibrium(Shown):
     """``satisfied``: identically, for all parameter values (relations used).
 
     ``residuals`` are f_i on the motion; ``conditions`` must vanish for the motion to exist; ``solved`` are the

@@ -39,6 +39,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
@@ -63,8 +64,8 @@ STATES = 4
 MOST_COORDINATES, MOST_TERMS = 3, 400
 
 
-@dataclass(frozen=True)
-class Integral:
+@dataclass(frozen=True, repr=False)
+class Integral(Shown):
     """``kind`` is generalised energy, cyclic, linear or angular momentum; ``of`` a coordinate or an axis."""
 
     name: str

@@ -23,12 +23,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.formulas.formula import Column, Matrix, column
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 
 
-@dataclass(frozen=True)
-class BodyKinematics:
+@dataclass(frozen=True, repr=False)
+class BodyKinematics(Shown):
     """One body's kinematics; vectors have three components in the body's own axes."""
 
     name: str
@@ -40,8 +41,8 @@ class BodyKinematics:
     velocity_mass_centre: Column
 
 
-@dataclass(frozen=True)
-class Kinematics:
+@dataclass(frozen=True, repr=False)
+class Kinematics(Shown):
     bodies: tuple[BodyKinematics, ...]
 
     @property

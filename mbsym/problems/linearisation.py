@@ -37,6 +37,7 @@ from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.matrices import skew_part, symmetric_part
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -49,8 +50,8 @@ from mbsym.problems.equilibrium import Equilibrium
 Rows = list[list[Polynomial]]
 
 
-@dataclass(frozen=True)
-class Subsystem:
+@dataclass(frozen=True, repr=False)
+class Subsystem(Shown):
     """A set of coordinates that move by themselves; matrices in dimensionless time and the user's notation."""
 
     coordinates: tuple[str, ...]
@@ -83,8 +84,8 @@ class Varying:
         return f"{name} = {self.value}" if short else name
 
 
-@dataclass(frozen=True)
-class Linearisation:
+@dataclass(frozen=True, repr=False)
+class Linearisation(Shown):
     """Matrices n x n in physical time and declared parameters; ``subsystems`` as a paper prints them.
 
     ``time_scale`` is w of tau = w t, or None.  ``route`` names the way the matrices were obtained.  ``varying`` lists

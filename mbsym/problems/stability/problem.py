@@ -18,6 +18,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
@@ -39,8 +40,8 @@ from mbsym.problems.stability.verdict import Verdict, combine, undecided
 PRECISION = 256
 
 
-@dataclass(frozen=True)
-class SubsystemStability:
+@dataclass(frozen=True, repr=False)
+class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
@@ -110,8 +111,8 @@ class SubsystemStability:
         return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else whole.reduce(x))
 
 
-@dataclass(frozen=True)
-class Stability:
+@dataclass(frozen=True, repr=False)
+class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.

@@ -95,7 +95,7 @@ def row_of(grounds: Set[Ground], flaws: Set[Flaw]) -> Row:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """A word, the names of the theorems it rests on (empty when none does), and why.
 
@@ -122,6 +122,15 @@ class Verdict:
         object.__setattr__(self, "grounds", tuple((ground, given[ground]) for ground in Ground if ground in given))
         if row_of({*given}, self.flawed).word != self.word:
             raise ValueError(f"these are not the grounds of '{self.word}'")
+
+    def __repr__(self) -> str:
+        return f"Verdict({self.word.value!r}{', ' if self.theorems else ''}{self.theorem})"
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        theorem = f" ({escape(self.theorem)})" if self.theorem else ""
+        return f"<b>{escape(self.word.value)}</b>{theorem}. {escape(self.explanation)}"
 
     @property
     def laid(self) -> dict[Ground, tuple[str, ...]]:

@@ -1,0 +1,106 @@
+"""Arithmetic of formulas of one system: exact, in the system's ring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from numbers import Rational
+from typing import TYPE_CHECKING, Any
+
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
+from mbsym.expressions.guessing import guess
+from mbsym.expressions.parser import DERIVED, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import Expression, Number, names, number
+
+if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
+
+_SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
+_NAMED = ("coordinate", "velocity", "acceleration", "prescribed", "time", "parameter")
+
+
+def whole(formula: Formula) -> tuple[Ring, Polynomial]:
+    """A formula in the ring of its system; conditions of stability live in the ring of the parameters alone."""
+    ring = formula.ring
+    return (
+        (ring.whole, ring.lift(formula.polynomial)) if isinstance(ring, ParameterRing) else (ring, formula.polynomial)
+    )
+
+
+def together(formula: Formula, other: object) -> tuple[Ring, Polynomial, Polynomial] | None:
+    """Both in one ring; None for what is no exact number and no formula.
+
+    Raises ValueError for a formula of another system, TypeError for a float.
+    """
+    ring, x = whole(formula)
+    if isinstance(other, float):
+        raise TypeError(f"formulas are exact: write Fraction('{other}') for {other}")
+    if isinstance(other, Rational):
+        return ring, x, ring.number(Fraction(int(other.numerator), int(other.denominator)))
+    if type(other) is not type(formula):
+        return None
+    second, y = whole(other)
+    if second is not ring:
+        raise ValueError("these formulas belong to different systems")
+    return ring, x, y
+
+
+def power(formula: Formula, exponent: object) -> tuple[Ring, Polynomial]:
+    """Whole and half exponents.  Raises ValueError for others."""
+    ring, x = whole(formula)
+    if not isinstance(exponent, Rational) or int(exponent.denominator) not in (1, 2):
+        raise ValueError(f"an exponent is a whole or a half number, not {exponent}")
+    base = x if int(exponent.denominator) == 1 else ring.square_root(x)
+    return ring, ring.reduce(ring.power(base, int(exponent.numerator)))
+
+
+def environment(ring: Ring) -> dict[str, Polynomial]:
+    """Every name of the system and its generator."""
+    found = {g.name + _SUFFIX.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
+    return {name: ring.context.gen(k) for name, k in found.items()}
+
+
+def substituted(formula: Formula, values: Mapping[str, Any]) -> tuple[Ring, Polynomial]:
+    """Names replaced, all at once; sines and cosines of them are formed anew.
+
+    Raises ValueError for a name that the system does not have and for what is no expression, TypeError for a float,
+    SingularPoint where the formula divides by zero there, NoClosedForm for an angle that the ring cannot hold.
+    """
+    ring, x = whole(formula)
+    known = environment(ring)
+    lower = Lowering(ring, known)
+    indices = {g.name + _SUFFIX.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
+    images: dict[int, Polynomial] = {}
+    for name, value in values.items():
+        if name not in known or name == "pi":
+            raise ValueError(f"unknown name '{name}'{guess(name, [one for one in known if one != 'pi'])}")
+        tree = _expression(name, value)
+        for unknown in sorted(names(tree) - known.keys()):
+            raise ValueError(f"unknown name '{unknown}'{guess(unknown, known)}")
+        images[indices[name]] = lower(tree)
+        if name in ring.angles and ring.has("sine", name):
+            angle = tree if ring.angles[name] == 1 else _divided(tree, ring.angles[name])
+            sine, cosine = lower.angle(angle)
+            images[ring.index("sine", name)], images[ring.index("cosine", name)] = sine, cosine
+    return ring, ring.reduce(ring.substitute(x, images))
+
+
+def _divided(tree: Expression, by: int) -> Expression:
+    from mbsym.expressions.tree import Operation
+
+    return Operation("/", tree, number(by))
+
+
+def _expression(name: str, value: Any) -> Expression:
+    if isinstance(value, float):
+        raise TypeError(f"formulas are exact: write '{value}' or Fraction('{value}') for {name}")
+    if isinstance(value, Rational):
+        exact = Fraction(int(value.numerator), int(value.denominator))
+        return Number(exact)
+    complaints = Complaints()
+    tree = parse_expression(str(value), complaints, lambda start, end: Span(1, start + 1, end - start), bounds=DERIVED)
+    if tree is None:
+        raise ValueError(f"{name}: " + "; ".join(item.message for item in complaints.items))
+    return tree
