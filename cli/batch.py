@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym_cli.console import BAD_INPUT, OutPath
 from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym_cli.batch_run import Request
 
 _MEGABYTE = 2**20
 
@@ -24,6 +28,7 @@ _MEGABYTE = 2**20
 @click.option("--memory", metavar="MB", help="For one description; 0: no bound.  [default: what there is, shared out]")
 @click.option("--filter", "patterns", multiple=True, metavar="GLOB", help="Only files like this; may be repeated.")
 @click.option("--shard", metavar="I/N", help="Only the I-th of N parts, for job arrays.")
+@click.option("--cluster", metavar="ADDRESS", help="Of a Dask scheduler, tcp://host:8786; local: starts one here.")
 @click.option("--fail-fast", is_flag=True, help="Begin nothing new after a failure.")
 @click.option("--changed", is_flag=True, help="Print only what was not up to date.")
 @click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show]")
@@ -47,6 +52,7 @@ def command(
     memory: str | None,
     patterns: tuple[str, ...],
     shard: str | None,
+    cluster: str | None,
     fail_fast: bool,
     changed: bool,
     problems: str | None,
@@ -78,6 +84,7 @@ def command(
       mbsym batch systems/ --out build --jobs 4 --timeout 60 --memory 2000
       mbsym batch systems/ --filter '*pendulum*' --format json --changed
       mbsym batch systems/ --shard 3/8
+      mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
     from mbsym.batch.task import Asked, Budget
     from mbsym.report.targets import ANGLES
@@ -114,8 +121,20 @@ def command(
         changed=changed,
         quiet=quiet,
         output_format=output_format,
+        cluster=cluster,
     )
-    sys.exit(run(request))
+    sys.exit(run(request) if cluster is None else _on_cluster(request))
+
+
+def _on_cluster(request: Request) -> int:
+    from mbsym.batch.cluster import NoCluster
+    from mbsym_cli.batch_run import run
+
+    try:
+        return run(request)
+    except NoCluster as reason:
+        print(f"--cluster: {reason}", file=sys.stderr)
+        return BAD_INPUT
 
 
 def _formats(asked: Options, text: str) -> tuple[str, ...]:

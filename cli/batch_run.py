@@ -47,6 +47,7 @@ class Request:
     changed: bool = False
     quiet: bool = False
     output_format: str = "text"
+    cluster: str | None = None
 
 
 def run(request: Request) -> int:
@@ -115,6 +116,10 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
 
 
 def _executor(request: Request, tasks: int) -> Executor:
+    if request.cluster is not None:
+        from mbsym.batch.cluster import Cluster
+
+        return Cluster(request.cluster, request.jobs)
     from mbsym.batch.executor import Local
 
     return Local(request.jobs, tasks, request.asked.formats)

@@ -20,7 +20,8 @@ class Executor(Protocol):
     budget) is the outcome of its row.  ``width`` is how many tasks are worth being there at once.
     """
 
-    width: int
+    @property
+    def width(self) -> int: ...
 
     def submit(self, task: Task, budget: Budget) -> Future[Finished]:
         """Done some time, within its budget, in a process of its own."""
@@ -35,10 +36,14 @@ class Local:
     """Processes of this machine, ``jobs`` at a time; forked from one that has loaded everything, where that pays."""
 
     def __init__(self, jobs: int, tasks: int = 1, formats: tuple[str, ...] = ()) -> None:
-        self.width = jobs
+        self._jobs = jobs
         self._threads = ThreadPoolExecutor(jobs, thread_name_prefix="mbsym-batch")
         self._nursery = Nursery(formats) if tasks >= _WORTH_A_NURSERY and available() else None
         self._processes = Processes(self._nursery)
+
+    @property
+    def width(self) -> int:
+        return self._jobs
 
     def submit(self, task: Task, budget: Budget) -> Future[Finished]:
         return self._threads.submit(isolated, task, budget, self._processes)

@@ -1,0 +1,156 @@
+"""Descriptions derived by many machines: an executor over a Dask scheduler.
+
+A worker does what a process of this machine would do, with the same budget in a process of its own, and sends back the
+same values; files are written here.  What a lost worker had begun is begun again by another one.
+"""
+
+from __future__ import annotations
+
+import logging
+import uuid
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from mbsym.batch.digests import derivation
+from mbsym.batch.isolation import Processes, isolated
+from mbsym.batch.outcome import Outcome, Row
+from mbsym.batch.task import Budget, Finished, Task
+from mbsym.batch.transport import finished_text, read_finished, read_task, task_text
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+#: A scheduler is waited for so many seconds, and its first worker so many.
+CONNECT, FIRST_WORKER = 15.0, 120.0
+
+#: A task is given up when so many workers were lost over it: then it is most likely what they died of.
+LOST_WORKERS = 3
+
+#: For each worker there is so much to do that it need not wait for the next.
+_AHEAD = 2
+
+#: The word for a cluster of processes on this machine.
+LOCAL = "local"
+
+
+class NoCluster(Exception):
+    """There is no cluster to work on; the message says why and what to do."""
+
+
+class Cluster:
+    """The workers of a Dask scheduler at ``address`` (``tcp://host:8786``); ``local`` starts ``jobs`` of them here.
+
+    Raises NoCluster where there is none, where no worker comes, or where workers have another version of mbsym.
+    """
+
+    def __init__(self, address: str, jobs: int) -> None:
+        distributed = _distributed()
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told in rows
+        self._own = None
+        try:
+            if address == LOCAL:
+                self._own = distributed.LocalCluster(
+                    n_workers=jobs, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
+                )
+            self._client = distributed.Client(self._own or address, timeout=CONNECT, set_as_default=False)
+        except (OSError, ValueError, ImportError) as error:  # connection refused, no such address, no TLS
+            raise NoCluster(f"no scheduler answers at {address}: {_first_line(error)}") from error
+        self._token = uuid.uuid4().hex
+        try:
+            self._client.wait_for_workers(1, timeout=FIRST_WORKER)
+            self._check_versions()
+        except BaseException as error:
+            self.close()
+            if isinstance(error, TimeoutError):
+                raise NoCluster(f"the scheduler at {address} has no worker; start one: dask worker {address}") from None
+            raise
+        # Its futures are those of concurrent.futures; a deterministic mistake is not repeated, a lost worker's task is.
+        self._executor = self._client.get_executor(pure=False, retries=0)
+
+    @property
+    def width(self) -> int:
+        """How many tasks are worth being there: workers come and go."""
+        with suppress(Exception):
+            return max(1, _AHEAD * sum(self._client.nthreads().values()))
+        return 1
+
+    def submit(self, task: Task, budget: Budget) -> Future[Finished]:
+        from concurrent.futures import Future
+
+        told: Future[Finished] = Future()
+        there = self._executor.submit(at_worker, task_text(task), budget, derivation(), self._token)
+
+        def pass_on(done: Future[tuple[str, float]]) -> None:
+            told.set_result(_finished(done, task))
+
+        there.add_done_callback(pass_on)
+        return told
+
+    def close(self) -> None:
+        with suppress(Exception):
+            self._client.run(end, self._token)
+        with suppress(Exception):
+            self._client.close()
+        if self._own is not None:
+            with suppress(Exception):
+                self._own.close()
+
+    def _check_versions(self) -> None:
+        wanted = derivation()
+        for worker, found in self._client.run(derivation).items():
+            if found != wanted:
+                raise NoCluster(f"the worker {worker} has another version of mbsym: install the same there and here")
+
+
+def _distributed() -> Any:
+    try:
+        import distributed
+    except ImportError:
+        raise NoCluster("--cluster needs Dask: pip install 'mbsym[cluster]'") from None
+    return distributed
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).strip() or type(error).__name__).split("\n")[0]
+
+
+def _finished(done: Future[tuple[str, float]], task: Task) -> Finished:
+    """What came back, or a row that says why nothing did."""
+    try:
+        text, seconds = done.result()
+        finished = read_finished(text)
+        return replace(finished, row=replace(finished.row, seconds=seconds))
+    except Exception as error:
+        if type(error).__name__ == "KilledWorker":
+            message = f"{LOST_WORKERS + 1} workers were lost over it"
+        elif type(error).__name__ in ("CancelledError", "FutureCancelledError"):
+            return Finished(Row(task.file, task.folder, Outcome.INTERRUPTED))
+        else:
+            message = f"the cluster gave it back: {type(error).__name__}: {_first_line(error)}"
+        return Finished(Row(task.file, task.folder, Outcome.CRASHED, message=message))
+
+
+# --- what a worker does -----------------------------------------------------------------------------------------------
+
+#: The processes of each batch that this worker works for.
+_RUNNING: dict[str, Processes] = {}
+
+
+def at_worker(task: str, budget: Budget, version: str, token: str) -> tuple[str, float]:
+    """What becomes of a task, as text, and the seconds that it took.
+
+    Raises RuntimeError where this worker is of another version.
+    """
+    if derivation() != version:
+        raise RuntimeError("a worker has another version of mbsym")
+    processes = _RUNNING.setdefault(token, Processes())
+    finished = isolated(read_task(task), budget, processes)
+    return finished_text(finished), finished.row.seconds
+
+
+def end(token: str) -> None:
+    """Ends what runs here for a batch that is over."""
+    processes = _RUNNING.pop(token, None)
+    if processes is not None:
+        processes.close()
