@@ -71,6 +71,7 @@ def test_everything_shows_itself_in_a_line(satellite) -> None:  # type: ignore[n
         assert len(repr(item)) < 600, repr(item)
         assert type(item).__name__ in repr(item)
         assert "\n" not in repr(item)
+        assert " object at 0x" not in repr(item)
     assert repr(satellite.stability.verdict) == "Verdict('depends on the parameters')"
 
 

@@ -131,7 +131,8 @@ def _names(whole: Schema, schema: Schema, items: list[Any], labels: Sequence[str
     elif schema.get("x-indices") and len(labels) == len(items):
         found = list(map(str, labels))
     else:
-        return [str(k) for k in range(1, len(items) + 1)]
+        first = int(schema.get("x-first", 1))
+        return [str(k) for k in range(first, first + len(items))]
     count: Counter[str] = Counter()
     for k, name in enumerate(found):
         count[name] += 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from mbsym.algebra.ring import Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.formula import Formula, Matrix
 
@@ -27,7 +28,8 @@ class Shown(GuessesNames):
 
 
 def _parts(found: Any) -> list[tuple[str, Any]]:
-    return [(field.name, getattr(found, field.name)) for field in fields(found) if field.repr]
+    every = ((field.name, getattr(found, field.name)) for field in fields(found))
+    return [(name, value) for name, value in every if not isinstance(value, Ring)]
 
 
 def _short(value: Any) -> str:

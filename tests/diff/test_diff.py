@@ -148,6 +148,13 @@ def test_the_difference_is_exact() -> None:
     assert (change.kind, change.difference, change.terms) == (Kind.FORMULA, "k", 1)
 
 
+def test_a_coefficient_is_told_by_its_power() -> None:
+    other = copy.deepcopy(shipped("ziegler"))
+    other["stability"]["subsystems"][0]["characteristic_polynomial"][2] += " + k"
+    (change,) = diff(shipped("ziegler"), other).changes
+    assert change.path[-2:] == ("characteristic_polynomial", "2")
+
+
 def test_words_conditions_claims_and_checks_are_compared() -> None:
     a = shipped("tethered-satellites")
     b = copy.deepcopy(a)

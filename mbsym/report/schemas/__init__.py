@@ -1,8 +1,9 @@
 """The JSON Schemas of the files that mbsym writes, one file each: they say what every property is.
 
-Two keywords of our own stand in them, which validators pass over: ``x-tell-apart`` names the properties by which the
-items of a list are told apart when two files are compared, and ``x-aside`` marks what is no result (versions,
-measured seconds).
+Keywords of our own stand in them, which validators pass over and ``mbsym.diff`` reads: ``x-tell-apart`` names the
+properties by which the items of a list are told apart, ``x-indices`` says that items are about coordinates, ``x-first``
+with which number they begin, and ``x-aside`` marks what is no result (versions, measured seconds, sentences beside
+codes).
 """
 
 from __future__ import annotations
