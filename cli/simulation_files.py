@@ -79,8 +79,14 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
     files: dict[str, bytes] = {}
     if "html" in formats:
         from mbsym.report.animation_page import animation_page
+        from mbsym.report.parsing import unreadable
+        from mbsym.report.rendering import Unreadable
 
-        files["animation.html"] = animation_page(found, run).encode()
+        text = animation_page(found, run)
+        reason = unreadable("animation.html", text)
+        if reason:
+            raise Unreadable(f"animation.html: {reason}")
+        files["animation.html"] = text.encode()
     if "gif" in formats:
         from mbsym.report.animation_gif import animation_gif
 

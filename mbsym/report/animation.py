@@ -30,6 +30,8 @@ MOST_FRAMES, MOST_NUMBERS = 1_200, 400_000
 
 #: An ellipsoid smaller than this part of the picture is not drawn.
 SEEN = 0.004
+#: Nor is one whose second semi-axis is thinner than this part of the longest.
+THIN = 0.02
 #: One that is not true to scale is so large, as a part of the picture.
 SYMBOLIC = 0.14
 
@@ -114,6 +116,8 @@ def _ellipsoids(scenario: Scenario, places: Positions, bodies: BodyMotions) -> t
         own = _semi_axes(scenario, name)
         if own is not None:
             sizes, directions = own
+            if np.sort(sizes)[1] < THIN * np.max(sizes):
+                continue  # a rod is a line already
             found.append((name, k, sizes, directions))
     if not found:
         return (), True

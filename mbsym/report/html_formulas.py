@@ -35,7 +35,7 @@ from mbsym.report.lengths import not_printed
 #: Formulas with more symbols than this are folded away behind their length.
 FOLDED = 120
 #: A vector or matrix is written as one as long as a line of it has at most so many symbols.
-WIDEST = 44
+WIDEST = 36
 #: A formula with more terms than this is counted only: nobody reads it, and a page has limits.
 LONGEST = 6000
 #: Conditions with more symbols than this are counted instead of written: results.json has them.

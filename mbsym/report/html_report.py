@@ -33,6 +33,7 @@ from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 from mbsym.report.sections.stability import root_text
+from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -92,6 +93,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         brief=brief(analysis, 0.0),
         diagram=diagram(system) if system.bodies else "",
         version=__version__,
+        digest=meaning(system),
     )
 
 
