@@ -10,7 +10,7 @@ import click
 
 import mbsym
 from mbsym.expressions.counting import counted
-from mbsym.source import load
+from mbsym.source import is_description, load
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
 from mbsym_cli.options import Options
 
@@ -27,7 +27,8 @@ OUTPUT_FORMATS = ("text", "github", "sarif", "json")
     show_default=True,
     help="github: annotations of a workflow; sarif: a log for code scanning; json: an object a line.",
 )
-def command(files: tuple[Path, ...], output_format: str) -> None:
+@click.option("--skip-others", is_flag=True, help="Pass over files that do not say they are descriptions.")
+def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> None:
     """Validate descriptions, those in folders too, without deriving anything.
 
     Prints every complaint with its place; the exit code is 2 if there is an error.
@@ -36,7 +37,12 @@ def command(files: tuple[Path, ...], output_format: str) -> None:
     Examples:
       mbsym check systems/*.yaml
       mbsym check systems --output-format sarif > mbsym.sarif
+      mbsym check --skip-others docker-compose.yaml systems/top.yaml
     """
+    if skip_others:
+        files = tuple(file for file in files if file.is_dir() or is_description(file))
+        if not files:
+            return
     asked = Options()
     paths = asked.descriptions(files)
     if asked.refused():
