@@ -7,11 +7,11 @@ must not define anything, load anything, or end with a group open.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container
 from itertools import takewhile
 
 _LATEX = re.compile(
-    r"""\\(?:begin|end)\s*\{[^{}]*\}|\\(?:left|right)\s*(?:\\[{}|]|.)|\\verb(?P<mark>[^a-zA-Z]).*?(?P=mark)|\\[^a-zA-Z]|\\[a-zA-Z]+|%[^\n]*|\$\$?|[{}]""",
+    r"""\\(?:begin|end)\s*\{[^{}]*\}|\\(?:left|right)(?![a-zA-Z])\s*(?:\\[{}|]|.)|\\verb(?P<mark>[^a-zA-Z]).*?(?P=mark)|\\[^a-zA-Z]|\\[a-zA-Z]+|%[^\n]*|\$\$?|[{}]""",
     re.DOTALL,
 )
 
@@ -49,40 +49,53 @@ def read_latex(filename: str, text: str) -> None:
     _labels(text)
 
 
-def _read(text: str, known: Iterable[str]) -> None:
+def _read(text: str, known: Container[str]) -> None:
     opened: list[tuple[int, str]] = []
-    for line, token in _tokens(text):
-        name = re.fullmatch(r"\\([a-zA-Z]+)", token)
-        if name is not None and name[1] not in known and not re.fullmatch(r"\\(left|right)[a-zA-Z]*", token):
-            raise SyntaxError(f"the command {token!r} is not known", ("", line, 0, None))
-        if token in ("{", "\\begingroup") or token.startswith(("\\begin{", "\\left")):
-            if re.fullmatch(r"\\left[a-zA-Z]+", token) is None:
-                opened.append((line, _opener(token)))
-        elif token in ("}", "\\endgroup") or token.startswith(("\\end{", "\\right")):
-            if re.fullmatch(r"\\right[a-zA-Z]+", token) is None:
-                wanted = _opener(token)
-                if not opened or opened[-1][1] != wanted:
-                    raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
-                opened.pop()
-        elif token in ("$", "$$", "\\[", "\\(", "\\]", "\\)"):
-            opening = {"\\]": "\\[", "\\)": "\\("}.get(token, token)
-            if opened and opened[-1][1] == opening:
-                opened.pop()
-            elif token in ("\\]", "\\)") or _in_mathematics(opened):
-                raise SyntaxError(f"{token!r} closes nothing", ("", line, 0, None))
-            else:
-                opened.append((line, token))
-    if opened:
-        raise SyntaxError(f"{opened[-1][1]!r} is never closed", ("", opened[-1][0], 0, None))
-
-
-def _tokens(text: str) -> Iterator[tuple[int, str]]:
-    line, place = 1, 0
+    kinds: dict[str, tuple[str, str]] = {}  # a file has few different tokens
     for match in _LATEX.finditer(text):
-        line += text.count("\n", place, match.start())
-        place = match.start()
         token = match[0]
-        yield line, token.replace(" ", "") if token.startswith(("\\begin", "\\end")) else token
+        kind, what = kinds.get(token) or kinds.setdefault(token, _kind(token, known))
+        if not kind:
+            continue
+        place = match.start()
+        if kind == "unknown":
+            raise SyntaxError(f"the command {token!r} is not known", ("", _line(text, place), 0, None))
+        if kind == "opens":
+            opened.append((place, what))
+        elif kind == "closes":
+            if not opened or opened.pop()[1] != what:
+                raise SyntaxError(f"{token!r} closes nothing", ("", _line(text, place), 0, None))
+        elif opened and opened[-1][1] == what:
+            opened.pop()
+        elif kind == "ends" or _in_mathematics(opened):
+            raise SyntaxError(f"{token!r} closes nothing", ("", _line(text, place), 0, None))
+        else:
+            opened.append((place, token))
+    if opened:
+        place, what = opened[-1]
+        raise SyntaxError(f"{what!r} is never closed", ("", _line(text, place), 0, None))
+
+
+def _kind(token: str, known: Container[str]) -> tuple[str, str]:
+    """What a token does, and to what: nothing, it ``opens`` or ``closes`` a group, ``toggles`` or ``ends`` mathematics.
+
+    Or it is an ``unknown`` command.
+    """
+    short = token.replace(" ", "") if token.startswith(("\\begin", "\\end")) else token
+    name = re.fullmatch(r"\\([a-zA-Z]+)", short)
+    if name is not None and name[1] not in known:
+        return "unknown", ""
+    if short in ("{", "\\begingroup") or short.startswith("\\begin{") or re.match(r"\\left(?![a-zA-Z])", short):
+        return "opens", _opener(short)
+    if short in ("}", "\\endgroup") or short.startswith("\\end{") or re.match(r"\\right(?![a-zA-Z])", short):
+        return "closes", _opener(short)
+    if short in ("$", "$$", "\\[", "\\("):
+        return "toggles", short
+    return ("ends", {"\\]": "\\[", "\\)": "\\("}[short]) if short in ("\\]", "\\)") else ("", "")
+
+
+def _line(text: str, place: int) -> int:
+    return text.count("\n", 0, place) + 1
 
 
 def _in_mathematics(opened: list[tuple[int, str]]) -> bool:

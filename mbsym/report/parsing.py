@@ -11,7 +11,8 @@ import builtins
 import json
 import math
 import re
-from collections.abc import Callable, Iterator
+import symtable
+from collections.abc import Callable, Container, Iterator
 from functools import partial
 from typing import Any
 
@@ -45,10 +46,14 @@ MOST_BITS = 14_284
 # --- Python -----------------------------------------------------------------------------------------------------------
 
 
+#: Fewer letters and digits in a row make no such number, whatever its base.
+_LONG_NUMBER = re.compile(rf"\w{{{MOST_BITS // 4}}}")
+
+
 def _python(text: str) -> None:
     """Compiles; every name is known where it is used; tables of the module have numbers as values."""
     tree = ast.parse(text)
-    for node in ast.walk(tree):
+    for node in ast.walk(tree) if _LONG_NUMBER.search(text) else ():
         if isinstance(node, ast.Constant) and isinstance(node.value, int) and node.value.bit_length() > MOST_BITS:
             # Python refuses these unless somebody has lifted its limit in this process.
             raise ValueError("a number with more digits than Python reads")
@@ -64,19 +69,22 @@ def _python(text: str) -> None:
                 _known(value, known)
                 _constant(value)
                 known |= {target.id for target in targets if isinstance(target, ast.Name)}
-    for statement in tree.body:
-        if isinstance(statement, ast.FunctionDef):
-            _known(statement, known | _bound(statement))
+    module = symtable.symtable(text, "<module>", "exec")
+    known |= {symbol.get_name() for symbol in module.get_symbols() if symbol.is_assigned() or symbol.is_imported()}
+    wanted = {symbol.get_name() for symbol in module.get_symbols() if symbol.is_referenced()}
+    missing = wanted.union(*map(_taken_from_module, module.get_children())) - known
+    if missing:
+        _known(tree, {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - missing)
+        raise SyntaxError(f"name '{min(missing)}' is not defined")
 
 
-def _bound(function: ast.FunctionDef) -> set[str]:
-    arguments = {argument.arg for argument in ast.walk(function) if isinstance(argument, ast.arg)}
-    return arguments | {
-        node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
-    }
+def _taken_from_module(scope: symtable.SymbolTable) -> set[str]:
+    """The names that a function looks up in the module or among the builtins."""
+    found = {symbol.get_name() for symbol in scope.get_symbols() if symbol.is_global() and symbol.is_referenced()}
+    return found.union(*map(_taken_from_module, scope.get_children()))
 
 
-def _known(tree: ast.AST, names: set[str]) -> None:
+def _known(tree: ast.AST, names: Container[str]) -> None:
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in names:
             raise SyntaxError(f"name '{node.id}' is not defined", ("", node.lineno, node.col_offset, None))
@@ -136,30 +144,32 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
 _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
-def balanced(tokens: Iterator[tuple[int, str]]) -> None:
-    """Brackets, given with their lines, close in the order in which they opened."""
+def balanced(text: str, tokens: Iterator[tuple[int, str]]) -> None:
+    """Brackets, given with their places, close in the order in which they opened."""
     opened: list[tuple[int, str]] = []
-    for line, token in tokens:
-        if token in _PAIRS:
-            if not opened or opened[-1][1] != _PAIRS[token]:
-                raise SyntaxError(f"'{token}' closes nothing", ("", line, 0, None))
-            opened.pop()
-        else:
-            opened.append((line, token))
+    for place, token in tokens:
+        if token in "([{":
+            opened.append((place, token))
+        elif not opened or opened.pop()[1] != _PAIRS[token]:
+            raise SyntaxError(f"'{token}' closes nothing", ("", line_at(text, place), 0, None))
     if opened:
-        raise SyntaxError(f"'{opened[-1][1]}' is never closed", ("", opened[-1][0], 0, None))
+        place, token = opened[-1]
+        raise SyntaxError(f"'{token}' is never closed", ("", line_at(text, place), 0, None))
 
 
-def brackets(text: str, skipped: re.Pattern[str], which: str) -> Iterator[tuple[int, str]]:
+def brackets(text: str, skipped: re.Pattern[str]) -> Iterator[tuple[int, str]]:
     """Brackets outside what is skipped (strings, comments); what is opened and never closed there is an error."""
-    line, place = 1, 0
     for match in skipped.finditer(text):
-        line += text.count("\n", place, match.start())
-        place = match.start()
-        if match.lastgroup == "open":
-            raise SyntaxError(f"{match[0][:2]!r} is never closed", ("", line, 0, None))
-        if match[0] in which:
-            yield line, match[0]
+        token = match[0]
+        if token in "()[]{}":
+            yield match.start(), token
+        elif match.lastgroup == "open":
+            raise SyntaxError(f"{token[:2]!r} is never closed", ("", line_at(text, match.start()), 0, None))
+
+
+def line_at(text: str, place: int) -> int:
+    """The line in which a place is, the first being 1: counted only where something is wrong."""
+    return text.count("\n", 0, place) + 1
 
 
 _C = re.compile(
@@ -169,37 +179,37 @@ _C = re.compile(
 
 def c_text(text: str) -> None:
     printable(text)
-    balanced(brackets(text, _C, "()[]{}"))
+    balanced(text, brackets(text, _C))
 
 
-_WOLFRAM = re.compile(r'\\\[[A-Za-z]+\]|\\.|"|\(\*|\*\)|[()\[\]{}]|\n', re.DOTALL)
+_WOLFRAM = re.compile(r'\\\[[A-Za-z]+\]|\\.|"|\(\*|\*\)|[()\[\]{}]', re.DOTALL)
 
 
 def _wolfram(text: str) -> None:
     """Comments nest and know no strings; strings know no comments."""
     printable(text)
-    balanced(_wolfram_brackets(text))
+    balanced(text, _wolfram_brackets(text))
 
 
 def _wolfram_brackets(text: str) -> Iterator[tuple[int, str]]:
-    line, depth, string = 1, 0, False
+    depth, string = 0, False
     for match in _WOLFRAM.finditer(text):
         token = match[0]
-        line += token.count("\n")
         if depth:
             depth += {"(*": 1, "*)": -1}.get(token, 0)
         elif token == '"':
             string = not string
         elif string:
             continue
+        elif token in "()[]{}":
+            yield match.start(), token
         elif token == "(*":
             depth = 1
         elif token == "*)":
-            raise SyntaxError("'*)' closes nothing", ("", line, 0, None))
-        elif token in "()[]{}":
-            yield line, token
+            raise SyntaxError("'*)' closes nothing", ("", line_at(text, match.start()), 0, None))
     if depth or string:
-        raise SyntaxError(f"{'(*' if depth else 'a string'} is never closed", ("", line, 0, None))
+        what = "(*" if depth else "a string"
+        raise SyntaxError(f"{what} is never closed", ("", line_at(text, len(text)), 0, None))
 
 
 def _latex(filename: str, text: str) -> None:
@@ -226,7 +236,8 @@ def _html(text: str) -> None:
     bare = _RAW.sub(lambda found: found[1] + "\n" * found[3].count("\n") + found[4], text)
     printable(bare)
     reader = expat.ParserCreate()
-    reader.StartElementHandler = _own_element
+    if _is_suspect(bare):  # where the text already tells, elements need not be looked at one by one
+        reader.StartElementHandler = _own_element
     try:
         reader.Parse(bare, True)
     except expat.ExpatError as error:
@@ -234,14 +245,36 @@ def _html(text: str) -> None:
 
 
 def _own_element(name: str, attributes: dict[str, str]) -> None:
-    for key, value in attributes.items():
+    for written, value in attributes.items():
+        key = written.lower()  # browsers tell no capitals
         if key.startswith("on") or key == "style":
-            raise SyntaxError(f"the attribute {key} of <{name}> is none of ours")
+            raise SyntaxError(f"the attribute {written} of <{name}> is none of ours")
         if key in _ADDRESSES and not value.startswith(("#", "data:image/")):
             raise SyntaxError(f"<{name}> asks for {value[:60]!r}")
 
 
+#: Addresses on a page.
 _ADDRESSES = ("src", "href", "xlink:href", "action", "formaction", "data", "poster", "srcset", "ping", "background")
+
+
+#: What begins an attribute that is none of ours; what begins like it is looked at more closely.
+_FOREIGN = {"on": re.compile(r"on[^\s=<>]*\s*="), "style": re.compile(r"style\s*=")} | {
+    name: re.compile(rf"""{name}\s*=\s*(?!["'](?:\#|data:image/))""") for name in _ADDRESSES
+}
+
+
+def _is_suspect(text: str) -> bool:
+    """Whether the text of a page has anything that looks like an attribute that is none of ours, or could bring one."""
+    if "<!ENTITY" in text or "<!ATTLIST" in text:
+        return True
+    text = text.lower()
+    for name, foreign in _FOREIGN.items():
+        place = text.find(name)
+        while place >= 0:
+            if text[place - 1].isspace() and foreign.match(text, place):
+                return True
+            place = text.find(name, place + 1)
+    return False
 
 
 def _json(text: str) -> None:

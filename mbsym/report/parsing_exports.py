@@ -32,14 +32,14 @@ _JULIA_WORDS = _FUNCTIONS | frozenset(
 def octave(text: str) -> None:
     """Functions of MATLAB."""
     printable(text)
-    balanced(brackets(text, _OCTAVE, "()[]{}"))
+    balanced(text, brackets(text, _OCTAVE))
     _bodies(_plain(text, _OCTAVE), re.compile(r"^function\b.*\n"), _OCTAVE_WORDS)
 
 
 def julia(text: str) -> None:
     """A module of Julia."""
     printable(text)
-    balanced(brackets(text, _JULIA, "()[]{}"))
+    balanced(text, brackets(text, _JULIA))
     plain = _plain(text, _JULIA)
     if not re.search(r"^module \w+$", plain, re.MULTILINE) or plain.rstrip()[-4:] != "\nend":
         raise SyntaxError("the module is not whole", ("", 1, 0, None))
@@ -49,7 +49,7 @@ def julia(text: str) -> None:
 def modelica(text: str) -> None:
     """A flat model of Modelica: every variable is declared, once, and has one equation."""
     printable(text)
-    balanced(brackets(text, _MODELICA, "()[]{}"))
+    balanced(text, brackets(text, _MODELICA))
     plain = _plain(text, _MODELICA)
     found = re.fullmatch(r"model (\w+)[^\n]*\n(.*)\nequation\n(.*)end \1;\n", plain, re.DOTALL)
     if found is None:
