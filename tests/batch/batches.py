@@ -99,9 +99,11 @@ def cached(out: Path) -> dict[str, bool]:
 
 
 def files_of(out: Path) -> dict[str, bytes]:
-    """Every file of the results but for the summary, which has seconds in it."""
+    """Every file in the folders of descriptions (or of ``out``, if it is the folder of one); none has seconds in it."""
+    folders = {file.parent for file in out.rglob("outcome.json")} or {out}
     return {
         file.relative_to(out).as_posix(): file.read_bytes()
-        for file in sorted(out.rglob("*"))
-        if file.is_file() and file.name != "summary.json"
+        for folder in folders
+        for file in sorted(folder.rglob("*"))
+        if file.is_file()
     }
