@@ -138,7 +138,12 @@ class Analysis(Stages):
 
     @cached_property
     def ring(self) -> Ring:
-        return ring_of(self.system, self.terms, self.angles)
+        ring = ring_of(self.system, self.terms, self.angles)
+        if self.system.symbols:
+            from mbsym.formulas.latex import write_as
+
+            write_as(ring, {one.name: one.latex for one in self.system.symbols})
+        return ring
 
     scene = Derived["Analysis", Scene](lambda a: a.over_ring())
     parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False))

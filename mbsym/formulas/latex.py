@@ -11,7 +11,7 @@ Nothing may read wrongly: what follows ``\\cos x`` would seem to belong to the a
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -107,9 +107,10 @@ def _greek_command(letter: str) -> str:
 class LatexNames:
     """One renaming for a system: no two names look alike (``Jx`` and ``J_x`` do not both become J with index x)."""
 
-    def __init__(self, names: Iterable[str]) -> None:
-        ordered = list(dict.fromkeys(names))
-        symbols = {name: latex_symbol(name) for name in ordered}
+    def __init__(self, names: Iterable[str], given: Mapping[str, str] | None = None) -> None:
+        given = given or {}
+        ordered = list(dict.fromkeys([*given, *names]))  # a given symbol is nobody else's
+        symbols = {name: _given(given[name]) if name in given else latex_symbol(name) for name in ordered}
         shown = injective([str(symbols[name]) for name in ordered], str)
         first: dict[str, str] = {}
         for name in ordered:
@@ -128,6 +129,19 @@ def _escaped(name: str) -> str:
 
 
 _NAMES: WeakKeyDictionary[Ring, LatexNames] = WeakKeyDictionary()
+
+
+def write_as(ring: Ring, given: Mapping[str, str]) -> None:
+    """From now on names of the ring are written in LaTeX as ``given``, in every formula."""
+    kinds = ("coordinate", "prescribed", "parameter")
+    _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], given)
+
+
+def _given(text: str) -> Symbol:
+    """``d_{C1}`` as a stem and its index."""
+    stem, _, index = text.partition("_")
+    index = index.strip()
+    return Symbol(stem.strip(), index[1:-1] if index.startswith("{") else index)
 
 
 def latex_names(ring: Ring) -> LatexNames:

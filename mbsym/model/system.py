@@ -41,6 +41,10 @@ EXACT = "exact"
 GRAVITY_ORDERS: tuple[int | str, ...] = (2, 3, 4, EXACT)
 
 
+#: The languages of reports: English, Russian, Spanish.
+LANGUAGES = ("en", "ru", "es")
+
+
 def velocity_name(coordinate: str) -> str:
     """``theta_dot``: the name under which a description may use a generalised velocity."""
     return coordinate + "_dot"

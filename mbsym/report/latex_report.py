@@ -452,7 +452,8 @@ def claimed_names(analysis: Analysis) -> LatexNames:
     kinds = ("coordinate", "prescribed", "parameter")
     own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
     variables = [claim.variable for claim in analysis.system.claims if claim.variable]
-    return LatexNames([*own, *(item.name for item in analysis.system.abbreviations), *variables])
+    given = {one.name: one.latex for one in analysis.system.symbols}
+    return LatexNames([*own, *(item.name for item in analysis.system.abbreviations), *variables], given)
 
 
 def same(words: str, names: LatexNames) -> str:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
-from mbsym.model.system import System
+from mbsym.model.system import LANGUAGES, System
 from mbsym.source.bodies import draft_bodies, read_body
 from mbsym.source.checks import check_body, check_system
 from mbsym.source.claims import read_abbreviations, read_claims
@@ -29,6 +29,7 @@ from mbsym.source.settings import (
     read_notation,
     read_relations,
 )
+from mbsym.source.symbols import read_symbols
 
 
 def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | None:
@@ -72,6 +73,9 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         initial=read_initial(fields.get("initial"), reading),
         abbreviations=read_abbreviations(fields.get("abbreviations"), reading),
         limits=read_limits(fields.get("limits"), reading),
+        source=fields.text("source"),
+        symbols=read_symbols(fields.get("latex"), reading),
+        language=_language(fields, reading),
     )
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system.coordinates, reading)
@@ -86,6 +90,11 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
     check_system(system, reading)
     system = _with_units(system, fields, reading)
     return None if complaints.error_count else system
+
+
+def _language(fields: Fields, reading: Reading) -> str:
+    node = fields.get("language")
+    return "" if node is None else reading.word(node, "'language'", LANGUAGES) or ""
 
 
 def _with_units(system: System, fields: Fields, reading: Reading) -> System:

@@ -7,6 +7,8 @@ HEADER = {
     "description": "description",
     "number of bodies": "number of bodies",
     "dimensionless time": "dimensionless time",
+    "source": "source",
+    "language": "language",
 }
 
 BODY = {
@@ -38,6 +40,7 @@ SECTIONS: dict[str, tuple[str, str | None]] = {
     "initial state": ("initial", "position"),
     "abbreviations": ("abbreviations", None),
     "limits": ("limits", None),
+    "latex symbols": ("latex", None),
 }
 
 ASSUMPTIONS = "assumptions"

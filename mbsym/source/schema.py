@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
-from mbsym.model.system import EXACT, GRAVITY_ORDERS, SHAPES
+from mbsym.model.system import EXACT, GRAVITY_ORDERS, LANGUAGES, SHAPES
 from mbsym.source.keys import (
     ALIASES,
     BODY,
@@ -26,6 +26,7 @@ from mbsym.source.keys import (
     SIGNS,
     SYSTEM,
 )
+from mbsym.source.symbols import LONGEST
 
 Schema = dict[str, Any]
 
@@ -68,6 +69,9 @@ def _system_values() -> dict[str, Schema]:
         "mbsym": {"enum": [1, "1"]},
         "name": {"type": "string"},
         "description": {"type": "string"},
+        "source": {"type": "string"},
+        "latex": _named({"type": "string", "maxLength": LONGEST}),
+        "language": {"enum": list(LANGUAGES)},
         "dimensionless time": expression,
         "parameters": {"anyOf": [_named(_reference("parameter")), names]},
         "prescribed": _named({"anyOf": [expression, _record(PRESCRIBED, _TEXTS, required=("rate",))]}),

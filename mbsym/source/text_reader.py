@@ -188,7 +188,7 @@ class _TextReader:
             if found is None or found[1] == "number of bodies":
                 continue
             label, word, value = found
-            free = word in ("mechanical system", "description")
+            free = word in ("mechanical system", "description", "source")
             entries.append(Entry(_key(label, HEADER[word]), self.unquoted(value) if free else value))
         return entries
 

@@ -24,6 +24,10 @@ def to_text(system: System) -> str:
     lines = [f"Mechanical system: {_free(system.name)}"]
     if system.description:
         lines.append(f"Description: {_free(system.description)}")
+    if system.source:
+        lines.append(f"Source: {_free(system.source)}")
+    if system.language:
+        lines.append(f"Language: {system.language}")
     lines.append(f"Number of bodies: {len(system.bodies)}")
     if system.time_scale is not None:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")
@@ -47,6 +51,7 @@ def to_text(system: System) -> str:
     lines += _section("Initial state", initial)
     limits = {one.coordinate: f"({text(one.lower)}, {text(one.upper)})" for one in system.limits}
     lines += _section("Limits", limits)
+    lines += _section("LaTeX symbols", {one.name: one.latex for one in system.symbols})
     lines += _section("Abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     for number, claim in enumerate(system.claims, start=1):
         lines += ["", f"Claim description ({number})", *_claim(claim_shape(claim, system), numbers)]

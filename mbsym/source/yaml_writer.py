@@ -29,6 +29,10 @@ def to_yaml(system: System) -> str:
     lines = [f"mbsym: {VERSION}", f"name: {scalar_text(system.name)}"]
     if system.description:
         lines.append(f"description: {scalar_text(system.description)}")
+    if system.source:
+        lines.append(f"source: {scalar_text(system.source)}")
+    if system.language:
+        lines.append(f"language: {system.language}")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
@@ -43,6 +47,7 @@ def to_yaml(system: System) -> str:
         lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
     lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
     lines += _mapping("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
+    lines += _mapping("latex", {one.name: one.latex for one in system.symbols})
     lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     lines += _list("claims", [_flow(claim_shape(one, system)) for one in system.claims])
     return "\n".join(lines) + "\n"
