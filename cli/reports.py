@@ -47,6 +47,7 @@ class Request:
     width: int = 0
     angles: Angles | None = None  # None: what each kind of text usually has
     animate: float | None = None  # the time until which report.html shows the motion
+    language: str = ""  # "": that of the description
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -78,6 +79,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
 
     started = time.perf_counter()
     analysis = Analysis(system, request.problems, request.terms)
+    analysis.language = request.language
     found = None
     with status(request.quiet) as say:
         derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))

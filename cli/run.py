@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     "formula for people, products for programs]",
 )
 @click.option("--animate", metavar="T", help="The motion from 0 to T in report.html, in three dimensions.")
+@click.option(
+    "--language", metavar="LANGUAGE", help="Of the LaTeX reports: en, ru or es.  [default: the description's, or en]"
+)
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
@@ -46,6 +49,7 @@ def command(
     terms: str,
     angles: str | None,
     animate: str | None,
+    language: str | None,
     strict_claims: bool,
     brief: bool,
     ledger: bool,
@@ -70,6 +74,9 @@ def command(
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
 
+    With --language ru or es the headings, captions and sentences of the LaTeX reports are in Russian or Spanish; what
+    explains a verdict in a sentence of its own, and outcomes of claims, stay English.
+
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.
 
@@ -84,10 +91,12 @@ def command(
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --detail full
       mbsym run systems/satellite.yaml --ledger
+      mbsym run systems/satellite.yaml --format latex --language ru
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
       mbsym run systems/tethered-satellites.yaml --angles sums
     """
     from mbsym.report.detail import DETAILS, detailed
+    from mbsym.model.system import LANGUAGES
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     asked = Options()
@@ -96,6 +105,7 @@ def command(
     kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
     form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
     wanted = asked.word("--detail", detail, DETAILS, "detail")
+    tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
     budget = asked.whole("--terms", terms, 1, 10**12)
     until = asked.number("--animate", animate)
     if animate is not None and "html" not in kinds:
@@ -118,6 +128,7 @@ def command(
         width,
         form,
         until,
+        tongue,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

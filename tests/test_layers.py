@@ -76,15 +76,14 @@ def test_reading_a_description_loads_nothing_heavy(name: str) -> None:
     assert done.stdout.split() == []
 
 
-#: What a run has no use for: numbers in arrays, figures, SymPy's exchange, the search for all equilibria, what writes
-#: descriptions, metadata of packages, and (where nothing is printed) a terminal's colours.
+#: What a run has no use for: numbers in arrays, figures, SymPy's exchange, the search for all equilibria,
+#: metadata of packages, and (where nothing is printed) a terminal's colours.
 UNUSED = (
     *(name for name in HEAVY if name != "jinja2"),
     "importlib.metadata",
     "importlib.resources",
     "mbsym.algebra.polynomial_systems",
     "mbsym.problems.equilibria",
-    "mbsym.source.yaml_writer",
 )
 
 

@@ -1,0 +1,307 @@
+"""Russian sentences and words of the LaTeX reports."""
+
+# ruff: noqa: E501 (Cyrillic letters look like Latin ones)
+
+from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.word import Word
+
+_ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
+
+SENTENCES = {
+    "Self-check": "Самопроверка",
+    "These results were derived a second time by an independent route and compared.": _ROUTES,
+    "result": "результат",
+    "first route": "первый путь",
+    "second route": "второй путь",
+    "agreement": "согласие",
+    "Claims": "Утверждения публикаций",
+    "Formulas and numbers as they were printed, compared with what is derived here.": (
+        "Формулы и числа, как они напечатаны, в сравнении с полученными здесь."
+    ),
+    "Abbreviations": "Сокращения",
+    "place": "место",
+    "claim": "утверждение",
+    "outcome": "итог",
+    "claimed": "утверждается",
+    "On the equations of motion": "В силу уравнений движения",
+    "With the factor": "С множителем",
+    "claimed minus $k$ times derived is": "утверждаемое минус $k$, умноженное на полученное, равно",
+    "Claimed minus derived is": "Утверждаемое минус полученное равно",
+    "at": "при",
+    "right with this added to": "верно, если это прибавить к",
+    "right with this taken from": "верно, если это вычесть из",
+    "Conventions": "Соглашения",
+    "Direction cosines are passive, $v^k = R^{jk} v^j$; the new axes are the rows.": (
+        "Направляющие косинусы пассивны, $v^k = R^{jk} v^j$; строки матрицы --- новые оси."
+    ),
+    "Axes $\\{a_1, a_2, a_3\\}$ with angles $\\{x_1, x_2, x_3\\}$ mean $R = C_{a_3}(x_3)\\, C_{a_2}(x_2)\\, "
+    "C_{a_1}(x_1)$; axis $0$ means no rotation.": (
+        "Оси $\\{a_1, a_2, a_3\\}$ с углами $\\{x_1, x_2, x_3\\}$ означают $R = C_{a_3}(x_3)\\, C_{a_2}(x_2)\\, "
+        "C_{a_1}(x_1)$; ось $0$ --- нет поворота."
+    ),
+    "Vectors of body $k$ are in its own axes.": "Векторы тела $k$ --- в его собственных осях.",
+    "An inertia tensor $\\Theta$ is that of $T = \\frac12\\, \\omega \\cdot \\Theta\\, \\omega$, so its products carry "
+    "the minus sign.": (
+        "Тензор инерции $\\Theta$ --- из $T = \\frac12\\, \\omega \\cdot \\Theta\\, \\omega$, так что центробежные "
+        "моменты входят в него со знаком минус."
+    ),
+    "$L = T + U$ with the force function $U = -(\\text{potential energy})$.": (
+        "$L = T + U$, где $U$ --- силовая функция (потенциальная энергия с обратным знаком)."
+    ),
+    "Linear form: $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = 0$ with $M$, $D$ (dissipative) and $K$ (potential) "
+    "symmetric, $G$ (gyroscopic) and $N$ (circulatory) skew.": (
+        "Линейные уравнения: $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = 0$, где $M$, $D$ (диссипативные силы) и "
+        "$K$ (потенциальные) симметричны, $G$ (гироскопические) и $N$ (неконсервативные позиционные) кососимметричны."
+    ),
+    "Problem 1. Kinematics": "Задача 1. Кинематика",
+    "Problem 2. Kinetic energy and force function": "Задача 2. Кинетическая энергия и силовая функция",
+    "with $A_{ij} = M_{ij}$ of problem 3": "где $A_{ij} = M_{ij}$ из задачи 3",
+    "with $A_{ij} = M_{ij}$ and": "где $A_{ij} = M_{ij}$ и",
+    "$L$ does not contain $[[names]]$: cyclic.": "$L$ не содержит $[[names]]$: циклические координаты.",
+    "Problem 3. Equations of motion": "Задача 3. Уравнения движения",
+    "Lagrange's equations of the second kind, $M(q)\\, \\ddot q = f(q, \\dot q, t)$; $M$ is symmetric, entries that are "
+    "not written are zero.": (
+        "Уравнения Лагранжа второго рода, $M(q)\\, \\ddot q = f(q, \\dot q, t)$; $M$ симметрична, ненаписанные "
+        "элементы равны нулю."
+    ),
+    "Lagrange's equations of the second kind, $M(q)\\, \\ddot q = f(q, \\dot q, t)$, as a straight-line program; $M$ is "
+    "symmetric.": (
+        "Уравнения Лагранжа второго рода, $M(q)\\, \\ddot q = f(q, \\dot q, t)$, в виде линейной программы; $M$ "
+        "симметрична."
+    ),
+    "Problem 4. The unperturbed motion": "Задача 4. Невозмущённое движение",
+    "The unperturbed motion": "Невозмущённое движение",
+    "satisfies the equations of motion identically.": "тождественно удовлетворяет уравнениям движения.",
+    "does not satisfy the equations of motion: these can never vanish.": (
+        "не удовлетворяет уравнениям движения: эти выражения не могут обратиться в нуль."
+    ),
+    "satisfies the equations of motion if and only if": (
+        "удовлетворяет уравнениям движения тогда и только тогда, когда"
+    ),
+    "which problems 5 and 6 use in the form": "что в задачах 5 и 6 используется в виде",
+    "Problem 5. First approximation": "Задача 5. Первое приближение",
+    "In physical time and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not written are "
+    "zero.": (
+        "В физическом времени и объявленных параметрах, $q = ([[q]])$ --- отклонения; ненаписанные элементы равны нулю."
+    ),
+    "The equations split into subsystems: [[count]].": "Уравнения распадаются на подсистемы, их число: [[count]].",
+    "Derivatives are with respect to $\\tau = [[scale]]\\, t$.": "Производные берутся по $\\tau = [[scale]]\\, t$.",
+    "Notation": "Обозначения",
+    "No result": "Нет результата",
+    "Problem 6. Stability": "Задача 6. Устойчивость",
+    "Subsystem": "Подсистема",
+    "The characteristic polynomial $[[symbol]]$, freed of a positive factor, is": (
+        "Характеристический многочлен $[[symbol]]$, без положительного множителя:"
+    ),
+    "Number of its factors: [[count]].": "Число его множителей: [[count]].",
+    "Conditions": "Условия",
+    "Otherwise": "Иначе",
+    "if all of these hold": "если выполнено всё следующее",
+    "if at least one of these holds": "если выполнено хотя бы одно из условий",
+    "if": "если",
+    "and at least one of these holds": "и выполнено хотя бы одно из условий",
+    "and": "и",
+    "Verdict": "Заключение",
+    "see the cases.": "см. случаи выше.",
+    "Each of these verdicts is about coordinates of one subsystem while the others keep to the unperturbed motion.": (
+        "Каждое из этих заключений относится к координатам одной подсистемы, пока остальные следуют невозмущённому "
+        "движению."
+    ),
+    "For the whole system": "Для всей системы",
+    "At the given values of the parameters": "При заданных значениях параметров",
+    "Eigenvalues there, in physical time, of $[[names]]$": "Собственные значения там, в физическом времени, $[[names]]$",
+    "On the theorems": "О теоремах",
+    "Problem 7. First integrals": "Задача 7. Первые интегралы",
+    "None of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, нет.",
+    "What was found": "Что получено",
+    "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": (
+        "Тела и системы координат: [[bodies]]; степени свободы: [[freedom]]."
+    ),
+    "Cyclic coordinates: $[[names]]$.": "Циклические координаты: $[[names]]$.",
+    "The unperturbed motion satisfies the equations of motion identically.": (
+        "Невозмущённое движение тождественно удовлетворяет уравнениям движения."
+    ),
+    "The unperturbed motion does not satisfy the equations of motion.": (
+        "Невозмущённое движение не удовлетворяет уравнениям движения."
+    ),
+    "The unperturbed motion satisfies the equations of motion under conditions; their number: [[count]].": (
+        "Невозмущённое движение удовлетворяет уравнениям движения при условиях; их число: [[count]]."
+    ),
+    "Stability": "Устойчивость",
+    "while the others keep to the unperturbed motion": "пока остальные следуют невозмущённому движению",
+    "Stability of the whole system": "Устойчивость всей системы",
+    "First integrals": "Первые интегралы",
+    "none of the kinds that are looked for": "тех видов, которые разыскиваются, нет",
+    "Claims: [[held]] hold, [[refuted]] do not, [[open]] undecided.": (
+        "Утверждения публикаций: верны --- [[held]], неверны --- [[refuted]], не решено --- [[open]]."
+    ),
+    "Problem [[number]]: no result": "Задача [[number]]: нет результата",
+    "The system": "Система",
+    "Source": "Источник",
+    "Generalised coordinates": "Обобщённые координаты",
+    "Prescribed": "Заданное движение",
+    "Parameters": "Параметры",
+    "on the inertial frame": "(на инерциальной системе координат)",
+    "on body [[body]]": "(на теле: [[body]])",
+    "rotation $[[axes]]$ by $[[angles]]$": "поворот $[[axes]]$ на $[[angles]]$",
+    "no rotation": "без поворота",
+    "connection point": "точка крепления",
+    "mass centre": "центр масс",
+    "mass": "масса",
+    "inertia about the joint": "тензор инерции относительно точки крепления",
+    "inertia about the mass centre": "тензор инерции относительно центра масс",
+    "accepted as given (identified values)": "принят как задан (идентифицированные значения)",
+    "although no body has it": "хотя такого тела нет",
+    "gyrostatic moment $h = [[h]]$, the constant angular momentum of rotors inside it: $T$ contains $h \\cdot \\omega$, "
+    "as Routh's function of the rotors": (
+        "гиростатический момент $h = [[h]]$, постоянный кинетический момент роторов внутри тела: $T$ содержит $h \\cdot "
+        "\\omega$, как функция Рауса для роторов"
+    ),
+    "Loads": "Силы",
+    "No loads.": "Активных сил нет.",
+    "Relations": "Соотношения",
+    "(used from problem 4 on)": "(используются начиная с задачи 4)",
+    "Assumptions": "Предположения",
+    "Unperturbed motion": "Невозмущённое движение",
+    "Initial values": "Начальные значения",
+    "mbsym [[version]], description SHA-256 [[digest]]": "mbsym [[version]], описание SHA-256 [[digest]]",
+    "Interconnection of the bodies, each with its number. Dashed: without mass; double lines: the connection point "
+    "moves in the previous body; dotted lines: loads between two bodies; dotted frames: drawn before. At the lines: "
+    "axes of rotation with their angles, and other coordinates.": (
+        "Структура взаимосвязи тел, каждое со своим номером. Штриховая рамка: без массы; двойная линия: точка крепления "
+        "движется в предыдущем теле; пунктирная линия: силы между двумя телами; пунктирная рамка: показано ранее. У "
+        "линий: оси поворотов с углами и другие координаты."
+    ),
+    "Simulations": "Расчёты движения",
+    "References": "Литература",
+    "the point $[[place]]$ of [[frame]]": "точка $[[place]]$ (тело: [[frame]])",
+    "the inertial frame": "инерциальная система координат",
+    "inertial frame": "инерц. система",
+    "Newtonian field of a centre at the origin of [[centre]], approximate, with $[[nu]]$, expanded to order [[order]] "
+    "about the origin $O$ of [[about]]: \\[ [[formula]] \\] over the bodies that this frame carries, with $R$ the "
+    "distance of $O$ from the centre, $e$ the unit vector from the centre to $O$, $c$ the mass centre seen from "
+    "$O$[[symbols]] and $\\Theta_C$ the inertia about the mass centre.": (
+        "Приближённое ньютоновское поле тяготения с центром в начале системы ([[centre]]), $[[nu]]$, разложенное до "
+        "порядка [[order]] около начала $O$ системы ([[about]]); силовая функция \\[ [[formula]] \\] по телам, "
+        "связанным с этой системой, где $R$ --- расстояние от центра до $O$, $e$ --- единичный вектор от центра к $O$, "
+        "$c$ --- радиус-вектор центра масс из $O$[[symbols]], $\\Theta_C$ --- тензор инерции относительно центра масс."
+    ),
+    "Newtonian field of a centre at the origin of [[centre]], with $[[nu]]$ and exact distances: \\[ [[formula]] \\] "
+    "over the bodies that [[about]] carries, with $r$ the mass centre seen from the attracting centre and $\\Theta_C$ "
+    "the inertia about the mass centre (MacCullagh's formula: exact for point masses; of an extended body the third and "
+    "higher moments are dropped).": (
+        "Ньютоновское поле тяготения с центром в начале системы ([[centre]]), $[[nu]]$, с точными расстояниями; силовая "
+        "функция \\[ [[formula]] \\] по телам, связанным с системой ([[about]]), где $r$ --- радиус-вектор центра масс "
+        "из притягивающего центра, $\\Theta_C$ --- тензор инерции относительно центра масс (формула Мак-Куллага: точна "
+        "для точечных масс; моменты тела третьего и высших порядков отброшены)."
+    ),
+    "Uniform gravity, $g = [[g]]$ in inertial axes: $U = \\sum m\\, g \\cdot r_C$.": (
+        "Однородное поле тяжести, $g = [[g]]$ в инерциальных осях: $U = \\sum m\\, g \\cdot r_C$."
+    ),
+    "Spring of $[[q]]$, stiffness $[[k]]$, rest at $[[rest]]$: $[[u]]$.": (
+        "Пружина по координате $[[q]]$, жёсткость $[[k]]$, не напряжена при $[[rest]]$: $[[u]]$."
+    ),
+    "Spring between [[first]] and [[second]], stiffness $[[k]]$, natural length $[[length]]$: $[[u]]$ with the distance "
+    "$d$.": (
+        "Пружина между точками: [[first]] --- [[second]], жёсткость $[[k]]$, длина без натяжения $[[length]]$: "
+        "$[[u]]$, $d$ --- расстояние."
+    ),
+    "Damper of $[[q]]$, coefficient $[[c]]$: dissipation function $[[r]]$.": (
+        "Демпфер по координате $[[q]]$, коэффициент $[[c]]$: диссипативная функция $[[r]]$."
+    ),
+    "Damper along the line between [[first]] and [[second]], coefficient $[[c]]$: dissipation function $[[r]]$ with the "
+    "distance $d$.": (
+        "Демпфер вдоль линии между точками: [[first]] --- [[second]], коэффициент $[[c]]$: диссипативная функция "
+        "$[[r]]$, $d$ --- расстояние."
+    ),
+    "Isotropic damper between [[first]] and [[second]], coefficient $[[c]]$: dissipation function $[[r]]$ with their "
+    "relative velocity $v$.": (
+        "Изотропный демпфер между точками: [[first]] --- [[second]], коэффициент $[[c]]$: диссипативная функция "
+        "$[[r]]$, $v$ --- относительная скорость."
+    ),
+    "Force $[[force]]$ in the axes of [[axes]], at [[point]].": (
+        "Сила $[[force]]$ (в осях: [[axes]]), приложена: [[point]]."
+    ),
+    "Torque $[[torque]]$ in the axes of [[axes]], on [[body]]; the opposite one on [[other]].": (
+        "Момент $[[torque]]$ (в осях: [[axes]]), на тело: [[body]]; противоположный --- на тело: [[other]]."
+    ),
+    "Torque $[[torque]]$ in the axes of [[axes]], on [[body]].": (
+        "Момент $[[torque]]$ (в осях: [[axes]]), на тело: [[body]]."
+    ),
+    "Dissipation function": "Диссипативная функция",
+    "Force function": "Силовая функция",
+    "Potential": "Потенциальная энергия",
+    "Generalised force": "Обобщённая сила",
+    "Generalised forces": "Обобщённые силы",
+    "Figure [[name]] of mbsym simulate": "Рисунок [[name]] (mbsym simulate)",
+}
+
+WORDS = {
+    str(Word.ASYMPTOTIC): "асимптотически устойчиво",
+    str(Word.ASYMPTOTIC_BUT_TURNED): "асимптотически устойчиво с точностью до поворота пространства",
+    str(Word.ASYMPTOTIC_BUT_CYCLIC): (
+        "асимптотически устойчиво по отношению к остальным переменным; циклические координаты могут уходить"
+    ),
+    str(Word.STABLE): "устойчиво",
+    str(Word.STABLE_BUT_CYCLIC): (
+        "устойчиво по отношению к остальным переменным; циклические координаты могут уходить"
+    ),
+    str(Word.GYROSCOPIC): "только гироскопическая стабилизация",
+    str(Word.CRITICAL): "устойчиво лишь в первом приближении, критический случай",
+    str(Word.UNDECIDED): "не решено",
+    str(Word.DEPENDS): "зависит от параметров",
+    str(Word.UNSTABLE): "неустойчиво",
+    LAGRANGE: "теорема Лагранжа-Дирихле",
+    ROUTH: "теорема Рауса",
+    KELVIN_CHETAEV: "теоремы Томсона-Тэта-Четаева",
+    LYAPUNOV: "первый метод Ляпунова",
+    MALKIN: "теорема Ляпунова-Малкина",
+    CHETAEV: "метод связки интегралов Четаева",
+    CONVERSE: "обращение теоремы Лагранжа-Дирихле",
+    "conservative": "консервативная",
+    "gyroscopic conservative": "гироскопическая консервативная",
+    "dissipative": "с диссипативными силами",
+    "gyroscopic dissipative": "с гироскопическими и диссипативными силами",
+    "circulatory": "с неконсервативными позиционными силами",
+    "gyroscopic circulatory": "с гироскопическими и неконсервативными позиционными силами",
+    "dissipative circulatory": "с диссипативными и неконсервативными позиционными силами",
+    "gyroscopic dissipative circulatory": "с гироскопическими, диссипативными и неконсервативными позиционными силами",
+    "all roots in lambda^2 real, negative and simple: coefficients and discriminants": (
+        "все корни по lambda^2 вещественны, отрицательны и просты: коэффициенты и дискриминанты"
+    ),
+    "all roots to the left of the imaginary axis: Lienard-Chipart": (
+        "все корни слева от мнимой оси: критерий Льенара-Шипара"
+    ),
+    "holds: the kinetic energy is positive definite": "выполнено: кинетическая энергия положительно определена",
+    "never holds": "не выполняется никогда",
+    "too long to be written out": "слишком длинно для записи",
+    "necessary in the first approximation": "необходимо в первом приближении",
+    "provided the condition of problem 4 holds": "при условии задачи 4",
+    "provided the conditions of problem 4 hold": "при условиях задачи 4",
+    ", decided exactly": ", точно",
+    ", decided by rigorous enclosures": ", строгими оценками",
+    "proved": "доказано",
+    "verified numerically": "проверено численно",
+    "undecided": "не решено",
+    "exact": "точно",
+    "FAILED": "РАСХОЖДЕНИЕ",
+    "positive": "положительный",
+    "negative": "отрицательный",
+    "nonnegative": "неотрицательный",
+    "nonpositive": "неположительный",
+    "nonzero": "не нуль",
+    "real": "вещественный",
+    "kinematics": "кинематика",
+    "energy": "энергия",
+    "equations of motion": "уравнения движения",
+    "straight-line program": "линейная программа",
+    "mass matrix": "матрица масс",
+    "equilibrium": "невозмущённое движение",
+    "linearisation": "линеаризация",
+    "perturbed motion": "возмущённое движение",
+    "first integrals": "первые интегралы",
+    "identical polynomials": "тождественные многочлены",
+    "random parameters": "случайные параметры",
+    "regular": "невырождена",
+    "holds": "верно",
+}
