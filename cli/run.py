@@ -95,8 +95,8 @@ def command(
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
       mbsym run systems/tethered-satellites.yaml --angles sums
     """
-    from mbsym.report.detail import DETAILS, detailed
     from mbsym.model.system import LANGUAGES
+    from mbsym.report.detail import DETAILS, detailed
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     asked = Options()

@@ -6,6 +6,7 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "Written out there are [[count]] terms.": "Desarrollado, tiene [[count]] términos.",
     "Self-check": "Autocomprobación",
     "These results were derived a second time by an independent route and compared.": "Estos resultados se dedujeron otra vez por una vía independiente y se compararon.",
     "result": "resultado",

@@ -8,6 +8,7 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "Written out there are [[count]] terms.": "В развёрнутом виде слагаемых: [[count]].",
     "Self-check": "Самопроверка",
     "These results were derived a second time by an independent route and compared.": _ROUTES,
     "result": "результат",
