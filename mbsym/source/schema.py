@@ -25,6 +25,7 @@ from mbsym.source.keys import (
     SHAPE,
     SIGNS,
     SYSTEM,
+    VERSION,
 )
 from mbsym.source.symbols import LONGEST
 
@@ -42,6 +43,7 @@ def json_schema() -> Schema:
     """The schema (draft 2020-12) of a description in YAML."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": f"urn:mbsym:description:{VERSION}",
         "title": "mbsym description of a mechanical system",
         **_record(SYSTEM, _system_values(), required=("mbsym", "name", "bodies")),
         "$defs": _definitions(),
@@ -106,7 +108,7 @@ def _definitions() -> dict[str, Schema]:
         "body": _record(BODY, _body_values(), required=("name", "mass")),
         "point": _record(POINT, {"body": _BODY_NAME, "point": _reference("vector")}, required=("body", "point")),
         "claim": _record(CLAIM, _claim_values(), required=("claim",)),
-        "load": {"oneOf": [_load(kind) for kind in LOADS], "description": "one kind of load with its data"},
+        "load": _loads(),
     }
 
 
@@ -182,7 +184,20 @@ _REQUIRED = {
 }
 
 
-def _load(kind: str) -> Schema:
+def _loads() -> Schema:
+    """One object with a property for each kind, not a choice of objects: a validator then points at the wrong key."""
+    return {
+        "type": "object",
+        "description": "one kind of load with its data",
+        "properties": {spelling: data for kind in LOADS for spelling, data in _load(kind).items()},
+        "additionalProperties": False,
+        "minProperties": 1,
+        "maxProperties": 1,
+    }
+
+
+def _load(kind: str) -> dict[str, Schema]:
+    """A kind of load in all its spellings."""
     vector = _reference("vector")
     values: dict[str, Schema] = {
         **dict.fromkeys(("vector", "direction", "components"), vector),
@@ -199,11 +214,4 @@ def _load(kind: str) -> Schema:
     else:
         data = _reference("expression")
     spellings = [kind, *(other for other, key in ALIASES.items() if key == kind)]
-    entry = {spelling: {**data, "description": LOAD_MEANINGS[kind]} for spelling in spellings}
-    return {
-        "type": "object",
-        "properties": entry,
-        "additionalProperties": False,
-        "minProperties": 1,
-        "maxProperties": 1,
-    }
+    return {spelling: {**data, "description": LOAD_MEANINGS[kind]} for spelling in spellings}

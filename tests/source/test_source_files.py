@@ -395,6 +395,24 @@ def test_what_is_shown_moves_no_cursor() -> None:
         assert shown.count("\n") == 3
 
 
+@pytest.mark.parametrize(
+    ("load", "path", "said"),
+    [
+        ({"uniform gravity": {"acceleraton": "g"}}, ["loads", 0, "uniform gravity"], "'acceleraton' was unexpected"),
+        ({"sprng": {"coordinate": "x"}}, ["loads", 0], "'sprng' was unexpected"),
+        ({"spring": {"stiffness": []}}, ["loads", 0, "spring", "stiffness"], "is not of type"),
+        ({"damper": {"coordinate": "x"}, "spring": {"coordinate": "x"}}, ["loads", 0], "too many properties"),
+    ],
+)
+def test_a_mistake_in_a_load_is_told_where_it_is(load: object, path: list[object], said: str) -> None:
+    """As an editor shows it: at the guilty key, not as a list of all kinds of load."""
+    described = {"mbsym": 1, "name": "x", "bodies": [{"name": "b", "mass": 1}], "loads": [load]}
+    errors = list(jsonschema.Draft202012Validator(json_schema()).iter_errors(described))
+    told = [(list(error.absolute_path), error.message) for error in errors]
+    assert any(where == path and said in message for where, message in told), told
+    assert not any("any of the given schemas" in message for _, message in told)
+
+
 def test_the_schema_knows_what_is_new() -> None:
     text = EVERYTHING.read_text(encoding="utf-8")
     described = yaml.safe_load(text)
