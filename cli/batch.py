@@ -35,6 +35,7 @@ _MEGABYTE = 2**20
 @click.option("--format", "formats", "-f", default="all", show_default=True, help="Some of them.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option("--angles", metavar="FORM", help="Of formulas, as in run: products, sums or shorter.")
+@click.option("--detail", default="compact", show_default=True, metavar="WORD", help="As in run: compact, or full.")
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option(
     "--output-format",
@@ -59,6 +60,7 @@ def command(
     formats: str,
     terms: str,
     angles: str | None,
+    detail: str,
     strict_claims: bool,
     output_format: str,
     quiet: bool,
@@ -87,6 +89,7 @@ def command(
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
     from mbsym.batch.task import Asked, Budget
+    from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES
 
     asked = Options()
@@ -97,6 +100,7 @@ def command(
     numbers = None if problems is None else asked.problems(problems)
     bound = asked.whole("--terms", terms, 1, 10**12)
     form = None if angles is None else asked.word("--angles", angles, ANGLES, "form")
+    wanted = asked.word("--detail", detail, DETAILS, "detail") or detail
     width = asked.whole("--jobs", jobs, 1, 1024)
     seconds = _seconds(asked, timeout)
     megabytes = asked.whole("--memory", memory, 0, 10**9)
@@ -111,7 +115,7 @@ def command(
     request = Request(
         folders=folders,
         out=out,
-        asked=Asked(kinds, numbers, bound, form),
+        asked=Asked(kinds, numbers, bound, form, wanted),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,

@@ -107,6 +107,7 @@ def _summed_up(request: Request, places: list[Place], found: Found, started: flo
         formats=asked.formats,
         terms=asked.terms,
         angles=asked.angles,
+        detail=asked.detail,
         shard=None if request.shard is None else "{}/{}".format(*request.shard),
         timeout=request.budget.seconds,
         memory=request.budget.memory,

@@ -45,6 +45,7 @@ class FolderStore:
             "formats": list(asked.formats),
             "terms": asked.terms,
             "angles": asked.angles,
+            "detail": asked.detail,
         }
         self._locks = Locks(out)
 

@@ -190,6 +190,7 @@ class Summary:
     formats: tuple[str, ...]
     terms: int
     angles: str | None = None
+    detail: str = "compact"
     shard: str | None = None
     timeout: float | None = field(default=None, compare=False)
     memory: int | None = field(default=None, compare=False)

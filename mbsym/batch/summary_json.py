@@ -34,6 +34,7 @@ def summary_data(summary: Summary) -> dict[str, Any]:
             "formats": list(summary.formats),
             "terms": summary.terms,
             "angles": summary.angles,
+            "detail": summary.detail,
         },
         "shard": summary.shard,
         "exit_code": summary.exit_code,

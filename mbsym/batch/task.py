@@ -13,13 +13,14 @@ class Asked:
     """What is asked of every description of a batch.
 
     ``problems`` None: those that the formats show.  ``angles`` is ``products``, ``sums``, ``shorter``, or None: what
-    each kind of text usually has.
+    each kind of text usually has.  ``detail`` is ``compact`` or ``full``.
     """
 
     formats: tuple[str, ...]
     problems: tuple[int, ...] | None = None
     terms: int = 60_000
     angles: str | None = None
+    detail: str = "compact"
 
 
 @dataclass(frozen=True)

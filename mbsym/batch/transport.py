@@ -27,7 +27,7 @@ def read_task(text: str) -> Task:
         found["file"],
         found["folder"],
         base64.b64decode(found["data"]),
-        Asked(tuple(asked["formats"]), problems, asked["terms"], asked["angles"]),
+        Asked(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
         found["known"],
     )
 

@@ -51,6 +51,7 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
     from mbsym.formulas.shape import angles_as
+    from mbsym.report.detail import detailed
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
@@ -58,7 +59,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     problems = shown_by(asked.formats) if asked.problems is None else asked.problems
     analysis = Analysis(system, problems, asked.terms)
     derive_all(analysis, asked.formats, _silent)
-    with angles_as(cast("Angles | None", asked.angles)):
+    with angles_as(cast("Angles | None", asked.angles)), detailed(asked.detail):
         rendered = list(rendered_all(analysis, asked.formats, _silent))
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)

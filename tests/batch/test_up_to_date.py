@@ -92,8 +92,9 @@ ASKED = Asked(("json",), (1, 2, 3))
         (pendulum(), replace(ASKED, formats=("json", "python")), False),
         (pendulum(), replace(ASKED, terms=59_999), False),
         (pendulum(), replace(ASKED, angles="sums"), False),
+        (pendulum(), replace(ASKED, detail="full"), False),
     ],
-    ids=["the same", "expression", "name", "load", "problems", "all problems", "format", "terms", "angles"],
+    ids=["the same", "expression", "name", "load", "problems", "all problems", "format", "terms", "angles", "detail"],
 )
 def test_another_description_or_option_is_derived(place: Path, text: str, asked: Asked, kept: bool) -> None:
     file = place / "in" / "a.yaml"
