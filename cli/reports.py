@@ -23,13 +23,14 @@ from mbsym_cli.console import (
     status,
     trace,
 )
-from mbsym_cli.files import deliver, obstacle
+from mbsym_cli.files import deliver, delivered, digest_of, obstacle
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.formulas.shape import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
+    from mbsym.report.made_figures import MadeFigure
     from mbsym.report.rendering import Rendered
 
 
@@ -80,6 +81,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     started = time.perf_counter()
     analysis = Analysis(system, request.problems, request.terms)
     analysis.language = request.language
+    analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
     found = None
     with status(request.quiet) as say:
         derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))
@@ -96,6 +98,21 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     written = deliver(folder, texts, "run", gone=missing)
     _show(analysis, path, written, request, time.perf_counter() - started, found)
     return FAILED if _complaints(analysis, path, files, request) else OK
+
+
+def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
+    """Figures that 'mbsym simulate' made of this description in the same folder, if nobody has changed them."""
+    if not (folder / "simulation.json").is_file():
+        return ()
+    from mbsym.report.made_figures import made_figures
+    from mbsym.source.meaning import meaning
+
+    sums = delivered(folder, "simulate")
+    unchanged = [name for name, digest in sums.items() if digest_of(folder / name) == digest]
+    if "simulation.json" not in unchanged:
+        return ()
+    text = (folder / "simulation.json").read_text(encoding="utf-8", errors="replace")
+    return made_figures(text, meaning(system), unchanged)
 
 
 def _ledger(analysis: Analysis, texts: dict[str, str | bytes]) -> Ledger:

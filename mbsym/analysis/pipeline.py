@@ -113,6 +113,8 @@ class Analysis(Stages):
         self.angles = tuple(angles)
         #: Of the LaTeX reports, where it is not that of the description.
         self.language = ""
+        #: Figures beside report.tex that belong to this description (``report.made_figures``).
+        self.figures: tuple[Any, ...] = ()
 
     def __repr__(self) -> str:
         return f"Analysis({self.system!r})"

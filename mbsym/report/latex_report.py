@@ -64,7 +64,7 @@ DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The text of ``report.tex``."""
-    return filled("report.tex.j2", analysis, problems, Form.REPORT, figures=())
+    return filled("report.tex.j2", analysis, problems, Form.REPORT, figures=analysis.figures)
 
 
 class Form(StrEnum):

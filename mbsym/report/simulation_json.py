@@ -16,6 +16,7 @@ from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.simulation_words import conservation_json, error_json
 from mbsym.simulation import Simulation
+from mbsym.source.meaning import meaning
 
 #: The version of ``schemas/simulation.json`` that it follows.
 FORMAT = 1
@@ -31,6 +32,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
     content: dict[str, Any] = {
         "format": FORMAT,
         "system": system.name,
+        "description_sha256": meaning(system),
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),
         "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -20,6 +21,7 @@ from mbsym.report.parsing import unreadable
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym.source.meaning import meaning
+from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 
 SYSTEMS = ("satellite.yaml", "double-pendulum.yaml", "heavy-top.yaml")
@@ -165,3 +167,31 @@ def test_planted_mistakes_are_caught(mistake: str) -> None:
     right, wrong = PLANTED[mistake]
     assert right in text
     assert unreadable("appendix.tex", text.replace(right, wrong, 1)).startswith("line "), mistake
+
+
+# --- figures of simulations ---
+
+
+@needs_pdflatex
+def test_figures_of_a_simulation_stand_in_the_report_of_the_same_description_only(tmp_path: Path) -> None:
+    path, out = tmp_path / "pendulum.yaml", tmp_path / "out"
+    text = (SHIPPED / "simple-pendulum.yaml").read_text()
+    path.write_text(text)
+    simulate = ["simulate", str(path), "--time", "1", "--format", "pdf,csv", "--no-estimate", "--out", str(out)]
+    derive = ["run", str(path), "--format", "latex", "--problems", "1-2", "--out", str(out)]
+
+    def included() -> list[str]:
+        assert CliRunner().invoke(main, derive).exit_code == 0
+        return re.findall(r"\\includegraphics\[[^]]*\]\{([^}]*)\}", (out / "report.tex").read_text())
+
+    assert included() == []
+    assert CliRunner().invoke(main, simulate).exit_code == 0
+    made = sorted(file.name for file in out.glob("*.pdf"))
+    assert made
+    assert sorted(included()) == made
+    (out / "main.tex").write_text((out / "report.tex").read_text())
+    assert complaints(out) == []
+    (out / made[0]).write_bytes(b"changed by somebody")
+    assert sorted(included()) == made[1:]
+    path.write_text(text.replace("positive", "nonzero", 1))  # another description
+    assert included() == []
