@@ -23,6 +23,7 @@ $(READY): pyproject.toml
 	    { echo "python's venv module is missing (on Debian: apt-get install python3-venv)"; exit 1; }
 	@echo "installing mbsym and what it needs into $(VENV): a minute or two"
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@$(BIN)/python -m compileall -q mbsym cli templates  # pip compiles what it copies, but not what stays in its place
 	@touch $(READY)
 
 lint: $(READY)

@@ -40,6 +40,7 @@ KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",
     "restricted": "LagrangesMethod, by hand",
+    "jacobian": "SymPy core, Jacobians",
     "plain": "SymPy core, by hand",
 }
 Record = dict[str, Any]
@@ -290,6 +291,12 @@ def summary(children: list[Child]) -> Record:
     return result
 
 
+def compile_ours() -> None:
+    """What pip does with a package that it installs, SymPy among them: bytecode beside the sources."""
+    folders = [str(ROOT / name) for name in ("mbsym", "cli", "templates")]
+    subprocess.run([sys.executable, "-m", "compileall", "-q", *folders], cwd=ROOT, check=True)
+
+
 def mbsym_command() -> list[str]:
     """The installed command, or the module behind it."""
     script = Path(sys.executable).with_name("mbsym")
@@ -507,6 +514,7 @@ def main() -> None:
 
         for name, (work, show) in numbers_bench.SECTIONS.items():
             sections[name] = (work, partial(show, table=table))
+    compile_ours()
     record: Record = {"versions": versions(), "runs": options.runs}
     print(", ".join(f"{name} {version}" for name, version in record["versions"].items()))
     for name in options.sections.split(","):
