@@ -20,7 +20,7 @@ from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, leaves, present
 
 #: Brackets with more symbols than this may be broken; those of coefficients, made of parameters, are kept longer.
-LONG_BRACKET, LONG_COEFFICIENT = 24, 60
+LONG_BRACKET, LONG_COEFFICIENT = 16, 36
 
 _LETTERS = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",

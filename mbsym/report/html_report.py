@@ -22,13 +22,14 @@ from mbsym.problems.stability.word import Word
 from mbsym.report import html_formulas as shown
 from mbsym.report.brief import brief
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
+from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, provided, statements
 from mbsym.report.functions import moving
 from mbsym.report.html_description import expression, load_in_words
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
-from mbsym.report.html_told import told_equations
+from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
@@ -83,7 +84,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis) if 3 in stages and 3 not in found else None,
-        told=told_equations(analysis) if 3 in found else None,
+        told=compact(analysis, {number: found.get(number) for number in problems}),
         variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         decided=_decided,
@@ -128,6 +129,9 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "counterexample": lambda value: counterexample(value).replace("for", "For", 1),
         "titles": titles,
         "repair": repair,
+        "told_passages": told_passages,
+        "told_terms": told_terms,
+        "longer": longer,
         "eigenvalues": _eigenvalues,
         "grade": _grade,
     }

@@ -86,10 +86,10 @@ def test_formulas_are_worth_what_the_exact_results_are(name: str) -> None:
     assert checked >= len(analysis.system.coordinates) + 1
 
 
-def told_values(page: str, known: dict[str, arb]) -> dict[str, arb]:
+def told_values(page: str, known: dict[str, arb], number: int = 3) -> dict[str, arb]:
     """What is told through named intermediates, read from top to bottom: each line may use those above it."""
     root = tree(page)
-    (problem,) = [section for section in root.iter("section") if section.get("id") == "problem-3"]
+    (problem,) = [section for section in root.iter("section") if section.get("id") == f"problem-{number}"]
     found = dict(known)
     for line in (item for item in problem if item.tag == "div"):
         equations: list[list[tuple[str, object]]] = []
@@ -124,6 +124,9 @@ def test_what_is_told_through_intermediates_is_worth_the_same() -> None:
             return [name for name, x in wanted_of.items() if not found[name].overlaps(exact(analysis, x, values))]
 
         assert wrong(page) == []
+        energies = told_values(page_of(analysis, (2,)), known, 2)
+        assert energies["T"].overlaps(exact(analysis, analysis.energy.kinetic_energy, values))
+        assert energies["U"].overlaps(exact(analysis, analysis.energy.force_function, values))
         place = page.index("<mo>\u2212</mo>", page.index("Moment about the connection point that body 2"))
         assert wrong(page[:place] + "<mo>+</mo>" + page[place + len("<mo>\u2212</mo>") :]) != []
 
@@ -133,7 +136,7 @@ def test_a_wrong_sign_exponent_or_name_is_seen() -> None:
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     page = page_of(analysis, (2, 3))
     values, source = point(analysis, 3), random.Random(1)
-    start = page.index("<details><summary>The same, expanded")
+    start = page.index("<details><summary>The same, written out", page.index('id="problem-3"'))
     end = page.index("</section>", start)
     slips = (
         (r"<mo>\+</mo>", "<mo>\u2212</mo>"),
