@@ -44,6 +44,7 @@ _MEGABYTE = 2**20
     show_default=True,
     help="Standard output for people, or for a program: annotations, a log, cases, an object a finding.",
 )
+@click.option("--appendix", is_flag=True, help="And one appendix.tex of all systems, for anyone's document.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only complaints.")
 def command(
     folders: tuple[Path, ...],
@@ -63,6 +64,7 @@ def command(
     detail: str,
     strict_claims: bool,
     output_format: str,
+    appendix: bool,
     quiet: bool,
 ) -> None:
     """Derive every description in each FOLDER, and in the folders in it, and write a summary.
@@ -73,6 +75,9 @@ def command(
 
     What is up to date is not derived again: the same description (comments and layout do not matter), options and
     version of mbsym, and every file as it was written.  A batch that was stopped or killed goes on where it was.
+
+    With --appendix, OUT/appendix.tex joins the appendices of all systems: a section each, labels that differ, no
+    preamble; a document needs amsmath and \\input{build/appendix}.
 
     OUT/summary.json has what became of everything: outcomes, verdicts, claims, self-checks, complaints with their
     places, digests of the files; index.html shows it, junit.xml and mbsym.sarif tell it to CI systems.
@@ -86,6 +91,7 @@ def command(
       mbsym batch systems/ --out build --jobs 4 --timeout 60 --memory 2000
       mbsym batch systems/ --filter '*pendulum*' --format json --changed
       mbsym batch systems/ --shard 3/8
+      mbsym batch systems/ --format latex --appendix
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
     from mbsym.batch.task import Asked, Budget
@@ -105,6 +111,8 @@ def command(
     seconds = _seconds(asked, timeout)
     megabytes = asked.whole("--memory", memory, 0, 10**9)
     part = _part(asked, shard)
+    if appendix and "latex" not in kinds:
+        asked.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
     if asked.refused() or bound is None:
         sys.exit(BAD_INPUT)
     from mbsym_cli.batch_machine import processors, shared_memory
@@ -126,6 +134,7 @@ def command(
         quiet=quiet,
         output_format=output_format,
         cluster=cluster,
+        appendix=appendix,
     )
     sys.exit(run(request) if cluster is None else _on_cluster(request))
 

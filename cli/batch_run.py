@@ -48,6 +48,7 @@ class Request:
     quiet: bool = False
     output_format: str = "text"
     cluster: str | None = None
+    appendix: bool = False
 
 
 def run(request: Request) -> int:
@@ -163,6 +164,11 @@ def write_files(request: Request, summary: Summary) -> None:
     """Each of them whole.  Raises OSError where one cannot be written."""
     for name, text in summary_files(request, summary).items():
         write_whole(request.out / name, text)
+    if request.appendix:
+        from mbsym_cli.batch_appendix import FILENAME as APPENDIX
+        from mbsym_cli.batch_appendix import write_appendix
+
+        write_appendix(request.out, _of_part(request, APPENDIX), summary)
 
 
 def _unreadable(folder: str, reason: str) -> Row:
