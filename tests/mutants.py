@@ -184,13 +184,19 @@ _CODE: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
 )
 
 
+#: Assignments to local names and to entries of results.
+_ASSIGNED = re.compile(
+    r"\s+(?:const double )?(?:s\d+|(?:sin|cos)_\w+|(?:result|M|f|qdd|J)(?:\[[\d, ]+\]|\([\d, ]+\))|der\(\w+\)) = "
+)
+
+
 def corrupted(code: str, chance: Random) -> str:
     """One sign, product, function, number or name of generated code is another."""
     lines = code.split("\n")
     places = [
         (number, match, change(match))
         for number, line in enumerate(lines)
-        if " = " in line and '"' not in line and "return" not in line
+        if _ASSIGNED.match(line)
         for pattern, change in _CODE
         for match in pattern.finditer(line, line.index(" = ") + 3)
     ]

@@ -65,6 +65,11 @@ def _python(text: str) -> None:
                 known |= {(item.asname or item.name).split(".")[0] for item in names}
             case ast.FunctionDef(name=name):
                 known.add(name)
+            case ast.AnnAssign(target=ast.Name(id=name), annotation=annotation, value=value) if value is not None:
+                _known(value, known)
+                if not (isinstance(annotation, ast.Name) and annotation.id == "TypeAlias"):
+                    _constant(value)
+                known.add(name)
             case ast.Assign(targets=targets, value=value):
                 _known(value, known)
                 _constant(value)

