@@ -6,7 +6,8 @@ problems, a run derives those that its formats show (``shown_by``), and nothing 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections import ChainMap
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -208,7 +209,7 @@ EXPORTS = {
 }
 
 #: Everything that ``--format`` can name; ``all`` means TARGETS.
-FORMATS = TARGETS | EXPORTS
+FORMATS: Mapping[str, Target] = ChainMap(EXPORTS, TARGETS)
 
 
 def shown_by(formats: Iterable[str]) -> tuple[int, ...]:
