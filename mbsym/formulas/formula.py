@@ -124,6 +124,11 @@ class Formula(GuessesNames):
         return len(self.polynomial)
 
     @property
+    def degree(self) -> int:
+        """The total degree of the expanded normal form; 0 for zero."""
+        return max((sum(map(int, monomial)) for monomial in self.polynomial.monoms()), default=0)
+
+    @property
     def is_zero(self) -> bool:
         return bool(self.polynomial.is_zero())
 

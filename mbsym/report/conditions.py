@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability.requirements import Case, Place, Requirement
+from mbsym.report.coefficients import InCoefficients, in_coefficients
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,7 @@ class Statement:
 
     ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.  ``never``
     is the polynomial, as it arises, of a statement that cannot hold.  ``place``: what follows where it fails.
+    ``told``: the same in the coefficients of the characteristic polynomial, where ``formula`` is long.
     """
 
     label: str
@@ -24,6 +26,7 @@ class Statement:
     note: str = ""
     never: Formula | None = None
     place: Place = Place.NECESSARY
+    told: InCoefficients | None = None
 
     @property
     def remark(self) -> str:
@@ -42,9 +45,9 @@ def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = 
         several = condition.kind == "inequality" or len(condition.nonzero) > 1
         if condition.kind == "inequality":
             label = _part(requirement.label, "without squares") if condition.nonzero else requirement.label
-            yield Statement(
-                label, Formula(ring, condition.polynomial), requirement.relation, note, None, requirement.place
-            )
+            told = in_coefficients(ring, requirement)
+            formula = Formula(ring, condition.polynomial)
+            yield Statement(label, formula, requirement.relation, note, None, requirement.place, told)
         elif condition.kind == "unwritten":
             too_long = "too long to be written out"
             yield Statement(requirement.label, None, requirement.relation, too_long, None, requirement.place)
@@ -145,6 +148,14 @@ class Shown:
     def show(self, statement: Statement) -> None:
         if statement.formula is not None and self.reference(statement) is None:
             self._shown.append((statement.label, statement.formula))
+
+    def unshown(self, told: InCoefficients) -> tuple[tuple[str, Formula], ...]:
+        """The letters of a form that do not stand for what was shown under their names."""
+        return tuple(
+            (name, value)
+            for name, value in told.letters
+            if not any(label == name and shown.polynomial == value.polynomial for label, shown in self._shown)
+        )
 
     def reference(self, statement: Statement) -> Reference | None:
         """How to refer to what was shown; None if it was not."""

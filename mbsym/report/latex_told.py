@@ -14,7 +14,7 @@ from mbsym.formulas.told import Told
 from mbsym.report.passages import Passage
 
 #: How paragraphs of formulas are set: TeX breaks lines only where the formulas say so, before plus and minus.
-OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=200 \\lineskiplimit=1pt \\lineskip=2pt\n"
+OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=200 \\lineskiplimit=1pt \\lineskip=4pt\n"
 PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
 
 

@@ -370,7 +370,9 @@ def test_very_long_conditions_are_counted_and_are_in_the_other_files():
         (requirement,) = [r for r in part.theory.requirements if r.label == label]
         size = len(requirement.condition.polynomial)
         counted = re.search(
-            rf"\\text{{{label}}} \\colon\\quad \\text{{\((\d+) terms, of degree (\d+); ([a-z. ]+)\)}} > 0", text
+            rf"\\text{{{label}}} \\colon\\quad [^>]* > 0 \\quad\\penalty0 "
+            r"\\text{\(written out (\d+) terms, of degree (\d+); ([a-z. ]+)\)}",
+            text,
         )
         assert counted, label
         assert int(counted[1]) == size > LONGEST_CONDITION

@@ -52,7 +52,8 @@ class Requirement:
     """``polynomial`` ``relation`` 0, as it arises (``label``: v4, discriminant, ...) and reduced by what is known.
 
     ``by_mass``: it holds because the kinetic energy is positive definite.  ``place`` is the one of ``relation``,
-    ``strict`` the one of ``polynomial`` != 0, which may be a condition of its own.
+    ``strict`` the one of ``polynomial`` != 0, which may be a condition of its own.  ``coefficients``, from low to high
+    powers, are those of which a discriminant or minor is made; empty for what is no such thing.
     """
 
     label: str
@@ -62,6 +63,7 @@ class Requirement:
     by_mass: bool = False
     place: Place = Place.NECESSARY
     strict: Place = Place.METHOD
+    coefficients: Coefficients = ()
 
     @property
     def always(self) -> bool:

@@ -242,7 +242,14 @@ def _requirements(
         place = Place.NECESSARY if even else Place.ASYMPTOTIC
         strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
         reduced = [
-            Requirement(label + suffix, value, known.condition(value), place=place, strict=strict)
+            Requirement(
+                label + suffix,
+                value,
+                known.condition(value),
+                place=place,
+                strict=strict,
+                coefficients=p if " " in label or label == "discriminant" else (),
+            )
             for label, value in wanted
         ]
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))

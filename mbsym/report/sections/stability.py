@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.counting import counted
 from mbsym.formulas.names import free_name
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
@@ -74,7 +75,9 @@ def _subsystem(part: SubsystemStability, variable: str) -> dict[str, Any]:
         "characteristic_polynomial": [str(coefficient) for coefficient in part.characteristic],
         "method": part.theory.method.name.lower(),
         **verdict_data(part.theory.verdict),
-        "conditions": [_statement(item) | {"place": item.place.name.lower()} for item in listed],
+        "conditions": [
+            _statement(item) | _in_coefficients(item) | {"place": item.place.name.lower()} for item in listed
+        ],
         "cases": [_case(case, shown) for case in cases(part.ring, part.theory.cases)],
     }
 
@@ -88,6 +91,14 @@ def _statement(item: Statement) -> dict[str, Any]:
         "relation": item.relation,
         "never": item.never is not None,
     }
+
+
+def _in_coefficients(item: Statement) -> dict[str, Any]:
+    """A long condition in the coefficients of the characteristic polynomial, and what these are."""
+    if item.told is None:
+        return {}
+    letters = {name: str(value) for name, value in item.told.letters}
+    return {"in_coefficients": {"formula": str(item.told.formula), "coefficients": letters}}
 
 
 def _case(case: CaseStatement, shown: Shown) -> dict[str, Any]:
@@ -154,6 +165,9 @@ def _condition(item: Statement) -> str:
         left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
         return f"{left} {item.relation} 0 {item.note}"
     remark = f" ({item.remark})" if item.remark else ""
+    if item.told is not None and item.formula is not None:
+        length = counted(item.formula.terms, "term")
+        return f"{item.label}: {item.told.formula} {item.relation} 0 (written out {length}){remark}"
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
