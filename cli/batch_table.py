@@ -143,7 +143,7 @@ def line(row: Row, width: int) -> str:
     pieces = [printable(row.file).ljust(width), _word(row)]
     if not row.cached and row.seconds:
         pieces.append(f"{row.seconds:.2f} s")
-    pieces.append(_said(row))
+    pieces.append(printable(_said(row)))
     return "  ".join(piece for piece in pieces if piece)
 
 
@@ -177,7 +177,7 @@ def _said(row: Row) -> str:
 def complaints(row: Row) -> list[str]:
     """What is complained about, for standard error, each with its place."""
     name = printable(row.file)
-    return [_complaint(name, one) for one in row.complaints] + [f"{name}: {note}" for note in row.notes]
+    return [_complaint(name, one) for one in row.complaints] + [f"{name}: {printable(note)}" for note in row.notes]
 
 
 def _complaint(name: str, one: ComplaintRow) -> str:
