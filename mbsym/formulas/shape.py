@@ -49,6 +49,9 @@ COLLECT = 40
 COLLECT_BEST = 14
 #: In polynomials with up to so many terms sin^2 and cos^2 of one angle are weighed against one of them.
 COMPARED = 24
+#: Of formulas with more terms, so many of the longest coefficients of velocities are tried; if none is shorter in sums
+#: of angles, none of the formula is.
+PROBED, PROBES = 200, 3
 #: A longer polynomial stands in sums of angles if that leaves at most this share of its terms.
 WORTH_SUMS = Fraction(3, 4)
 
@@ -168,6 +171,9 @@ class _Presenter:
         self._shapes: dict[tuple[int, Angles], tuple[Polynomial, Sum]] = {}
         self._factored: dict[frozenset[Any], Product] = {}
         self._brackets: dict[frozenset[Any], Sum] = {}
+        self._slots: dict[tuple[int, int], tuple[int, tuple[Factor, ...]]] = {}
+        self._sorting: dict[Monomial, tuple[int, tuple[int, ...]]] = {}
+        self._orders: dict[tuple[int | Wave | Sum, bool], tuple[Any, ...]] = {}
         self._negatives: dict[Sum, Sum] = {}
         self._turned: dict[Sum, Sum] = {}  # of the negated bracket, the one that it was made of
         self._ranks: dict[Sum, int] = {}
@@ -183,8 +189,9 @@ class _Presenter:
         return known[1]
 
     def _present(self, polynomial: Polynomial, angles: Angles) -> Sum:
-        numerator, under = self._as_fraction(polynomial, angles)
-        scale, terms = self._terms(numerator)
+        used = occurring([polynomial])
+        numerator, under = self._as_fraction(polynomial, used, angles)
+        scale, terms = self._terms(numerator, used if numerator is polynomial else occurring([numerator]))
         if not terms:
             return Sum(())
         if angles == "products":
@@ -205,6 +212,10 @@ class _Presenter:
             while end < len(monomial) and self._levels[monomial[end][0]] >= _VELOCITY:
                 end += 1
             groups.setdefault(monomial[:end], {})[monomial[end:]] = coefficient
+        if angles == "shorter" and len(terms) > PROBED:
+            longest = sorted(groups.values(), key=len, reverse=True)[:PROBES]
+            if all(self._shorter(tail, angles)[1] is tail for tail in longest):
+                return 1, terms
         chosen = [(head, *self._shorter(tail, angles)) for head, tail in groups.items()]
         if all(tail is groups[head] for head, _, tail in chosen):
             return 1, terms
@@ -254,11 +265,11 @@ class _Presenter:
             return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
         return self._opened(product)
 
-    def _as_fraction(self, polynomial: Polynomial, angles: Angles) -> tuple[Polynomial, list[Factor]]:
+    def _as_fraction(
+        self, polynomial: Polynomial, used: Sequence[int], angles: Angles
+    ) -> tuple[Polynomial, list[Factor]]:
         """One common denominator where that shortens (x/(1 + x), kept as 1 - 1/(1 + x)); else term by term."""
-        long = (
-            [k for k in occurring([polynomial]) if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
-        )
+        long = [k for k in used if self._long_reciprocal(k)] if len(polynomial) <= FACTOR_WHOLE else []
         if long and self._terms_of_denominator(polynomial, long) <= FRACTION_TERMS:
             try:
                 with self.ring.budget(FRACTION_WORK):
@@ -317,15 +328,15 @@ class _Presenter:
 
     # --- terms -----------------------------------------------------------------------------------------------------
 
-    def _terms(self, polynomial: Polynomial) -> tuple[int, Terms]:
+    def _terms(self, polynomial: Polynomial, occurring: Sequence[int]) -> tuple[int, Terms]:
         """(common denominator, terms of what is left)."""
-        used = sorted(occurring([polynomial]), key=self.place)
-        scale = lcm(*(int(c.q) for c in polynomial.coeffs()))
+        used = sorted(occurring, key=self.place)
+        scale = lcm(*[int(c.q) for c in polynomial.coeffs()])
         # In a context of its own: flint hands out all exponents, and the ring has many more generators.
         context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
         small = polynomial.project_to_context(context, {k: place for place, k in enumerate(used)})
         return scale, {
-            tuple([(used[i], int(e)) for i, e in enumerate(monomial) if e]): (
+            tuple([(k, int(e)) for k, e in zip(used, monomial, strict=True) if e]): (
                 int(c.p) if scale == 1 else int(c.p) * (scale // int(c.q))
             )
             for monomial, c in zip(small.monoms(), small.coeffs(), strict=True)
@@ -340,6 +351,13 @@ class _Presenter:
             for index, exponent in monomial:
                 pairs[index, exponent] = self.place(index) * _EXPONENTS - exponent
             return (*[pairs[pair] for pair in monomial], _END)
+
+    def _degree_and_key(self, monomial: Monomial) -> tuple[int, tuple[int, ...]]:
+        """Sorts by degree, highest first, then by ``_key``."""
+        known = self._sorting.get(monomial)
+        if known is None:
+            known = self._sorting[monomial] = (-sum([e for _, e in monomial]), self._key(monomial))
+        return known
 
     # --- products --------------------------------------------------------------------------------------------------
 
@@ -359,7 +377,7 @@ class _Presenter:
     def _factors(self, terms: Terms, factored: bool) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """Content, monomial, and the other factors with their exponents."""
         content, common, rest = _common(terms)
-        level = max(self.level(monomial[0][0]) for monomial in rest if monomial)
+        level = self._highest(rest)
         if not factored or len(terms) > (FACTOR_MIXED if level else FACTOR_WHOLE):
             parts = [(rest, 1)]
         else:
@@ -374,20 +392,23 @@ class _Presenter:
     def _irreducible(self, terms: Terms) -> tuple[int, list[tuple[Terms, int]]]:
         """A factorisation of terms without common factor, positive in front."""
         if _obviously_irreducible(terms):
-            if terms[min(terms, key=self._key)] > 0:
-                return 1, [(terms, 1)]
-            return -1, [({monomial: -c for monomial, c in terms.items()}, 1)]
+            return self._positive(terms)
         # Over the generators that occur: the ring has many more, and flint minds them all.
         used = sorted({k for monomial in terms for k, _ in monomial}, key=self.place)
         context = fmpz_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
-        dense = {}
+        places = {k: place for place, k in enumerate(used)}
+        none, dense = [0] * len(used), {}
         for monomial, coefficient in terms.items():
-            exponents = dict(monomial)
-            dense[tuple([exponents.get(k, 0) for k in used])] = coefficient
+            exponents = none.copy()
+            for k, e in monomial:
+                exponents[places[k]] = e
+            dense[tuple(exponents)] = coefficient
         try:
             unit, factors = irreducible_factors(context.from_dict(dense))
         except NoClosedForm:  # for reading, a sum that has factors is as good
             return 1, [(terms, 1)]
+        if len(factors) == 1 and factors[0][1] == 1:
+            return self._positive(terms)
         return int(unit), [
             (
                 {tuple([(used[i], int(e)) for i, e in enumerate(m) if e]): int(c) for m, c in factor.terms()},
@@ -395,6 +416,12 @@ class _Presenter:
             )
             for factor, exponent in factors
         ]
+
+    def _positive(self, terms: Terms) -> tuple[int, list[tuple[Terms, int]]]:
+        """(sign, the terms as one factor, positive in front)."""
+        if terms[min(terms, key=self._key)] > 0:
+            return 1, [(terms, 1)]
+        return -1, [({monomial: -c for monomial, c in terms.items()}, 1)]
 
     def _sines_restored(
         self, content: int, common: Monomial, parts: list[tuple[Terms, int]]
@@ -437,18 +464,34 @@ class _Presenter:
     ) -> Product:
         over: list[Factor] = []
         under: list[Factor] = []
-        for index, exponent in monomial:
-            inverted = self._inverse_of(index)
-            if inverted is None:
-                over.append(Factor(index if index < self._waves.first else self._waves[index], exponent))
-            else:
-                under += _powers(self(inverted), exponent)
+        motion: list[Factor] = []
+        coordinates: list[Factor] = []
+        slots = self._slots
+        for pair in monomial:
+            slot = slots.get(pair)
+            if slot is None:
+                slot = slots[pair] = self._slot(*pair)
+            place, factors = slot
+            (over, motion, coordinates, under)[place].extend(factors)
+        over += motion
+        over += coordinates
+        if not brackets:  # parameters, motion, coordinates: in order
+            return Product(fmpq(coefficient), tuple(over), _ordered(self, under))
         for terms, exponent in brackets:
             bracket = self._bracket(terms, factored)
             if exponent % 2 and (coefficient < 0 or _only_negative(bracket)) and _takes_sign(bracket):
                 bracket, coefficient = self._negated(bracket), -coefficient
             over.append(Factor(bracket, exponent))
         return Product(fmpq(coefficient), _ordered(self, over), _ordered(self, under))
+
+    def _slot(self, index: int, exponent: int) -> tuple[int, tuple[Factor, ...]]:
+        """Where a power stands in a product (0 parameters, 1 motion, 2 coordinates, 3 denominator), and its factors."""
+        inverted = self._inverse_of(index)
+        if inverted is not None:
+            return 3, tuple(_powers(self(inverted), exponent))
+        level = self.level(index)
+        base = index if index < self._waves.first else self._waves[index]
+        return (1 if level >= _VELOCITY else 2 if level else 0), (Factor(base, exponent),)
 
     # --- brackets --------------------------------------------------------------------------------------------------
 
@@ -460,8 +503,13 @@ class _Presenter:
             self._brackets[key] = self._new_bracket(terms, factored)
         return self._brackets[key]
 
+    def _highest(self, terms: Terms) -> int:
+        """The highest level; each monomial begins with its own."""
+        levels = self._levels
+        return max([levels[monomial[0][0]] for monomial in terms if monomial])
+
     def _new_bracket(self, terms: Terms, factored: bool) -> Sum:
-        level = max(self.level(monomial[0][0]) for monomial in terms if monomial)
+        level = self._highest(terms)
         if level:
             return self._grouped(terms, self._at_level(level), factored)
         return self._collected(terms) if factored and 2 < len(terms) <= COLLECT else self._plain(terms)
@@ -488,7 +536,7 @@ class _Presenter:
             head, tail = split(monomial)
             groups.setdefault(head, {})[tail] = coefficient
         shared: dict[tuple[Any, ...], Terms] = {}
-        for head in sorted(groups, key=lambda m: (-sum(e for _, e in m), self._key(m))):
+        for head in sorted(groups, key=self._degree_and_key):
             product = self._unsigned(self._product(groups[head], factored))
             shared.setdefault((product.over, product.under), {})[head] = int(product.coefficient.p)
         products: list[Product] = []
@@ -528,7 +576,7 @@ class _Presenter:
     def _consistent(self, products: Sequence[Product]) -> list[Product]:
         """No bracket in one term and its negative in another: (A - B)*x - (A - B)*y."""
         held = {f.base for product in products for f in product.over if isinstance(f.base, Sum)}
-        if not held:
+        if not held or not self._turned:
             return list(products)
         return [
             self._unsigned(product)
@@ -597,6 +645,17 @@ class _Presenter:
             inner = (self.rank(f) for term in factor.base.terms for f in (*term.over, *term.under))
             known = self._ranks[factor.base] = max(inner, default=0)
         return known
+
+    def order(self, factor: Factor, mixed: bool) -> tuple[Any, ...]:
+        """Where a factor stands in a product; ``mixed``: beside brackets in which something moves."""
+        rank = self.rank(factor)
+        if isinstance(factor.base, Sum):
+            return (4 if rank else 1,)
+        if isinstance(factor.base, Wave):
+            return (3 if rank else 0, 0, self.place(self._waves.index(factor.base)))
+        if rank >= _VELOCITY:
+            return (5 if mixed else 2, -rank, self.place(factor.base))
+        return (3 if rank else 0, 0, self.place(factor.base))
 
     def length(self, shape: Sum) -> int:
         """How much is read: names, numbers, functions, signs; brackets and fractions."""
@@ -770,9 +829,11 @@ def _common(terms: Terms) -> tuple[int, Monomial, Terms]:
         shared = {k: min(e, shared[k]) for k, e in monomial if k in shared}
     if not shared:
         return content, (), terms if content == 1 else {m: c // content for m, c in terms.items()}
+    gone = set(shared.items())
     rest = {
-        tuple([(k, e - shared.get(k, 0)) for k, e in monomial if e > shared.get(k, 0)]): coefficient // content
-        for monomial, coefficient in terms.items()
+        tuple([p if p[0] not in shared else (p[0], p[1] - shared[p[0]]) for p in monomial if p not in gone]): c
+        // content
+        for monomial, c in terms.items()
     }
     return content, tuple(shared.items()), rest
 
@@ -790,17 +851,18 @@ def _ordered(presenter: _Presenter, factors: Sequence[Factor]) -> tuple[Factor, 
     """Parameters, then motion, then angles; long brackets in the motion come before what multiplies them."""
     if len(factors) < 2:
         return tuple(factors)
-    mixed = any(isinstance(f.base, Sum) and presenter.rank(f) for f in factors)
+    mixed = False
+    for f in factors:
+        if isinstance(f.base, Sum) and presenter.rank(f):
+            mixed = True
+            break
+    orders = presenter._orders
 
     def key(factor: Factor) -> tuple[Any, ...]:
-        rank = presenter.rank(factor)
-        if isinstance(factor.base, Sum):
-            return (4 if rank else 1,)
-        if isinstance(factor.base, Wave):
-            return (3 if rank else 0, 0, presenter.place(presenter._waves.index(factor.base)))
-        if rank >= _VELOCITY:
-            return (5 if mixed else 2, -rank, presenter.place(factor.base))
-        return (3 if rank else 0, 0, presenter.place(factor.base))
+        known = orders.get((factor.base, mixed))
+        if known is None:
+            known = orders[factor.base, mixed] = presenter.order(factor, mixed)
+        return known
 
     return tuple(sorted(factors, key=key))
 
