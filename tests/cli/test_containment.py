@@ -154,7 +154,7 @@ def test_in_a_section_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def planted_target(monkeypatch: pytest.MonkeyPatch, name: str, text: Callable[..., str]) -> None:
-    monkeypatch.setitem(targets.TARGETS, name, replace(targets.TARGETS[name], text=text))
+    monkeypatch.setitem(targets.FORMATS, name, replace(targets.FORMATS[name], text=text))
 
 
 def test_in_a_whole_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
