@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import compress, count
 
 from mbsym.algebra.factors import Polynomial
 
@@ -12,4 +13,8 @@ def occurring(polynomials: Iterable[Polynomial]) -> list[int]:
 
     What an adjoined generator is made of (the argument of a root or a function) is not looked into.
     """
-    return sorted({k for x in polynomials for k, degree in enumerate(x.degrees()) if degree > 0})
+    found: set[int] = set()
+    for x in polynomials:
+        if x:  # else all degrees are -1
+            found.update(compress(count(), x.degrees()))
+    return sorted(found)

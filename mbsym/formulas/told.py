@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Generic, TypeVar
 
 from mbsym.algebra.base import Algebra, Scalar
@@ -61,15 +62,20 @@ class Told(Generic[M]):
         """The definitions that some formulas need, in order, besides those of names ``known`` before."""
         by_index = {self.index(x.name): x for x in self.definitions}
         needed: set[str] = set()
-        pending = [x.polynomial for x in formulas]
+        pending = [occurring_in([x.polynomial for x in formulas], self.ring)]
         while pending:
-            for index in occurring_in([pending.pop()], self.ring):
+            for index in pending.pop():
                 found = by_index.get(index)
                 if found is not None and found.name not in needed:
                     needed.add(found.name)
-                    pending.append(found.formula.polynomial)
+                    pending.append(self.held_by[found.name])
         skipped = set(known)
         return tuple(x for x in self.definitions if x.name in needed and x.name not in skipped)
+
+    @cached_property
+    def held_by(self) -> dict[str, set[int]]:
+        """By name, the generators that each definition holds."""
+        return {x.name: occurring_in([x.formula.polynomial], self.ring) for x in self.definitions}
 
     def index(self, name: str) -> int:
         """The generator of an intermediate."""
@@ -273,10 +279,10 @@ class _Teller(Generic[M]):
         """In how many terms each name occurs; a square counts as two."""
         uses: Counter[int] = Counter()
         for polynomial in polynomials:
-            for index in occurring([polynomial]):
-                if index in names:
-                    linear = polynomial.degrees()[index] == 1
-                    uses[index] += len(polynomial.derivative(index)) if linear else 2
+            degrees = polynomial.degrees()
+            for index in names:
+                if degrees[index] > 0:
+                    uses[index] += len(polynomial.derivative(index)) if degrees[index] == 1 else 2
         return uses
 
     def told(self) -> Told[M]:

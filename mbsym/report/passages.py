@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.told import Definition, Told, occurring_in
+from mbsym.formulas.told import Definition, Told
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.intermediates import Meaning, Quantity
 from mbsym.model.system import INERTIAL, NewtonianGravity, System, UniformGravity
@@ -34,7 +34,7 @@ def passages(
     groups: list[list[Definition[Meaning]]] = []
     home: dict[int, int] = {}
     for item in told.wanted(formulas, known):
-        used = [home[k] for k in occurring_in([item.formula.polynomial], told.ring) if k in home]
+        used = [home[k] for k in told.held_by[item.name] if k in home]
         earliest = max(used, default=0)
         place = next((k for k in range(earliest, len(groups)) if _together(groups[k][0], item)), len(groups))
         if place == len(groups):
@@ -54,7 +54,7 @@ def _together(first: Definition[Meaning], second: Definition[Meaning]) -> bool:
 
 def _by_component(told: Told[Meaning], group: Sequence[Definition[Meaning]]) -> tuple[Definition[Meaning], ...]:
     own = {told.index(item.name) for item in group}
-    if any(own & occurring_in([item.formula.polynomial], told.ring) for item in group):
+    if any(own & told.held_by[item.name] for item in group):
         return tuple(group)
     return tuple(sorted(group, key=lambda item: () if item.meaning is None else item.meaning.place))
 
