@@ -33,7 +33,7 @@ class Motion:
     label: str
     sentences: tuple[str, ...]
     moves: bool
-    drift_of: str = "energy"
+    drift_of: str = "change of the energy"
 
 
 def animation_page(found: Animation, run: Simulation) -> str:
@@ -57,7 +57,9 @@ def animation_page(found: Animation, run: Simulation) -> str:
 def run_motion(found: Animation, run: Simulation) -> Motion:
     """What the template needs of a run, with what is to be said of it."""
     shown = motion(found, tuple(_sentences(found, run)))
-    return replace(shown, drift_of=run.conservation.quantity)
+    # What is conserved drifts by errors alone; anything else may well change.
+    what = "drift" if run.conservation.standing.conserved is True else "change"
+    return replace(shown, drift_of=f"{what} of the {run.conservation.quantity}")
 
 
 def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:

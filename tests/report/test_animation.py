@@ -104,11 +104,14 @@ def test_the_page_says_what_was_integrated() -> None:
     for said in (
         f"Integrated from t = 0 to 6 by {whole.chosen.method.traits.title} (tolerance 1e-10 per step",
         "Energy: conserved (proved)",
+        "<span>relative drift of the energy",
         "Error of the run: about ",
         "between frames points are joined by straight lines, nothing is computed there",
     ):
         assert said in text
     assert text == animation_page(scene("double-pendulum", 6), whole)
+    damped = run("simple-pendulum", 2.0)  # a damper takes its energy: that is no error
+    assert "<span>relative change of the energy" in animation_page(scene("simple-pendulum", 2.0), damped)
     early = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 6, step_limit=100, samples=601)
     assert not early.whole
     assert "The run ended early (step limit); 6 was asked for." in animation_page(animation(early), early)
