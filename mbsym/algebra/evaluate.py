@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -44,6 +44,18 @@ class Carrier:
             for index, exponent in enumerate(monomial):
                 if exponent:
                     term = algebra.times(term, self._power(index, int(exponent)))
+            total = total + term
+        return algebra.reduce(total)
+
+    def termwise(self, terms: Sequence[tuple[fmpq, Sequence[tuple[int, int]]]]) -> Scalar:
+        """The sum of terms given as a coefficient and (generator, exponent) pairs."""
+        algebra = self.algebra
+        self.ring.spend(20 * len(terms))
+        total = algebra.zero
+        for coefficient, factors in terms:
+            term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))
+            for index, exponent in factors:
+                term = algebra.times(term, self._power(index, exponent))
             total = total + term
         return algebra.reduce(total)
 

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.evaluate import Carrier
@@ -31,6 +31,8 @@ IN_PLACE = 4
 FEW_SYMBOLS = 2
 
 M = TypeVar("M")
+#: Coefficients, and (generator, exponent) of what occurs.
+Terms = list[tuple[Any, list[tuple[int, int]]]]
 
 
 @dataclass(frozen=True)
@@ -87,10 +89,23 @@ class Told(Generic[M]):
         Over the system's own ring these are the formulas with every definition put back.  Raises what it raises.
         """
         known = dict(environment)
+        carry = Carrier(self.ring, algebra, known)  # looks a name up when it is first needed
         for item in self.wanted(formulas):
-            known[item.name] = Carrier(self.ring, algebra, known)(item.formula.polynomial)
-        carry = Carrier(self.ring, algebra, known)
-        return [carry(x.polynomial) for x in formulas]
+            known[item.name] = carry.termwise(self._terms(item.formula.polynomial))
+        return [carry.termwise(self._terms(x.polynomial)) for x in formulas]
+
+    @cached_property
+    def _known_terms(self) -> dict[int, tuple[Polynomial, Terms]]:
+        return {}
+
+    def _terms(self, polynomial: Polynomial) -> Terms:
+        """The terms without what does not occur in them: the ring has a generator for every name."""
+        known = self._known_terms.get(id(polynomial))
+        if known is None:
+            used = occurring([polynomial])
+            terms = [(c, [(k, int(m[k])) for k in used if m[k]]) for m, c in polynomial.terms()]
+            known = self._known_terms[id(polynomial)] = (polynomial, terms)  # kept, so that its id stays its own
+        return known[1]
 
 
 def _index(ring: Ring, name: str) -> int:
@@ -223,6 +238,24 @@ def _common(program: Program, live: Sequence[int], named: Collection[int], oppos
     return found
 
 
+class _Counted:
+    """A polynomial, and in how many of its terms each generator occurs; a square counts as two."""
+
+    def __init__(self, polynomial: Polynomial) -> None:
+        self.polynomial = polynomial
+        monomials = polynomial.monoms()
+        self.uses = {k: sum(min(int(m[k]), 2) for m in monomials) for k in occurring([polynomial])}
+
+    def with_images(self, ring: Ring, images: Mapping[int, Polynomial]) -> _Counted:
+        """The same where some generators have images; the object itself where none of them occurs."""
+        if self.uses.keys().isdisjoint(images):
+            return self
+        polynomial = self.polynomial
+        for index in self.uses.keys() & images.keys():  # one by one is quicker; no image holds what has one
+            polynomial = ring.substitute(polynomial, {index: images[index]})
+        return _Counted(polynomial)
+
+
 class _Teller(Generic[M]):
     """Carries a program into a ring in which some of its nodes have names."""
 
@@ -261,29 +294,20 @@ class _Teller(Generic[M]):
         """The nodes whose names save something; the others are written where they are used."""
         ring = self.ring
         bound = occurring_in([g.argument for g in ring.generators if g.argument is not None], ring)
-        left = {index: value for index, (_, value) in self.definitions.items()}
-        formulas = list(self.formulas)
+        left = {index: _Counted(value) for index, (_, value) in self.definitions.items()}
+        formulas = [_Counted(x) for x in self.formulas]
         while True:
-            uses = self._uses([*formulas, *left.values()], left.keys())
+            uses: Counter[int] = Counter()
+            for counted in (*formulas, *left.values()):
+                uses.update(counted.uses)
             images: dict[int, Polynomial] = {}
-            for index, value in list(left.items()):  # in order: what was put in its place makes the next one longer
-                left[index] = ring.substitute(value, dict(images))
-                if index not in bound and _saves_nothing(left[index], uses[index]):
-                    images[index] = left.pop(index)
+            for index in list(left):  # in order: what was put in its place makes the next one longer
+                left[index] = left[index].with_images(ring, images)
+                if index not in bound and _saves_nothing(left[index].polynomial, uses[index]):
+                    images[index] = left.pop(index).polynomial
             if not images:
                 return {self.definitions[index][0] for index in left}
-            formulas = [ring.substitute(x, dict(images)) for x in formulas]
-
-    @staticmethod
-    def _uses(polynomials: Sequence[Polynomial], names: Collection[int]) -> Counter[int]:
-        """In how many terms each name occurs; a square counts as two."""
-        uses: Counter[int] = Counter()
-        for polynomial in polynomials:
-            degrees = polynomial.degrees()
-            for index in names:
-                if degrees[index] > 0:
-                    uses[index] += len(polynomial.derivative(index)) if degrees[index] == 1 else 2
-        return uses
+            formulas = [x.with_images(ring, images) for x in formulas]
 
     def told(self) -> Told[M]:
         definitions = []
