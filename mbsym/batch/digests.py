@@ -86,7 +86,7 @@ def _sources() -> Iterator[tuple[str, Path]]:
         for folder, inside, names in os.walk(root):
             inside[:] = sorted(name for name in inside if name != "__pycache__")
             for name in sorted(names):
-                if name.endswith((".py", ".j2", ".json")):
+                if name.endswith((".py", ".j2", ".json", ".css", ".js")):
                     path = Path(folder, name)
                     yield f"{where}/{path.relative_to(root).as_posix()}", path
 
