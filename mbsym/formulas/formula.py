@@ -14,7 +14,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
 from mbsym.formulas.python import python_text
-from mbsym.formulas.shape import Angles, angles_as
+from mbsym.formulas.shape import Angles, angles_as, angles_or, terms_read
 from mbsym.formulas.wolfram import wolfram_text
 
 
@@ -122,6 +122,11 @@ class Formula(GuessesNames):
     def terms(self) -> int:
         """The length of the expanded normal form."""
         return len(self.polynomial)
+
+    @property
+    def terms_read(self) -> int:
+        """The same with the sums of angles that people are shown."""
+        return terms_read(self.ring, self.polynomial, angles_or("shorter"))
 
     @property
     def degree(self) -> int:

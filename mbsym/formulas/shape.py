@@ -122,10 +122,19 @@ def angles_or(usual: Angles) -> Angles:
 
 def present(ring: Ring, polynomial: Polynomial, angles: Angles = "products") -> Sum:
     """The shape of a polynomial in normal form."""
+    return _presenter(ring)(polynomial, angles)
+
+
+def _presenter(ring: Ring) -> _Presenter:
     presenter = _PRESENTERS.get(ring)
     if presenter is None:
         presenter = _PRESENTERS[ring] = _Presenter(ring)
-    return presenter(polynomial, angles)
+    return presenter
+
+
+def terms_read(ring: Ring, polynomial: Polynomial, angles: Angles) -> int:
+    """How many terms there are with the angles so, brackets multiplied out."""
+    return _presenter(ring).terms_read(polynomial, angles)
 
 
 def length(ring: Ring, shape: Sum) -> int:
@@ -203,6 +212,12 @@ class _Presenter:
         if known is None:
             known = self._shapes[id(polynomial), "products"] = (polynomial, self._shape(scale, terms, under))
         return known[1]
+
+    def terms_read(self, polynomial: Polynomial, angles: Angles) -> int:
+        if angles == "products":
+            return len(polynomial)
+        _, terms = self._terms(polynomial, occurring([polynomial]))
+        return len(self._with_angles(terms, angles)[1])
 
     def _with_angles(self, terms: Terms, angles: Angles) -> tuple[int, Terms]:
         """(a whole number, the terms times it), sums of angles chosen for each product of velocities by itself."""

@@ -6,7 +6,7 @@ closed formulas of everything.  Every target for people makes the same choice he
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +29,7 @@ WHOLE = 200
 SHORTER = 2
 #: More definitions than this nobody follows: some eight pages.
 MOST_DEFINITIONS = 400
+_ENDLESS = 10**9
 
 
 @dataclass(frozen=True)
@@ -54,13 +55,14 @@ def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
     """
     if detail() == FULL:
         return {}
-    wanted = {n: _lengths(n, problems[n]) for n in (1, 2, 3) if n in problems}
-    wanted = {n: (longest, total) for n, (longest, total) in wanted.items() if longest > LONGEST or total > WHOLE}
+    wanted = {n: _formulas(problems[n]) for n in (1, 2, 3) if n in problems}
+    wanted = {n: formulas for n, formulas in wanted.items() if _is_long(formulas)}
     told = analysis.optional("told") if wanted else None
     if told is None:
         return {}
     found = {}
-    for number, (_, total) in wanted.items():
+    for number, closed in wanted.items():
+        total = _ENDLESS if closed is None else sum(x.terms for x in closed)
         formulas = told_formulas(told, number)
         listed = passages(told.told, analysis.system, formulas)
         length = sum(x.terms for x in formulas) + sum(y.formula.terms for x in listed for y in x.definitions)
@@ -88,17 +90,30 @@ def _upper(rows: tuple[tuple[Formula, ...], ...]) -> list[Formula]:
     return [x for i, row in enumerate(rows) for x in row[i:]]
 
 
-def _lengths(number: int, found: Any) -> tuple[int, int]:
-    """(terms of the longest formula, of all of them) of a result as a report prints it; endless where it has none."""
+def _formulas(found: Any) -> list[Formula] | None:
+    """The formulas of a result as a report prints them; None where it has none."""
     match found:
         case Kinematics():
             vectors = (v for x in found.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre))
-            formulas = [x for v in vectors for x in v]
+            return [x for v in vectors for x in v]
         case Energy():
-            formulas = [*found.A1, found.A0, found.force_function]
+            return [*found.A1, found.A0, found.force_function]
         case Equations():
-            formulas = [*_upper(found.mass_matrix.rows), *found.forcing]
-        case _:
-            return 10**9, 10**9
-    terms = [x.terms for x in formulas]
-    return max(terms, default=0), sum(terms)
+            return [*_upper(found.mass_matrix.rows), *found.forcing]
+    return None
+
+
+def _is_long(formulas: Sequence[Formula] | None) -> bool:
+    """Whether there is more to read than a page, or eight lines of one formula; without formulas there would be."""
+    if formulas is None:
+        return True
+    terms = sorted((x.terms for x in formulas), reverse=True)
+    if not terms or (terms[0] <= LONGEST and sum(terms) <= WHOLE):
+        return False
+    # Sums of angles may be much shorter; they are looked for in the longest formula first.
+    longest = max(formulas, key=lambda x: x.terms)
+    return (
+        longest.terms_read > LONGEST
+        or sum(x.terms_read for x in formulas) > WHOLE
+        or any(x.terms > LONGEST and x.terms_read > LONGEST for x in formulas)
+    )

@@ -11,6 +11,7 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.formulas.shape import angles_as
 from mbsym.report import compact as choice
 from mbsym.report import latex_report
 from mbsym.report.compact import compact, told_formulas
@@ -18,8 +19,10 @@ from mbsym.report.detail import detailed
 from mbsym.report.passages import passages
 from mbsym.report.targets import TARGETS
 
-#: The systems of which some problem is told, by problem; all others keep closed formulas.
-TOLD = {"satellite": {1, 2, 3}, "tethered-satellites": {3}, "spatial-arm": {3}}
+#: The systems of which some problem is told, by problem; all others keep closed formulas.  The tether's equations are
+#: long in products of sines and cosines only: in sums of angles, as its paper prints them, they take less than a page.
+TOLD = {"satellite": {1, 2, 3}, "spatial-arm": {3}}
+TOLD_IN_PRODUCTS = TOLD | {"tethered-satellites": {3}}
 
 
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
@@ -27,11 +30,14 @@ def test_only_long_formulas_are_told(path: Path) -> None:
     analysis = mbsym.load(path)
     found = compact(analysis, {n: analysis.stage(n).value for n in (1, 2, 3)})
     assert set(found) == TOLD.get(path.stem, set())
+    with angles_as("products"):
+        found = compact(analysis, {n: analysis.stage(n).value for n in (1, 2, 3)})
+    assert set(found) == TOLD_IN_PRODUCTS.get(path.stem, set())
     with detailed("full"):
         assert compact(analysis, {3: analysis.equations}) == {}
 
 
-@pytest.mark.parametrize("name", sorted(TOLD))
+@pytest.mark.parametrize("name", sorted(TOLD_IN_PRODUCTS))
 def test_passages_define_what_is_used_before_it_is_used(name: str) -> None:
     analysis = mbsym.load(SHIPPED / f"{name}.yaml")
     told = analysis.told
@@ -75,7 +81,7 @@ def test_the_equations_of_the_satellite_take_two_pages_at_most(tmp_path: Path) -
 
 
 @needs_pdflatex
-@pytest.mark.parametrize("name", sorted(TOLD))
+@pytest.mark.parametrize("name", sorted(TOLD_IN_PRODUCTS))
 def test_nothing_overflows(name: str, tmp_path: Path) -> None:
     system = mbsym.load(SHIPPED / f"{name}.yaml").system
     text = TARGETS["latex"].render(Analysis(replace(system, claims=())), (1, 2, 3))
