@@ -49,7 +49,7 @@ def diagram(
     lines = [
         f"\\begin{{tikzpicture}}[x={scale.across:.2f}cm, y=-{scale.down:.2f}cm, font={size}]",
         *(_node(k, node, scale, escaped, inertial) for k, node in enumerate(found.nodes)),
-        *(_joint(joint, scale, names) for joint in found.joints),
+        *(_joint(joint, found, scale, names) for joint in found.joints),
         *_interactions(found),
         "\\end{tikzpicture}",
     ]
@@ -66,7 +66,7 @@ def _node(k: int, node: Node, scale: _Scale, escaped: Callable[[str], str], iner
     return f"\\node[{style}, inner sep={inner}{room}] (n{k}) at ({node.column:g}, {node.row}) {{{text}}};"
 
 
-def _joint(joint: Joint, scale: _Scale, names: LatexNames) -> str:
+def _joint(joint: Joint, found: Interconnection, scale: _Scale, names: LatexNames) -> str:
     label = ""
     if scale.labelled:
         turns = [f"{axis}\\colon {expression(angle, names)}" for axis, angle in joint.turns]
@@ -76,8 +76,10 @@ def _joint(joint: Joint, scale: _Scale, names: LatexNames) -> str:
         shifts = [str(names[name]) for name in joint.coordinates if name not in angles]
         written = ",\\; ".join([*turns, *shifts])
         if written and len(turns) + len(shifts) <= 4:
-            label = f" node[midway, right, font=\\scriptsize] {{${written}$}}"
-    style = "double" if joint.slides else "-"
+            upright = found.nodes[joint.before].column == found.nodes[joint.after].column
+            place = "right" if upright else "fill=white, inner sep=1pt"
+            label = f" node[midway, {place}, font=\\scriptsize] {{${written}$}}"
+    style = "double, double distance=1.2pt" if joint.slides else "-"
     return f"\\draw[{style}] (n{joint.before}) --{label} (n{joint.after});"
 
 

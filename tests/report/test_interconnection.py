@@ -1,16 +1,20 @@
 """The layout of the bodies' tree: every body once, every joint drawn, nothing over anything else, within a page."""
 
 import json
+import re
 from itertools import combinations
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import mbsym
+from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import System
 from mbsym.report.interconnection import MOST_COLUMNS, MOST_ROWS, Interconnection, Kind, interconnection
-from tests.conftest import SHIPPED
+from mbsym.report.latex_diagram import diagram
+from tests.conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 
 def tree(parents: list[int]) -> System:
@@ -118,3 +122,26 @@ def test_planted_overlap_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_places", lambda strip: {k: (0.0, n) for n, k in enumerate(strip.children)})
     with pytest.raises(AssertionError):
         laid_out([0, 0, 0], 4)
+
+
+@needs_pdflatex
+@pytest.mark.parametrize("width", [15.0, 7.6])
+def test_pictures_of_long_and_wide_trees_fit_their_page(width: float, tmp_path: Path) -> None:
+    fingers = [0, 1, 2, 3, 4, 5, 3, 7, 8, 9, 10, 10, 10, 10, 10, 3, 16, 17, 18, 19, 19, 19, 19, 19, 1, 25, 26, 27, 28]
+    humanoid = [*fingers, 1, 30, 31, 32, 33, 6, 6, 35, 36, 29, 34]
+    systems = [tree(parents) for parents in (list(range(60)), humanoid, [0] * 40, [0, 1, 1, 1, 2, 3, 4])]
+    pictures = [diagram(one, LatexNames(one.coordinates), str, "inertial frame", width) for one in systems]
+    box = "\\newbox\\held\n"
+    sizes = "".join(
+        f"\\setbox\\held=\\hbox{{{picture}}}\\typeout{{size \\the\\wd\\held, \\the\\ht\\held}}\n"
+        for picture in pictures
+    )
+    text = (
+        f"\\documentclass{{article}}\\usepackage{{amsmath,tikz}}\\begin{{document}}\n{box}{sizes}x\\end{{document}}\n"
+    )
+    log = compiled_latex(text, tmp_path)
+    found = re.findall(r"size ([\d.]+)pt, ([\d.]+)pt", log)
+    assert len(found) == 4
+    for across, down in found:
+        assert float(across) / 28.45 <= width + 1
+        assert 2 < float(down) / 28.45 <= 19
