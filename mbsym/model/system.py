@@ -375,7 +375,8 @@ class System(GuessesNames):
     """A whole description.
 
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
-    the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English).
+    the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
+    ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
     """
 
     name: str
@@ -397,6 +398,7 @@ class System(GuessesNames):
     source: str = ""
     symbols: tuple[WrittenSymbol, ...] = ()
     language: str = ""
+    order: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"

@@ -240,7 +240,10 @@ def components(matrices: Sequence[Matrix]) -> list[list[int]]:
 
 
 def _subsystems(scene: Scene, whole: Linearisation) -> tuple[Subsystem, ...]:
-    return tuple(_subsystem(scene, whole, indices) for indices in components(whole.matrices))
+    told = [*scene.system.order, *whole.coordinates]
+    rank = [told.index(name) for name in whole.coordinates]
+    found = [sorted(indices, key=rank.__getitem__) for indices in components(whole.matrices)]
+    return tuple(_subsystem(scene, whole, indices) for indices in sorted(found, key=lambda one: rank[one[0]]))
 
 
 def _subsystem(scene: Scene, whole: Linearisation, indices: list[int]) -> Subsystem:

@@ -8,6 +8,7 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "в развёрнутом виде слагаемых: [[terms]], степень [[degree]]; целиком --- в results.json",
     "Simulation until $t = [[until]]$ by [[method]]; values and initial state are in simulation.json.": "Расчёт движения до $t = [[until]]$, метод: [[method]]; значения параметров и начальное состояние --- в simulation.json.",
     "It ended early.": "Расчёт прервался раньше срока.",
     "Through intermediate quantities, each defined once, in the order of the recursion. Their first index is the number of a body, those after the comma are components in its axes; components that are not listed are zero, or so short that they are written where they occur. Accelerations, forces and moments are those at $\\ddot q = 0$.": "Через промежуточные величины, каждая определена один раз, в порядке рекурсии. Первый индекс --- номер тела, после запятой --- компонента в его осях; не перечисленные компоненты равны нулю или так коротки, что написаны там, где встречаются. Ускорения, силы и моменты --- при $\\ddot q = 0$.",

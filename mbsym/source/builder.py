@@ -76,6 +76,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         source=fields.text("source"),
         symbols=read_symbols(fields.get("latex"), reading),
         language=_language(fields, reading),
+        order=_order(fields, reading),
     )
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system.coordinates, reading)
@@ -95,6 +96,20 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
 def _language(fields: Fields, reading: Reading) -> str:
     node = fields.get("language")
     return "" if node is None else reading.word(node, "'language'", LANGUAGES) or ""
+
+
+def _order(fields: Fields, reading: Reading) -> tuple[str, ...]:
+    node = fields.get("order")
+    allowed = Allowed("an order of coordinates", ("coordinate",))
+    found: list[str] = []
+    for item in () if node is None else reading.items(node, "'order'"):
+        scalar = reading.scalar(item, "a coordinate")
+        if scalar is None or not reading.scope.check_name(scalar.text, scalar.span, allowed):
+            continue
+        if scalar.text in found:
+            reading.error("repeated-key", f"{ascii_safe(scalar.text)} is given twice", scalar.span)
+        found.append(scalar.text)
+    return tuple(found)
 
 
 def _with_units(system: System, fields: Fields, reading: Reading) -> System:

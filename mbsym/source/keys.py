@@ -25,6 +25,7 @@ SYSTEM = {
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
     "source": "where the system is from: a publication, for the references of reports",
     "latex": "how names are written in LaTeX: {d_Ccm1: 'd_{C1}', phi: '\\phi'}: letters, accents, fonts and an index",
+    "order": "in which order subsystems and their coordinates are told, in problems 5 and 6: [theta, psi]",
     "language": "of the LaTeX reports: en, ru or es",
     "units": "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
     "limits": "least and greatest values of coordinates, for drawing: {q1: [-pi, pi]}; no force keeps them",

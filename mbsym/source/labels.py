@@ -9,6 +9,7 @@ HEADER = {
     "dimensionless time": "dimensionless time",
     "source": "source",
     "language": "language",
+    "order": "order",
 }
 
 BODY = {

@@ -73,6 +73,7 @@ def _system_values() -> dict[str, Schema]:
         "description": {"type": "string"},
         "source": {"type": "string"},
         "latex": _named({"type": "string", "maxLength": LONGEST}),
+        "order": names,
         "language": {"enum": list(LANGUAGES)},
         "dimensionless time": expression,
         "parameters": {"anyOf": [_named(_reference("parameter")), names]},

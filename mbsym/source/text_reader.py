@@ -189,7 +189,8 @@ class _TextReader:
                 continue
             label, word, value = found
             free = word in ("mechanical system", "description", "source")
-            entries.append(Entry(_key(label, HEADER[word]), self.unquoted(value) if free else value))
+            read = self.items(value) if word == "order" else self.unquoted(value) if free else value
+            entries.append(Entry(_key(label, HEADER[word]), read))
         return entries
 
     def section(self, block: _Block) -> Entry:

@@ -28,6 +28,8 @@ def to_text(system: System) -> str:
         lines.append(f"Source: {_free(system.source)}")
     if system.language:
         lines.append(f"Language: {system.language}")
+    if system.order:
+        lines.append(f"Order: {_braces(list(system.order))}")
     lines.append(f"Number of bodies: {len(system.bodies)}")
     if system.time_scale is not None:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")

@@ -33,6 +33,8 @@ def to_yaml(system: System) -> str:
         lines.append(f"source: {scalar_text(system.source)}")
     if system.language:
         lines.append(f"language: {system.language}")
+    if system.order:
+        lines.append(f"order: [{', '.join(system.order)}]")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})

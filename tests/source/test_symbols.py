@@ -67,3 +67,22 @@ def test_nothing_else_gets_through(symbol: str, place: int) -> None:
 def test_unknown_names_and_languages() -> None:
     _, complaints = read(described("{mm1: a}").replace("language: es", "language: de"))
     assert sorted(item.code for item in complaints.items) == ["bad-word", "unknown-name"]
+
+
+def test_a_user_says_in_which_order_subsystems_are_told() -> None:
+    text = (SHIPPED / "satellite.yaml").read_text()
+    plain = mbsym.loads(text, (5,)).linearisation
+    assert [part.coordinates for part in plain.subsystems] == [("psi", "phi", "sigma"), ("theta", "delta")]
+    system, complaints = read(text + "\norder: [delta, phi]\n")
+    assert not complaints.items
+    assert read(to_yaml(system))[0] == system
+    assert read(to_text(system))[0] == system
+    told = mbsym.loads(text + "\norder: [delta, phi]\n", (5, 6))
+    found = told.linearisation.subsystems
+    assert [part.coordinates for part in found] == [("delta", "theta"), ("phi", "psi", "sigma")]
+    # Turned around, the matrices are the same: the pair (theta, delta) of the paper.
+    before, after = plain.subsystems[1].K, found[0].K
+    assert all(str(after[i, j]) == str(before[1 - i, 1 - j]) for i in (0, 1) for j in (0, 1))
+    assert str(before[0, 0]) != str(before[1, 1])
+    _, complaints = read(text + "\norder: [delta, delta, l]\n")
+    assert sorted(item.code for item in complaints.items) == ["misplaced-name", "repeated-key"]
