@@ -6,6 +6,7 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "with": "con",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "desarrollado, [[terms]] términos, de grado [[degree]]; entero en results.json",
     "Simulation until $t = [[until]]$ by [[method]]; values and initial state are in simulation.json.": "Simulación hasta $t = [[until]]$, método: [[method]]; los valores y el estado inicial están en simulation.json.",
     "It ended early.": "Terminó antes de tiempo.",

@@ -8,6 +8,7 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "with": "где",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "в развёрнутом виде слагаемых: [[terms]], степень [[degree]]; целиком --- в results.json",
     "Simulation until $t = [[until]]$ by [[method]]; values and initial state are in simulation.json.": "Расчёт движения до $t = [[until]]$, метод: [[method]]; значения параметров и начальное состояние --- в simulation.json.",
     "It ended early.": "Расчёт прервался раньше срока.",
