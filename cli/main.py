@@ -36,6 +36,7 @@ COMMANDS = {
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
     "convert": Listed("convert", "Convert descriptions between YAML and plain text."),
     "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
+    "lsp": Listed("lsp", "Serve an editor: complaints, completion, hover."),
     "explain": Listed("explain", "Tell what a problem computes, what a description holds."),
 }
 

@@ -29,11 +29,12 @@ BELOW = {
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation",
     "studies": "expressions algebra model mechanics formulas problems analysis numerics simulation",
+    "editing": "expressions algebra model source formulas analysis",
     "batch": "expressions algebra model source formulas problems analysis report __init__",
     "diff": "expressions algebra formulas report",
     "__init__": "source model analysis numerics simulation studies",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
-    " diff __init__",
+    " diff editing __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

@@ -97,8 +97,13 @@ def is_description(path: Path) -> bool:
         return True
     except (OSError, ValueError):
         return False
-    text = normalised(data.decode("utf-8", "replace"))
-    return b"\0" not in data and (has_key(text) or has_bodies(text) or has_text_marks(text))
+    return b"\0" not in data and says_so(data.decode("utf-8", "replace"))
+
+
+def says_so(text: str) -> bool:
+    """Whether a text says of itself that it is a description."""
+    text = normalised(text)
+    return has_key(text) or has_bodies(text) or has_text_marks(text)
 
 
 def _is_text(text: str, filename: str) -> bool:

@@ -1,0 +1,144 @@
+"""The language server: what :mod:`mbsym.editing` knows, in the words of the protocol."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.editing import explanation, suggestions
+from mbsym.expressions.place import Complaint
+from mbsym.model.system import System
+from mbsym.source import read
+from mbsym.source.document import says_so
+
+_SEVERITIES = {"error": types.DiagnosticSeverity.Error, "warning": types.DiagnosticSeverity.Warning}
+
+_KINDS = {
+    "key": types.CompletionItemKind.Property,
+    "name": types.CompletionItemKind.Variable,
+    "body": types.CompletionItemKind.Class,
+    "function": types.CompletionItemKind.Function,
+    "word": types.CompletionItemKind.EnumMember,
+}
+
+
+@dataclass
+class Seen:
+    """The last text of a document that could be read, and what is derived from it when somebody asks."""
+
+    system: System
+    analysis: Analysis
+
+
+class Server(LanguageServer):
+    """One for each editor."""
+
+    def __init__(self) -> None:
+        super().__init__("mbsym", mbsym.__version__)
+        self.seen: dict[str, Seen] = {}
+
+    def look(self, uri: str) -> None:
+        """Reads a document and publishes what there is to complain about."""
+        document = self.workspace.get_text_document(uri)
+        text = document.source
+        name = Path(unquote(urlsplit(uri).path)).name
+        found: list[types.Diagnostic] = []
+        if says_so(text):
+            system, complaints = read(text, name)
+            if system is not None and (uri not in self.seen or self.seen[uri].system != system):
+                self.seen[uri] = Seen(system, Analysis(system))
+            lines = text.splitlines()
+            found = [_diagnostic(complaint, lines) for complaint in complaints.sorted()]
+        self.text_document_publish_diagnostics(
+            types.PublishDiagnosticsParams(uri=uri, diagnostics=found, version=document.version)
+        )
+
+
+def _diagnostic(complaint: Complaint, lines: list[str]) -> types.Diagnostic:
+    hint = f"\n{complaint.hint}" if complaint.hint else ""
+    return types.Diagnostic(
+        range=_range(complaint, lines),
+        message=complaint.message + hint,
+        severity=_SEVERITIES[complaint.severity],
+        code=complaint.code,
+        source="mbsym",
+    )
+
+
+def _range(complaint: Complaint, lines: list[str]) -> types.Range:
+    span = complaint.span
+    if span is None or span.line > len(lines):
+        return types.Range(types.Position(0, 0), types.Position(0, 1))
+    line = lines[span.line - 1]
+    first, last = (units(line, column) for column in (span.column - 1, span.column - 1 + span.length))
+    return types.Range(types.Position(span.line - 1, first), types.Position(span.line - 1, max(last, first + 1)))
+
+
+def units(line: str, column: int) -> int:
+    """A column in characters as the protocol counts it, in units of UTF-16."""
+    return len(line[:column].encode("utf-16-le")) // 2
+
+
+def characters(line: str, column: int) -> int:
+    """The inverse of :func:`units`."""
+    return len(line.encode("utf-16-le")[: 2 * column].decode("utf-16-le", "ignore"))
+
+
+def server() -> Server:
+    """A server with everything that it can do."""
+    made = Server()
+
+    @made.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def opened(parameters: types.DidOpenTextDocumentParams) -> None:
+        made.look(parameters.text_document.uri)
+
+    @made.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def changed(parameters: types.DidChangeTextDocumentParams) -> None:
+        made.look(parameters.text_document.uri)
+
+    @made.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def closed(parameters: types.DidCloseTextDocumentParams) -> None:
+        made.seen.pop(parameters.text_document.uri, None)
+
+    @made.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[" ", "[", "{"]))
+    def complete(parameters: types.CompletionParams) -> list[types.CompletionItem]:
+        uri, position = parameters.text_document.uri, parameters.position
+        text = made.workspace.get_text_document(uri).source
+        lines = text.split("\n")
+        column = characters(lines[position.line], position.character) if position.line < len(lines) else 0
+        seen = made.seen.get(uri)
+        return [
+            types.CompletionItem(
+                label=one.label,
+                kind=_KINDS[one.kind],
+                documentation=one.meaning or None,
+                insert_text=one.insert or one.label,
+                sort_text=f"{number:05}",
+            )
+            for number, one in enumerate(suggestions(text, position.line, column, seen.system if seen else None))
+        ]
+
+    @made.feature(types.TEXT_DOCUMENT_HOVER)
+    def hover(parameters: types.HoverParams) -> types.Hover | None:
+        uri, position = parameters.text_document.uri, parameters.position
+        text = made.workspace.get_text_document(uri).source
+        lines = text.split("\n")
+        if position.line >= len(lines):
+            return None
+        seen = made.seen.get(uri)
+        column = characters(lines[position.line], position.character)
+        told = explanation(text, position.line, column, seen.analysis if seen else None)
+        return None if told is None else types.Hover(types.MarkupContent(types.MarkupKind.Markdown, told))
+
+    return made
+
+
+def serve() -> None:
+    """On standard input and output, until the editor ends it."""
+    server().start_io()

@@ -1,0 +1,103 @@
+"""What may be written at a place: keys with their meanings, names of the description, words of a fixed set."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from mbsym.editing.keys import keys_in
+from mbsym.editing.place import Where, where
+from mbsym.expressions.tree import FUNCTIONS
+from mbsym.model.claims import CLAIMS
+from mbsym.model.system import System, velocity_name
+from mbsym.source.keys import ALIASES, SIGNS
+
+_AXES = ("1", "2", "3")
+
+#: Key -> the words that its value may be.
+_WORDS = {
+    "sign": SIGNS,
+    "inertia about": ("joint", "mass centre"),
+    "claim": tuple(CLAIMS),
+    "as": ("necessary", "sufficient"),
+}
+
+#: Keys whose values name bodies; those of loads may also be 0.
+_BODIES = ("attached to", "centre", "about", "body", "axes", "reaction on")
+
+#: Keys whose values are for people, or numbers.
+_FREE = ("name", "description", "meaning", "place", "unit", "units", "mbsym", "values", "order", "source")
+
+_DECLARED = re.compile(r"^\s+([A-Za-z][A-Za-z0-9_]*)\s*:", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """``kind`` is key, name, body, function or word; ``insert`` what is written, a key with its colon."""
+
+    label: str
+    kind: str
+    meaning: str = ""
+    insert: str = ""
+
+
+def suggestions(text: str, line: int, column: int, system: System | None = None) -> list[Suggestion]:
+    """What may stand at a place (from 0), in the order in which people want it.
+
+    ``system`` is the last one that could be read of the description, for its names; without one those that the text
+    declares as parameters are found by their look.
+    """
+    lines = text.split("\n")
+    found = where(lines, line, column)
+    if found.is_value:
+        return list(_values(found, text, system))
+    known = keys_in(found.path)
+    keys = [Suggestion(key, "key", meaning, f"{key}: ") for key, meaning in known.items() if key not in found.beside]
+    if keys or found.path[:1] not in {("motion",), ("initial",), ("limits",), ("units",)}:
+        return keys
+    return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
+
+
+def _values(found: Where, text: str, system: System | None) -> Iterator[Suggestion]:
+    key = ALIASES.get(found.path[-1], found.path[-1])
+    if key in _WORDS:
+        yield from (Suggestion(word, "word", insert=word) for word in _WORDS[key])
+        return
+    if key == "parameters" or (found.path[:1] == ("parameters",) and len(found.path) == 2):
+        yield from (Suggestion(sign, "word", "its sign", sign) for sign in SIGNS)
+        return
+    if key == "axes" and "rotation" in found.path:
+        yield from (Suggestion(axis, "word", "a rotation axis", axis) for axis in _AXES)
+        return
+    if key in _BODIES and not (key == "body" and found.path[0] == "bodies"):
+        yield Suggestion("0", "body", "the inertial frame", "0")
+        yield from (Suggestion(body.name, "body", "a body", body.name) for body in (system.bodies if system else ()))
+        return
+    if key in ("coordinate", "coordinates"):
+        yield from (Suggestion(name, "name", "a coordinate", name) for name in _coordinates(system))
+        return
+    if key not in _FREE:
+        yield from _names(text, system, "loads" in found.path or "claims" in found.path)
+
+
+def _coordinates(system: System | None) -> Iterable[str]:
+    return system.coordinates if system else ()
+
+
+def _names(text: str, system: System | None, velocities: bool) -> Iterator[Suggestion]:
+    """Every name that an expression may hold."""
+    if system is None:
+        section = re.search(r"^parameters:\s*\n((?:[ \t]+.*\n|\s*\n)*)", text, re.MULTILINE)
+        names = _DECLARED.findall(section[1]) if section else []
+        yield from (Suggestion(name, "name", "a parameter", name) for name in names)
+    else:
+        yield from (Suggestion(one.name, "name", one.meaning or "a parameter", one.name) for one in system.parameters)
+        yield from (Suggestion(name, "name", "a coordinate", name) for name in system.coordinates)
+        if velocities:
+            rates = map(velocity_name, system.coordinates)
+            yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
+        yield from (Suggestion(one.name, "name", one.meaning or "prescribed", one.name) for one in system.prescribed)
+        yield from (Suggestion(one.name, "name", "a notation", one.name) for one in system.notation)
+    yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
+    yield Suggestion("pi", "word", "3.14159...", "pi")

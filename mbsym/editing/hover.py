@@ -1,0 +1,106 @@
+"""What a word of a description means: a key by the reader's own tables, a name by what was declared and derived."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mbsym.editing.keys import keys_in
+from mbsym.editing.place import key_at, where, word_at
+from mbsym.expressions.tree import text as written
+from mbsym.model.claims import CLAIMS
+from mbsym.source.keys import ALIASES
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.formulas.formula import Column, Formula
+
+#: A derived formula with more terms is counted.
+MOST_TERMS = 40
+
+
+def explanation(text: str, line: int, column: int, analysis: Analysis | None = None) -> str | None:
+    """Markdown about the word at a place (from 0), or None where there is nothing to say.
+
+    ``analysis`` is that of the last text that could be read: what is derived comes from it.
+    """
+    lines = text.split("\n")
+    if line >= len(lines):
+        return None
+    key = key_at(lines[line], column)
+    found = where(lines, line, len(lines[line][:column]) if not key else lines[line].index(key))
+    if key:
+        known = keys_in(found.path if not found.is_value else found.path[:-1])
+        meaning = known.get(ALIASES.get(key, key))
+        if meaning is not None:
+            return f"**{key}**: {meaning}"
+    value = lines[line][lines[line].find(":") + 1 :].strip(" {}[],")
+    if value in CLAIMS:
+        return f"**{value}**: {CLAIMS[value].meaning}"
+    if analysis is None:
+        return None
+    word, _, _ = word_at(lines[line], column)
+    return _name(word, analysis) or _body(value, analysis) or _body(word, analysis)
+
+
+def _name(word: str, analysis: Analysis) -> str | None:
+    """A parameter, coordinate, velocity, prescribed motion, notation."""
+    system = analysis.system
+    unit = system.units.of(word)
+    told = f" [{unit}]" if unit else ""
+    for parameter in system.parameters:
+        if parameter.name == word:
+            value = "" if parameter.value is None else f" = {written(parameter.value)}"
+            meaning = f": {parameter.meaning}" if parameter.meaning else ""
+            return f"**{word}**{value}{told}, {parameter.sign}{meaning}"
+    name = word.removesuffix("_dot")
+    if name in system.coordinates:
+        body = next(body.name for body in system.bodies if name in body.coordinates)
+        parts = [
+            f"**{word}**{told}: {'velocity of' if name != word else ''} a coordinate of {body}".replace(":  ", ": ")
+        ]
+        energy = _or_none(lambda: analysis.energy)
+        if energy is not None and name in energy.cyclic:
+            parts.append("cyclic: T and U do not hold it")
+        return "; ".join(parts)
+    for motion in system.prescribed:
+        if motion.name == word:
+            return f"**{word}**{told}: prescribed, {word}' = {written(motion.rate)}"
+    for symbol in system.notation:
+        if symbol.name == word:
+            return f"**{word}** = {written(symbol.value)}"
+    return None
+
+
+def _body(word: str, analysis: Analysis) -> str | None:
+    """A body with its angular velocity and the velocity of its mass centre, in its own axes."""
+    if not any(body.name == word for body in analysis.system.bodies):
+        return None
+    kinematics = _or_none(lambda: analysis.kinematics)
+    if kinematics is None:
+        return f"**{word}**: a body"
+    found = kinematics.body(word)
+    return "\n\n".join(
+        [
+            f"**{word}**, in its own axes",
+            f"angular velocity: {_vector(found.angular_velocity)}",
+            f"velocity of the mass centre: {_vector(found.velocity_mass_centre)}",
+        ]
+    )
+
+
+def _vector(column: Column) -> str:
+    return "`[" + ", ".join(map(_shown, column)) + "]`"
+
+
+def _shown(formula: Formula) -> str:
+    return str(formula) if formula.terms <= MOST_TERMS else f"({formula.terms} terms)"
+
+
+def _or_none(derive):  # type: ignore[no-untyped-def]
+    from mbsym.algebra.failures import Failure
+    from mbsym.analysis.stages import Unavailable
+
+    try:
+        return derive()
+    except (Unavailable, Failure):
+        return None

@@ -1,0 +1,61 @@
+"""Which keys may stand where in a description: the tables of the reader by the path of a place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mbsym.source.keys import (
+    ALIASES,
+    BODY,
+    CLAIM,
+    INERTIA,
+    INITIAL,
+    LOAD_MEANINGS,
+    LOADS,
+    MOTION,
+    PARAMETER,
+    POINT,
+    PRESCRIBED,
+    ROTATION,
+    SHAPE,
+    SIGNS,
+    SYSTEM,
+)
+
+_SIGN_WORDS = {sign: f"true, short for sign: {sign}" for sign in SIGNS}
+
+#: Top-level key -> keys of the record that each of its names has.
+_RECORDS: dict[str, Mapping[str, str]] = {
+    "parameters": {**PARAMETER, **_SIGN_WORDS},
+    "prescribed": PRESCRIBED,
+    "motion": MOTION,
+    "initial": INITIAL,
+}
+
+#: Key inside a body -> keys inside it.
+_IN_BODY: dict[str, Mapping[str, str]] = {"rotation": ROTATION, "inertia": INERTIA, "shapes": SHAPE}
+
+
+def keys_in(path: tuple[str, ...]) -> Mapping[str, str]:
+    """The keys that a mapping at this place may have, with their meanings; none where names are chosen freely."""
+    plain = tuple(ALIASES.get(key, key) for key in path)
+    match plain:
+        case ():
+            return SYSTEM
+        case ("bodies",):
+            return BODY
+        case ("bodies", *_, "shapes", "rotation"):
+            return ROTATION
+        case ("bodies", *_, key):
+            return _IN_BODY.get(key, {})
+        case ("loads",):
+            return LOAD_MEANINGS
+        case ("loads", kind):
+            return LOADS.get(kind, {})
+        case ("loads", _, "between"):
+            return POINT
+        case ("claims",):
+            return CLAIM
+        case (section, _):
+            return _RECORDS.get(section, {})
+    return {}
