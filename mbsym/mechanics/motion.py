@@ -8,6 +8,7 @@ not steady).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, divide, number
@@ -21,8 +22,19 @@ def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
     return {name: given.get(name, (ZERO, ZERO)) for name in system.coordinates}
 
 
+#: What was found scene by scene: it is asked for again and again.
+_TURNING: WeakKeyDictionary[Scene, tuple[str, ...]] = WeakKeyDictionary()
+_RELATIONS: WeakKeyDictionary[Scene, dict[int, Polynomial]] = WeakKeyDictionary()
+
+
 def turning(scene: Scene) -> tuple[str, ...]:
     """The coordinates whose unperturbed rate is not zero, relations between parameters used."""
+    if scene not in _TURNING:
+        _TURNING[scene] = _turning(scene)
+    return _TURNING[scene]
+
+
+def _turning(scene: Scene) -> tuple[str, ...]:
     rates = {name: scene.lower(rate) for name, (_, rate) in motion_values(scene.system).items()}
     if all(rate.is_zero() for rate in rates.values()):
         return ()
@@ -69,6 +81,12 @@ def rate_on_motion(scene: Scene, x: Polynomial) -> Polynomial:
 
 def relations(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices of dependent parameters, their sines and cosines, and the values in independent ones."""
+    if scene not in _RELATIONS:
+        _RELATIONS[scene] = _relations(scene)
+    return dict(_RELATIONS[scene])
+
+
+def _relations(scene: Scene) -> dict[int, Polynomial]:
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
     for relation in scene.system.relations:
