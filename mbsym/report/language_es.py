@@ -8,6 +8,8 @@ from mbsym.problems.stability.word import Word
 SENTENCES = {
     "with": "con",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "desarrollado, [[terms]] términos, de grado [[degree]]; entero en results.json",
+    "where $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ and $T_0$, the value of $T$ at $\\dot q = 0$, are the parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is that of problem 3.": "donde $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ y $T_0$, el valor de $T$ en $\\dot q = 0$, son las partes de $T$ cuadrática en las velocidades y libre de ellas; $T$ y $U$ son las del problema 2, $M$ es la del problema 3.",
+    "with": "con",
     "Simulation until $t = [[until]]$ by [[method]]; values and initial state are in simulation.json.": "Simulación hasta $t = [[until]]$, método: [[method]]; los valores y el estado inicial están en simulation.json.",
     "It ended early.": "Terminó antes de tiempo.",
     "Through intermediate quantities, each defined once, in the order of the recursion. Their first index is the number of a body, those after the comma are components in its axes; components that are not listed are zero, or so short that they are written where they occur. Accelerations, forces and moments are those at $\\ddot q = 0$.": "Mediante magnitudes intermedias, cada una definida una vez, en el orden de la recursión. Su primer índice es el número de un cuerpo, los que siguen a la coma son componentes en sus ejes; las componentes que no se enumeran son cero, o tan cortas que se escriben donde aparecen. Las aceleraciones, fuerzas y momentos son los que hay con $\\ddot q = 0$.",

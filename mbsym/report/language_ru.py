@@ -10,6 +10,8 @@ _ROUTES = "Эти результаты получены вторым, незав
 SENTENCES = {
     "with": "где",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "в развёрнутом виде слагаемых: [[terms]], степень [[degree]]; целиком --- в results.json",
+    "where $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ and $T_0$, the value of $T$ at $\\dot q = 0$, are the parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is that of problem 3.": "где $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ и $T_0$ (значение $T$ при $\\dot q = 0$) --- части $T$, квадратичная по скоростям и свободная от них; $T$ и $U$ --- из задачи 2, $M$ --- из задачи 3.",
+    "with": "где",
     "Simulation until $t = [[until]]$ by [[method]]; values and initial state are in simulation.json.": "Расчёт движения до $t = [[until]]$, метод: [[method]]; значения параметров и начальное состояние --- в simulation.json.",
     "It ended early.": "Расчёт прервался раньше срока.",
     "Through intermediate quantities, each defined once, in the order of the recursion. Their first index is the number of a body, those after the comma are components in its axes; components that are not listed are zero, or so short that they are written where they occur. Accelerations, forces and moments are those at $\\ddot q = 0$.": "Через промежуточные величины, каждая определена один раз, в порядке рекурсии. Первый индекс --- номер тела, после запятой --- компонента в его осях; не перечисленные компоненты равны нулю или так коротки, что написаны там, где встречаются. Ускорения, силы и моменты --- при $\\ddot q = 0$.",

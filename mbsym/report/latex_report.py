@@ -19,6 +19,7 @@ from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_n
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.model.system import System, Tensor
+from mbsym.problems.integrals import ENERGY
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
@@ -165,6 +166,7 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if verdicts is not None else "",
         DEPENDS=Word.DEPENDS,
+        ENERGY=ENERGY,
         decided=decided,
         claims=analysis.claims,
         outcomes=Counter(claim_line(result).word for result in analysis.claims),

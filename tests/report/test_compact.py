@@ -101,3 +101,24 @@ def test_a_chain_that_nobody_follows_is_counted(monkeypatch: pytest.MonkeyPatch)
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     monkeypatch.setattr(choice, "MOST_DEFINITIONS", 10)
     assert compact(analysis, {3: analysis.equations}) == {}
+
+
+def test_the_energy_integral_is_told_through_problems_2_and_3() -> None:
+    """And what is said of it is so: T_2 - T_0 - U, from the closed energies, is the integral."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    (integral,) = analysis.integrals
+    energy, ring = analysis.energy, analysis.ring
+    rates = [ring.generator("velocity", name) for name in analysis.system.coordinates]
+    matrix = analysis.equations.mass_matrix.polynomials
+    doubled = sum((a * matrix[i][j] * b for i, a in enumerate(rates) for j, b in enumerate(rates)), ring.zero)
+    at_rest = {ring.index("velocity", name): ring.zero for name in analysis.system.coordinates}
+    resting = ring.substitute(energy.kinetic_energy.polynomial, at_rest)
+    difference = 2 * (integral.formula.polynomial + resting + energy.force_function.polynomial) - doubled
+    assert ring.is_zero(difference) is True
+    said = "T_2 - T_0 - U = \\mathrm{const}"
+    text = TARGETS["latex"].render(analysis, (2, 3, 7))
+    assert said in text
+    assert f"Written out there are {integral.formula.terms} terms." in text
+    # Without the problems that it refers to, it is written out.
+    assert said not in TARGETS["latex"].render(analysis, (7,))
+    assert said not in TARGETS["latex"].render(mbsym.load(SHIPPED / "double-pendulum.yaml"), (2, 3, 7))
