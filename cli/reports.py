@@ -27,7 +27,7 @@ from mbsym_cli.files import deliver, delivered, digest_of, obstacle
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.formulas.shape import Angles
+    from mbsym.formulas.tree import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
     from mbsym.report.made_figures import MadeFigure
@@ -75,7 +75,7 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
-    from mbsym.formulas.shape import angles_as
+    from mbsym.formulas.tree import angles_as
     from mbsym.report.html_motion import animated
 
     started = time.perf_counter()
@@ -142,7 +142,7 @@ def _show(
 
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
-    from mbsym.formulas.shape import angles_as
+    from mbsym.formulas.tree import angles_as
     from mbsym.report.summary import summary
 
     with angles_as(request.angles or "shorter"):

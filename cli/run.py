@@ -14,7 +14,7 @@ from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
 
 if TYPE_CHECKING:
-    from mbsym.formulas.shape import Angles
+    from mbsym.formulas.tree import Angles
 
 
 @click.command("run")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
     from mbsym.expressions.place import Complaint
-    from mbsym.formulas.shape import Angles
+    from mbsym.formulas.tree import Angles
     from mbsym.model.system import System
 
 
@@ -50,7 +50,7 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
 
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
-    from mbsym.formulas.shape import angles_as
+    from mbsym.formulas.tree import angles_as
     from mbsym.report.detail import detailed
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all

@@ -6,7 +6,8 @@ from typing import Any
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.formulas.python import declared_name
-from mbsym.formulas.shape import Product, Sum, Wave, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import Product, Sum, Wave
 
 
 def to_sympy(ring: Ring, polynomial: Polynomial) -> Any:

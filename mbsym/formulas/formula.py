@@ -14,7 +14,8 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
 from mbsym.formulas.python import python_text
-from mbsym.formulas.shape import Angles, angles_as, angles_or, terms_read
+from mbsym.formulas.shape import terms_read
+from mbsym.formulas.tree import Angles, angles_as, angles_or
 from mbsym.formulas.wolfram import wolfram_text
 
 

@@ -19,7 +19,8 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
-from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, length, present
+from mbsym.formulas.shape import length, present
+from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
 _VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
 #: Greek letters that LaTeX has no command for: they look Latin.

@@ -17,7 +17,8 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.formulas.names import greek, parts
-from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, leaves, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves
 
 #: Brackets with more symbols than this may be broken; those of coefficients, made of parameters, are kept longer.
 LONG_BRACKET, LONG_COEFFICIENT = 16, 36

@@ -6,7 +6,8 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 from __future__ import annotations
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.formulas.shape import Factor, Product, Sum, Wave, angles_or, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
 _SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
 

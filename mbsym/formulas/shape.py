@@ -13,13 +13,10 @@ helped.  Factoring is for people; polynomials too long for them are only grouped
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
-from math import gcd, lcm, prod
-from typing import Any, Literal, NamedTuple
+from math import lcm, prod
+from typing import Any
 from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
@@ -28,8 +25,20 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.formulas import angle_sums
-from mbsym.formulas.numerals import writable
+from mbsym.formulas.terms import (
+    Monomial,
+    Split,
+    Terms,
+    by,
+    obviously_irreducible,
+    only_negative,
+    powers,
+    takes_sign,
+    tidy,
+    without_common,
+)
+from mbsym.formulas.tree import Angles, Factor, Product, Sum, Wave, leaves
+from mbsym.formulas.waves import WITHIN, Waves
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.
 FACTOR_WHOLE = 60
@@ -55,80 +64,16 @@ PROBED, PROBES = 200, 3
 #: A longer polynomial stands in sums of angles if that leaves at most this share of its terms.
 WORTH_SUMS = Fraction(3, 4)
 
-#: Sines and cosines as products of those of single angles, as waves of sums of angles, or what is shorter to read.
-Angles = Literal["products", "sums", "shorter"]
-
-Rational = Any  # flint.fmpq
-#: (generator, exponent) pairs in the order in which people read: accelerations first, parameters last.
-Monomial = tuple[tuple[int, int], ...]
-#: Coefficients are whole: a common denominator is set aside.  (Integers of Python are compared and hashed quickly.)
-Terms = dict[Monomial, int]
-Split = Callable[[Monomial], tuple[Monomial, Monomial]]
-
-
-class Wave(NamedTuple):
-    """sin or cos (``kind`` sine or cosine) of ``q1 + 2*q2 - q3/2``: (name, coefficient) in reading order."""
-
-    kind: str
-    angle: tuple[tuple[str, Fraction], ...]
-
-
-class Factor(NamedTuple):
-    """``base ** exponent``; the base is the number of a generator (never a reciprocal), a wave or a sum."""
-
-    base: int | Wave | Sum
-    exponent: int = 1
-
-
-class Product(NamedTuple):
-    """coefficient * (product of ``over``) / (product of ``under``)."""
-
-    coefficient: Rational
-    over: tuple[Factor, ...] = ()
-    under: tuple[Factor, ...] = ()
-
-    @property
-    def magnitude(self) -> tuple[int, int]:
-        """|coefficient| as numerator and denominator.  Raises NoClosedForm where one of them is too long to write."""
-        top, bottom = abs(int(self.coefficient.p)), int(self.coefficient.q)
-        writable(top, bottom)
-        return top, bottom
-
-
-@dataclass(frozen=True, eq=False)
-class Sum:
-    """The sum of the terms; zero is the empty sum.  Equal brackets of one ring are mostly one object."""
-
-    terms: tuple[Product, ...]
-
-
-_ASKED: ContextVar[Angles | None] = ContextVar("angles", default=None)
-
-
-@contextmanager
-def angles_as(choice: Angles | None) -> Iterator[None]:
-    """Within this block every formula that is written has its angles so; None leaves it to each kind of text."""
-    token = _ASKED.set(choice)
-    try:
-        yield
-    finally:
-        _ASKED.reset(token)
-
-
-def angles_or(usual: Angles) -> Angles:
-    """What was asked for, else what a kind of text usually has."""
-    return _ASKED.get() or usual
-
 
 def present(ring: Ring, polynomial: Polynomial, angles: Angles = "products") -> Sum:
     """The shape of a polynomial in normal form."""
     return _presenter(ring)(polynomial, angles)
 
 
-def _presenter(ring: Ring) -> _Presenter:
+def _presenter(ring: Ring) -> Presenter:
     presenter = _PRESENTERS.get(ring)
     if presenter is None:
-        presenter = _PRESENTERS[ring] = _Presenter(ring)
+        presenter = _PRESENTERS[ring] = Presenter(ring)
     return presenter
 
 
@@ -142,31 +87,17 @@ def length(ring: Ring, shape: Sum) -> int:
     return _PRESENTERS[ring].length(shape)
 
 
-def leaves(shape: Sum) -> int:
-    """How many symbols and numbers a reader meets."""
-    return sum(_product_leaves(term) for term in shape.terms)
-
-
-def _product_leaves(product: Product) -> int:
-    number = 0 if abs(product.coefficient) == 1 else 1
-    factors = (*product.over, *product.under)
-    inner = sum(leaves(f.base) if isinstance(f.base, Sum) else 1 for f in factors)
-    return max(number + inner, 1)
-
-
-_PRESENTERS: WeakKeyDictionary[Ring, _Presenter] = WeakKeyDictionary()
+_PRESENTERS: WeakKeyDictionary[Ring, Presenter] = WeakKeyDictionary()
 
 _RECIPROCAL, _VELOCITY = 2, 3
 _MOTION = {"velocity": _VELOCITY, "acceleration": 4}
 _PLACE = ("coordinate", "prescribed", "time", "sine", "cosine")
 #: Numbers that order by level, place and exponent: (level, adjoined, declared, within) and, in keys, the exponent.
 _PLACES, _EXPONENTS = 1 << 24, 1 << 32
-#: Within the place of its first angle a wave is placed by its other angles, up to so many bits.
-_WITHIN = 240
 _END = 1 << 512
 
 
-class _Presenter:
+class Presenter:
     """Makes the shapes of one ring's polynomials, and remembers them."""
 
     def __init__(self, ring: Ring) -> None:
@@ -188,7 +119,7 @@ class _Presenter:
         self._ranks: dict[Sum, int] = {}
         self._lengths: dict[Sum, int] = {}
         self._choices: dict[tuple[frozenset[Any], Angles], tuple[int, Terms]] = {}
-        self._waves = _Waves(self)
+        self._waves = Waves(self)
 
     def __call__(self, polynomial: Polynomial, angles: Angles = "products") -> Sum:
         known = self._shapes.get((id(polynomial), angles))
@@ -331,7 +262,7 @@ class _Presenter:
             g = self.ring.generators[index]
             within = ("sine", "cosine").index(g.kind) + 1 if g.kind in ("sine", "cosine") else 0
             declared = self._declared[g.name] if g.argument is None else _PLACES - index
-            self._places[index] = (((5 - self.level(index)) * 2 * _PLACES + declared) * 4 + within) << _WITHIN
+            self._places[index] = (((5 - self.level(index)) * 2 * _PLACES + declared) * 4 + within) << WITHIN
         return self._places[index]
 
     def _inverse_of(self, index: int) -> Polynomial | None:
@@ -391,7 +322,7 @@ class _Presenter:
 
     def _factors(self, terms: Terms, factored: bool) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
         """Content, monomial, and the other factors with their exponents."""
-        content, common, rest = _common(terms)
+        content, common, rest = without_common(terms)
         level = self._highest(rest)
         if not factored or len(terms) > (FACTOR_MIXED if level else FACTOR_WHOLE):
             parts = [(rest, 1)]
@@ -406,7 +337,7 @@ class _Presenter:
 
     def _irreducible(self, terms: Terms) -> tuple[int, list[tuple[Terms, int]]]:
         """A factorisation of terms without common factor, positive in front."""
-        if _obviously_irreducible(terms):
+        if obviously_irreducible(terms):
             return self._positive(terms)
         # Over the generators that occur: the ring has many more, and flint minds them all.
         used = sorted({k for monomial in terms for k, _ in monomial}, key=self.place)
@@ -494,7 +425,7 @@ class _Presenter:
             return Product(fmpq(coefficient), tuple(over), _ordered(self, under))
         for terms, exponent in brackets:
             bracket = self._bracket(terms, factored)
-            if exponent % 2 and (coefficient < 0 or _only_negative(bracket)) and _takes_sign(bracket):
+            if exponent % 2 and (coefficient < 0 or only_negative(bracket)) and takes_sign(bracket):
                 bracket, coefficient = self._negated(bracket), -coefficient
             over.append(Factor(bracket, exponent))
         return Product(fmpq(coefficient), _ordered(self, over), _ordered(self, under))
@@ -503,7 +434,7 @@ class _Presenter:
         """Where a power stands in a product (0 parameters, 1 motion, 2 coordinates, 3 denominator), and its factors."""
         inverted = self._inverse_of(index)
         if inverted is not None:
-            return 3, tuple(_powers(self(inverted), exponent))
+            return 3, tuple(powers(self(inverted), exponent))
         level = self.level(index)
         base = index if index < self._waves.first else self._waves[index]
         return (1 if level >= _VELOCITY else 2 if level else 0), (Factor(base, exponent),)
@@ -531,7 +462,7 @@ class _Presenter:
 
     def _plain(self, terms: Terms) -> Sum:
         ordered = sorted(terms, key=self._key)
-        return _tidy([self._assembled(terms[monomial], monomial, [], False) for monomial in ordered])
+        return tidy([self._assembled(terms[monomial], monomial, [], False) for monomial in ordered])
 
     def _at_level(self, level: int) -> Split:
         """Splits monomials after their generators of that level, the highest they hold."""
@@ -557,7 +488,7 @@ class _Presenter:
         products: list[Product] = []
         for (over, under), heads in shared.items():
             products += self._shared(over, under, heads, factored)
-        return _tidy(self._consistent(products))
+        return tidy(self._consistent(products))
 
     def _shared(
         self, over: tuple[Factor, ...], under: tuple[Factor, ...], heads: Terms, factored: bool
@@ -614,14 +545,14 @@ class _Presenter:
             return Sum((product,))
         terms = self._consistent([self._signed(term) for term in terms]) if content < 0 else terms
         inner = [self._opened(term).terms if abs(term.coefficient) == 1 else (term,) for term in terms]
-        return _tidy([term for opened in inner for term in opened])
+        return tidy([term for opened in inner for term in opened])
 
     def _signed(self, product: Product) -> Product:
         """With its minus sign in a bracket that has one already."""
         if product.coefficient >= 0:
             return product
         for place, factor in enumerate(product.over):
-            if isinstance(factor.base, Sum) and factor.exponent % 2 and _takes_sign(factor.base):
+            if isinstance(factor.base, Sum) and factor.exponent % 2 and takes_sign(factor.base):
                 turned = Factor(self._negated(factor.base), factor.exponent)
                 return Product(
                     -product.coefficient, (*product.over[:place], turned, *product.over[place + 1 :]), product.under
@@ -637,14 +568,14 @@ class _Presenter:
         if len(terms) > COLLECT_BEST:  # trying all, bracket within bracket, takes a time that grows exponentially
             variables = sorted(variables, key=lambda k: -counts[k])[:1]
         for variable in variables:
-            candidate = self._grouped(terms, _by(variable), True)
+            candidate = self._grouped(terms, by(variable), True)
             if leaves(candidate) < fewest:
                 best, fewest = candidate, leaves(candidate)
         return best
 
     def _negated(self, bracket: Sum) -> Sum:
         if bracket not in self._negatives:
-            opposite = _tidy([Product(-term.coefficient, term.over, term.under) for term in bracket.terms])
+            opposite = tidy([Product(-term.coefficient, term.over, term.under) for term in bracket.terms])
             self._negatives[bracket], self._negatives[opposite] = opposite, bracket
             self._turned[opposite] = bracket
         return self._negatives[bracket]
@@ -691,178 +622,7 @@ class _Presenter:
         return written
 
 
-class _Waves:
-    """Sines and cosines of sums of angles in the part of generators, numbered from ``first`` on."""
-
-    def __init__(self, presenter: _Presenter) -> None:
-        ring = presenter.ring
-        self.presenter = proxy(presenter)
-        self.first = len(ring.generators)
-        self.names = [name for name in presenter._declared if name in ring.angles]
-        self._numbers = {name: ring.angles[name] for name in self.names}
-        self._atoms = [(ring.index("sine", name), ring.index("cosine", name)) for name in self.names]
-        self._codes: dict[int, int] = {}  # of a generator: its weight in a packed product
-        for angle, (sine, cosine) in enumerate(self._atoms):
-            self._codes[sine] = angle_sums.packed([(angle, 1, 0)])
-            self._codes[cosine] = angle_sums.packed([(angle, 0, 1)])
-        numbers = {name: angle for angle, name in enumerate(self.names)}
-        signed = [[(numbers[name], n) for name, n in form if name in numbers] for form in ring.typed]
-        #: Of each sum of angles that was typed, the pairs (one with plus, one with minus).
-        self._typed = {(k, j) for form in signed for k, n in form for j, m in form if n > 0 > m}
-        self._made: list[Wave] = []
-        self._indices: dict[Wave, int] = {}
-        self._known: dict[angle_sums.Wave, tuple[int, int]] = {}
-
-    def __getitem__(self, index: int) -> Wave:
-        return self._made[index - self.first]
-
-    def index(self, wave: Wave) -> int:
-        return self._indices[wave]
-
-    def joined(self, terms: Terms, squares: bool) -> tuple[int, Terms] | None:
-        """(a whole number, the terms times it) with waves where they are shorter, beside all else; None if nowhere."""
-        beside: dict[Monomial, dict[int, int]] = {}
-        codes = self._codes
-        for monomial, coefficient in terms.items():
-            code, rest = 0, []
-            for pair in monomial:
-                known = codes.get(pair[0])
-                if known is None:
-                    rest.append(pair)
-                elif pair[1] > angle_sums.MOST_POWER:
-                    return None
-                else:
-                    code += known * pair[1]
-            beside.setdefault(tuple(rest), {})[code] = coefficient
-        if len(beside) == len(terms):
-            return None
-        found: list[tuple[Monomial, int, dict[int, int], angle_sums.Joined | None]] = []
-        below = 0
-        for outside, products in beside.items():
-            waves = None
-            content = gcd(*products.values())
-            if len(products) > 1:
-                waves = angle_sums.joined(frozenset([(code, c // content) for code, c in products.items()]), squares)
-                if waves is not None:
-                    below = max(below, waves.below)
-            found.append((outside, content, products, waves))
-        if not below:
-            return None
-        result: Terms = {}
-        for outside, content, products, waves in found:
-            if waves is None:
-                parts = [angle_sums.Part(weight * below, (), code) for code, weight in products.items()]
-            else:
-                factor = content * (below // waves.below)
-                parts = [part._replace(weight=part.weight * factor) for part in waves.parts]
-            for part in parts:
-                monomial, sign = self._monomial(outside, part)
-                result[monomial] = result.get(monomial, 0) + sign * part.weight
-        return below, result
-
-    def _monomial(self, outside: Monomial, part: angle_sums.Part) -> tuple[Monomial, int]:
-        pairs, sign = list(outside), 1
-        for wave in part.waves:
-            index, turned = self._generator(wave)
-            pairs.append((index, wave.power))
-            sign *= turned**wave.power
-        for angle, sine, cosine in angle_sums.unpacked(part.code):
-            pairs += [(self._atoms[angle][0], 1)] * sine
-            if cosine:
-                pairs.append((self._atoms[angle][1], cosine))
-        return tuple(sorted(pairs, key=lambda pair: self.presenter.place(pair[0]))), sign
-
-    def _generator(self, wave: angle_sums.Wave) -> tuple[int, int]:
-        """(the number that stands for a wave, sign): a generator's own number for sin and cos of a single angle."""
-        if wave not in self._known:
-            self._known[wave] = self._new(wave)
-        return self._known[wave]
-
-    def _new(self, wave: angle_sums.Wave) -> tuple[int, int]:
-        combination = wave.combination
-        if len(combination) == 1 and combination[0][1] == 1:
-            return self._atoms[combination[0][0]][0 if wave.sine else 1], 1
-        # q2 - q1 stays so where the description says it so; else the first angle is positive.
-        first, second = combination[0][0], next((k for k, n in combination if n < 0), -1)
-        sign = -1 if (second, first) in self._typed and (first, second) not in self._typed else 1
-        angle = [(self.names[k], Fraction(sign * n, self._numbers[self.names[k]])) for k, n in combination]
-        angle.sort(key=lambda item: item[1] < 0)
-        made = Wave("sine" if wave.sine else "cosine", tuple(angle))
-        if made not in self._indices:
-            index = self._indices[made] = self.first + len(self._made)
-            self._made.append(made)
-            presenter = self.presenter
-            presenter._inverted[index] = None
-            presenter._levels[index] = max(presenter.level(self._atoms[k][0]) for k, _ in combination)
-            place = 0
-            for k, n in combination[:11]:
-                place = (place << 20) + (k << 8) + 128 + n
-            place <<= 20 * (11 - min(len(combination), 11))
-            beside = presenter.place(self._atoms[first][1])
-            presenter._places[index] = beside + (1 << _WITHIN) + 2 * place + wave.sine
-        return self._indices[made], sign if wave.sine else 1
-
-
-def _by(variable: int) -> Split:
-    """Splits off the power of one generator."""
-
-    def split(monomial: Monomial) -> tuple[Monomial, Monomial]:
-        for place, (index, _) in enumerate(monomial):
-            if index == variable:
-                return monomial[place : place + 1], monomial[:place] + monomial[place + 1 :]
-        return (), monomial
-
-    return split
-
-
-def _obviously_irreducible(terms: Terms) -> bool:
-    """Whether terms without a common factor cannot be factored, as far as that is seen without work.
-
-    Two terms: their exponents have no common divisor.  More: some generator is linear and occurs in one term only, or
-    in all but one; a factor without that generator would divide this one term, so it would be a common monomial.
-    """
-    if len(terms) == 2:
-        return gcd(*(e for monomial in terms for _, e in monomial)) == 1
-    degrees: dict[int, int] = {}
-    counts: dict[int, int] = {}
-    for monomial in terms:
-        for k, e in monomial:
-            degrees[k] = degrees.get(k, 0) + e
-            counts[k] = counts.get(k, 0) + 1
-    lonely = (1, len(terms) - 1)
-    return any(count in lonely and degrees[k] == count for k, count in counts.items())
-
-
-def _common(terms: Terms) -> tuple[int, Monomial, Terms]:
-    """(content, common monomial, rest), the cheap part of a factorisation."""
-    content = gcd(*terms.values())
-    monomials = iter(terms)
-    shared = dict(next(monomials))
-    for monomial in monomials:
-        if not shared:
-            break
-        shared = {k: min(e, shared[k]) for k, e in monomial if k in shared}
-    if not shared:
-        return content, (), terms if content == 1 else {m: c // content for m, c in terms.items()}
-    gone = set(shared.items())
-    rest = {
-        tuple([p if p[0] not in shared else (p[0], p[1] - shared[p[0]]) for p in monomial if p not in gone]): c
-        // content
-        for monomial, c in terms.items()
-    }
-    return content, tuple(shared.items()), rest
-
-
-def _powers(inner: Sum, exponent: int) -> Iterator[Factor]:
-    """The factors of 1/inner**exponent's denominator; a lone symbol needs no bracket."""
-    if len(inner.terms) == 1 and inner.terms[0].coefficient == 1 and not inner.terms[0].under:
-        for factor in inner.terms[0].over:
-            yield Factor(factor.base, factor.exponent * exponent)
-    else:
-        yield Factor(inner, exponent)
-
-
-def _ordered(presenter: _Presenter, factors: Sequence[Factor]) -> tuple[Factor, ...]:
+def _ordered(presenter: Presenter, factors: Sequence[Factor]) -> tuple[Factor, ...]:
     """Parameters, then motion, then angles; long brackets in the motion come before what multiplies them."""
     if len(factors) < 2:
         return tuple(factors)
@@ -880,19 +640,3 @@ def _ordered(presenter: _Presenter, factors: Sequence[Factor]) -> tuple[Factor, 
         return known
 
     return tuple(sorted(factors, key=key))
-
-
-def _takes_sign(bracket: Sum) -> bool:
-    return _only_negative(bracket) or any(term.coefficient < 0 for term in bracket.terms)
-
-
-def _only_negative(bracket: Sum) -> bool:
-    return all(term.coefficient < 0 for term in bracket.terms)
-
-
-def _tidy(products: Sequence[Product]) -> Sum:
-    """The sum, with a positive term in front if there is one."""
-    ordered = list(products)
-    first = next((i for i, product in enumerate(ordered) if product.coefficient > 0), 0)
-    ordered.insert(0, ordered.pop(first))
-    return Sum(tuple(ordered))

@@ -14,7 +14,8 @@ from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
-from mbsym.formulas.shape import angles_or, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import angles_or
 
 _PRIMES = {"velocity": "'", "acceleration": "''"}
 _FUNCTIONS = {"sqrt": "Sqrt", "atan": "ArcTan"}

@@ -28,7 +28,7 @@ from mbsym.formulas.mathml import (
     sign,
     table,
 )
-from mbsym.formulas.shape import Factor, leaves
+from mbsym.formulas.tree import Factor, leaves
 from mbsym.report.conditions import Reference
 from mbsym.report.lengths import not_printed
 

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
 from mbsym.formulas.python import python_text
-from mbsym.formulas.shape import Factor, Sum, Wave, angles_as, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import Factor, Sum, Wave, angles_as
 
 NAMES = ("q1", "q2", "q3")
 #: sin(q3/2) makes the angle of q3 a half.

@@ -21,7 +21,8 @@ from mbsym.formulas import shape as shapes
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import latex_factor, latex_names, latex_text
 from mbsym.formulas.python import python_text
-from mbsym.formulas.shape import Angles, Product, Sum, angles_as, present
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import Angles, Product, Sum, angles_as
 from mbsym.formulas.wolfram import wolfram_text
 from mbsym.report.lengths import formulas
 
@@ -188,7 +189,7 @@ def test_no_sum_of_a_system_has_a_bracket_and_its_negative(name):
 
 def test_without_the_joining_such_brackets_are_seen(monkeypatch):
     """The planted error: signs stay in the brackets where they came to stand."""
-    monkeypatch.setattr(shapes._Presenter, "_unsigned", lambda self, product: product)
+    monkeypatch.setattr(shapes.Presenter, "_unsigned", lambda self, product: product)
     analysis = mbsym.load(SHIPPED / "spatial-arm.yaml")
     found = [formula for formula in formulas(analysis.stage(3).value) if formula.terms <= 60]
     assert any(opposite(present(formula.ring, formula.polynomial)) for formula in found)

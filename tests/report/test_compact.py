@@ -11,7 +11,7 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.formulas.shape import angles_as
+from mbsym.formulas.tree import angles_as
 from mbsym.report import compact as choice
 from mbsym.report import latex_report
 from mbsym.report.compact import compact, told_formulas
