@@ -25,6 +25,8 @@ from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 
 SYSTEMS = ("satellite.yaml", "double-pendulum.yaml", "heavy-top.yaml")
+#: Its claims are long formulas.
+CLAIMING = "tethered-satellites.yaml"
 CLASSES = {
     "article": r"\documentclass{article}",
     "two columns": r"\documentclass[twocolumn]{article}",
@@ -61,8 +63,9 @@ def has(document_class: str) -> bool:
 
 
 @needs_pdflatex
-def test_the_report_compiles_without_a_word(tmp_path: Path) -> None:
-    (tmp_path / "main.tex").write_text(files_of("satellite.yaml")["report.tex"])
+@pytest.mark.parametrize("name", [SYSTEMS[0], CLAIMING])
+def test_the_report_compiles_without_a_word(name: str, tmp_path: Path) -> None:
+    (tmp_path / "main.tex").write_text(files_of(name)["report.tex"])
     assert complaints(tmp_path) == []
 
 
