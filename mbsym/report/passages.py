@@ -74,7 +74,7 @@ _WORDS = {
     Quantity.RADIUS: "Radius vector from the attracting centre to the mass centre of {b}",
     Quantity.PLACE: "Radius vector from {o} to the mass centre of {b}",
     Quantity.ALONG: "Projection of that radius vector on that unit vector, for {b}",
-    Quantity.SPAN: "Vector between the ends of load {l}, in the axes of {common}",
+    Quantity.SPAN: "Vector between the ends of load {l} (the first index), in the axes of {common}",
     Quantity.MASS: "Mass of {it}",
     Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of {it}",
     Quantity.INERTIA: "Inertia tensor of {it} about the connection point",
@@ -97,7 +97,7 @@ class _Speaker:
     def __call__(self, meaning: Meaning | None) -> tuple[str, str]:
         """The phrase, and the coordinate whose symbol ends it."""
         if meaning is None:
-            return "Abbreviations", ""
+            return "Abbreviations, numbered as they come", ""
         template = _WORDS[meaning.quantity]
         body = self.system.body(meaning.body) if meaning.body else None
         values: dict[str, str] = {}

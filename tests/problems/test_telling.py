@@ -94,6 +94,15 @@ def test_of_random_systems_in_orbit_too(description: Description) -> None:
     assert different(analysis, found) == []
 
 
+@some
+@given(systems(most=3, most_coordinates=3, irrational=True))
+def test_roots_and_functions_are_told_too(description: Description) -> None:
+    """Compared in balls with the general recursion, as every run does it: a difference would be a defect."""
+    analysis = analysed(description, (3,))
+    assert analysis.told.told.formulas
+    assert analysis.defects == []
+
+
 @pytest.mark.parametrize("name", ["satellite", "spatial-arm", "tethered-satellites"])
 def test_names_are_defined_before_they_are_used_and_once(name: str) -> None:
     analysis = mbsym.load(SHIPPED / f"{name}.yaml")
