@@ -72,7 +72,7 @@ class _Inequality:
     strict: bool
 
     def of(self, name: str) -> Fraction:
-        return dict(self.coefficients).get(name, Fraction(0))
+        return next((coefficient for other, coefficient in self.coefficients if other == name), Fraction(0))
 
     @property
     def false(self) -> bool:
@@ -125,10 +125,10 @@ def _impossible(given: list[_Inequality]) -> bool:
     while True:
         if any(one.false for one in known):
             return True
-        present = {name for one in known for name, _ in one.coefficients}
-        if not present:
+        growth = _growth(known)
+        if not growth:
             return False
-        name = min(present, key=lambda x: (_growth(known, x), x))
+        name = min(growth, key=lambda x: (growth[x], x))
         above = [one for one in known if one.of(name) > 0]
         below = [one for one in known if one.of(name) < 0]
         known = {one for one in known if one.of(name) == 0}
@@ -137,10 +137,13 @@ def _impossible(given: list[_Inequality]) -> bool:
             return False
 
 
-def _growth(known: set[_Inequality], name: str) -> int:
-    positive = sum(one.of(name) > 0 for one in known)
-    negative = sum(one.of(name) < 0 for one in known)
-    return positive * negative - positive - negative
+def _growth(known: set[_Inequality]) -> dict[str, int]:
+    """By name, how many inequalities more there are when it has been eliminated."""
+    bounds: dict[str, list[int]] = {}
+    for one in known:
+        for name, coefficient in one.coefficients:
+            bounds.setdefault(name, [0, 0])[coefficient > 0] += 1
+    return {name: above * below - above - below for name, (above, below) in bounds.items()}
 
 
 def _without(name: str, lower: _Inequality, upper: _Inequality) -> _Inequality:
