@@ -67,7 +67,7 @@ def _values(derived: Derived, symbols: Symbols, expressions: list[Expression]) -
     """The abbreviations that occur, as polynomials in declared parameters."""
     scene = derived.parameters_scene
     wanted = symbols.occurring(expressions)
-    lower = symbols.lowering(scene.ring, scene.environment, wanted)
+    lower = symbols.in_scene(scene)
     return {name: in_parameters(derived, lower(Name(name))) for name in symbols.values if name in wanted}
 
 
@@ -99,9 +99,7 @@ def _slopes(derived: Derived, claim: Claim, symbols: Symbols) -> dict[str, Polyn
         slope = differentiate(claim.equals, name)
         if name in names(slope):
             continue
-        wanted = symbols.occurring([slope])
-        lower = symbols.lowering(scene.ring, scene.environment, wanted)
-        found[name] = in_parameters(derived, lower(symbols.opened(slope)))
+        found[name] = in_parameters(derived, symbols.in_scene(scene)(symbols.opened(slope)))
     return found
 
 
