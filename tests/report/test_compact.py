@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 import mbsym
@@ -18,6 +19,7 @@ from mbsym.report.compact import compact, told_formulas
 from mbsym.report.detail import detailed
 from mbsym.report.passages import passages
 from mbsym.report.targets import TARGETS
+from mbsym_cli.main import main
 
 #: The systems of which some problem is told, by problem; all others keep closed formulas.  The tether's equations are
 #: long in products of sines and cosines only: in sums of angles, as its paper prints them, they take less than a page.
@@ -124,3 +126,18 @@ def test_the_energy_integral_is_told_through_problems_2_and_3() -> None:
     # Without the problems that it refers to, it is written out.
     assert said not in TARGETS["latex"].render(analysis, (7,))
     assert said not in TARGETS["latex"].render(mbsym.load(SHIPPED / "double-pendulum.yaml"), (2, 3, 7))
+
+
+def test_detail_is_an_option_of_run(tmp_path: Path) -> None:
+    texts = {}
+    for word in ("compact", "full"):
+        arguments = ["run", str(SHIPPED / "satellite.yaml"), "--format", "latex", "--problems", "3", "--quiet"]
+        done = CliRunner().invoke(main, [*arguments, "--detail", word, "--out", str(tmp_path / word)])
+        assert done.exit_code == 0, done.output
+        texts[word] = (tmp_path / word / "report.tex").read_text(encoding="utf-8")
+    assert "Angular acceleration of body 2" in texts["compact"]
+    assert "Angular acceleration" not in texts["full"]
+    done = CliRunner().invoke(main, ["run", str(SHIPPED / "satellite.yaml"), "--detail", "ful", "--out", str(tmp_path)])
+    assert done.exit_code == 2
+    assert "--detail: error[unknown-detail]" in done.output
+    assert "did you mean 'full'?" in done.output
