@@ -74,7 +74,8 @@ RESERVED = (
     "coordinates", "parameters", "values", "massMatrix", "forcing", "equations", "initialConditions", "kineticEnergy",
     "forceFunction", "rotation", "angularVelocity", "velocityOrigin", "velocityMassCentre", "linearM", "linearD",
     "linearG", "linearK", "linearN", "subsystems", "characteristicPolynomials", "stabilityConditions", "notation",
-    "firstIntegrals", "prescribed", "equilibriumConditions", "lambda", "tau",
+    "firstIntegrals", "prescribed", "equilibriumConditions", "lambda", "tau", "tEnd", "dynamics", "mbsymSolution",
+    "mbsymRate", "mbsymInitial", "mbsymState", "pieces", "positions", "velocities",
 )  # fmt: skip
 
 _NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()

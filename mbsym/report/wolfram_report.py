@@ -73,6 +73,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         polynomial=polynomial,
         variable=free_name("\\[Lambda]", used),
         initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
+        state=_in_order(analysis.system, names),
         numberless=[names[name] for name in _numberless(analysis.system)],
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         checks=analysis.checks,
@@ -85,6 +86,14 @@ def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Express
         if item.position is not None:
             yield f"{names[item.coordinate]}[0]", item.position
         yield f"{names[item.coordinate]}'[0]", ZERO if item.velocity is None else item.velocity
+
+
+def _in_order(system: System, names: WolframNames) -> list[str]:
+    """q(0) and q'(0) in the order of the coordinates, zero for what is not given."""
+    given = {item.coordinate: item for item in system.initial}
+    places = [given[name].position if name in given else None for name in system.coordinates]
+    rates = [given[name].velocity if name in given else None for name in system.coordinates]
+    return [wolfram_expression(ZERO if value is None else value, names) for value in places + rates]
 
 
 def _numberless(system: System) -> Iterator[str]:
@@ -154,9 +163,10 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
         return {"omitted": program_not_printed(len(body.assignments))}
     prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
     return {
-        "positions": [names[name] + "_" for name in system.coordinates],
-        "velocities": [names[name] + "_" for name in system.velocities],
+        "positions": [names[name] for name in system.coordinates],
+        "velocities": [names[name] for name in system.velocities],
         "body": body,
+        "locals": [name for name, _ in body.assignments],
         "prescribed": prescribed,
         "mass": [body.results[i * n : (i + 1) * n] for i in range(n)],
         "forcing": body.results[n * n :],

@@ -635,7 +635,7 @@ def test_the_suggested_ndsolve_has_numbers_for_everything(name, mathics):
 
     analysis = analysis_of(name)
     text = TARGETS["wolfram"].render(analysis, (3,))
-    (rules,) = re.findall(r"NDSolve\[Join\[equations, initialConditions\] (.*), coordinates, \{t, 0, 10\}\]", text)
+    (rules,) = re.findall(r"NDSolve\[Join\[equations, initialConditions\] (.*), coordinates, \{t, 0, tEnd\}\]", text)
     mathics.reset()
     mathics.evaluate("t = 0")
     mathics.evaluate(f"({uncommented(text)})")
