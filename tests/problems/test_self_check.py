@@ -370,7 +370,7 @@ CAUGHT = [
     ),
     Mistake(
         "the mixed term of the kinetic energy",
-        "mechanics.energy:_body_energy",
+        "mechanics.energy:body_energy",
         "algebra.times(algebra.number(2), algebra.dot(velocity, swing))",
         "algebra.dot(velocity, swing)",
         "machine",
@@ -378,7 +378,7 @@ CAUGHT = [
     ),
     Mistake(
         "the wrong point of a tensor in the kinetic energy",
-        "mechanics.energy:_body_energy",
+        "mechanics.energy:body_energy",
         "velocity = motion.velocity_origin if about_joint else motion.velocity_mass_centre",
         "velocity = motion.velocity_mass_centre",
         "machine",
