@@ -113,13 +113,16 @@ def _order(fields: Fields, reading: Reading) -> tuple[str, ...]:
 
 
 def _with_units(system: System, fields: Fields, reading: Reading) -> System:
-    """The system with its units; where there are any, every expression was checked for its dimension."""
+    """The system with its units; where there are any, every expression was checked for its dimension.
+
+    What could not be read is zero, which goes with every dimension: it hides no slip, and makes none.
+    """
     if not reading.units and fields.get("units") is None:
         return system
     from mbsym.source.units import checked_units, read_units  # pint takes its time, and few descriptions need it
 
     declared = read_units(fields.get("units"), reading.units, reading)
-    return system if reading.errors else replace(system, units=checked_units(system, declared, reading))
+    return replace(system, units=checked_units(system, declared, reading))
 
 
 def _check_version(fields: Fields, reading: Reading) -> None:

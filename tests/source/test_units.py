@@ -116,10 +116,58 @@ def test_units_are_those_of_physics(text: str, factor: Fraction, dimension: dict
 
 
 @pytest.mark.parametrize(
-    "text", ['__import__("os")', "kg**99999999", "2*kg", "kg+m", "Nm", "", "k" * 100, "kg*", "(" * 50]
-)
-def test_what_is_no_unit(text: str) -> None:
+    "text",
+    [
+        '__import__("os")', "kg**99999999", "2*kg", "kg+m", "Nm", "", "k" * 100, "kg*", "(" * 50,
+        "9**9**9**9", "m^9^9^9^9", "m*1e99999999", "10**9**9*m", "((((((in/ft)^20)^20)^20)^20)^20)", "m**(1/0)",
+    ],
+)  # fmt: skip
+def test_what_is_no_unit_is_refused_at_once(text: str) -> None:
     assert isinstance(unit(text), str)
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [("Nm/rad", "N*m/rad"), ("Nms/rad", "N*m*s/rad"), ("kg m2", "kg m^2"), ("m/s2", "m/s^2"), ("ms^-2", "m/s^2")],
+)
+def test_what_engineers_write_is_answered_with_what_they_mean(text: str, meant: str) -> None:
+    _, complaints = read(with_units().replace("R: m", f"R: {text}"), "x.yaml")
+    (one,) = [one for one in complaints.items if one.code == "bad-unit"]
+    assert one.hint == f"did you mean '{meant}'?"
+
+
+def test_slips_of_dimension_are_told_with_all_other_complaints() -> None:
+    text = with_units().replace("a: Jy", "a: Jy*l", 1).replace("nu: omega0**2*R**3", "nu: omega0**2*R**2")
+    text = text.replace("R*sin(chi), R*cos(chi)", "R*sin(chi), q*cos(chi)", 1)
+    _, complaints = read(text, "x.yaml")
+    assert "unknown-name" in {one.code for one in complaints.items}
+    told = [one.message for one in complaints.items if one.code == "dimension"]
+    assert any(one.startswith("'omega0**2*R**2' is m^2/s^2") for one in told), told
+    assert any("'b' is kg*m^2" in one for one in told), told
+
+
+def damped_wheel(polynomial: str) -> list[str]:
+    """Complaints about a claimed characteristic polynomial of J x'' + b x' + k x = 0."""
+    return codes(f"""mbsym: 1
+name: wheel
+parameters: {{J: positive, b: positive, k: positive}}
+units: {{J: kg*m^2, b: N*m*s, k: N*m}}
+bodies:
+  - {{name: wheel, rotation: {{axes: [3], angles: [x]}}, mass: 0, inertia about: joint, inertia: [J, J, J]}}
+loads:
+  - spring: {{coordinate: x, stiffness: k}}
+  - damper: {{coordinate: x, coefficient: b}}
+motion: {{}}
+claims:
+  - {{claim: characteristic polynomial, variable: S, equals: "{polynomial}"}}
+""")
+
+
+def test_the_variable_of_a_characteristic_polynomial_is_a_rate() -> None:
+    assert damped_wheel("J*S**2 + b*S + k") == []
+    assert damped_wheel("S**2 + b/J*S + k/J") == []
+    for slip in ("J*S**2 + b*S**2 + k", "S**2 + b*S + k/J", "J*S + b*S + k"):
+        assert damped_wheel(slip) == ["dimension"]
 
 
 def test_other_systems_of_units_are_told_in_their_own_names() -> None:

@@ -22,8 +22,8 @@ _FIXED: dict[str, tuple[Dimension, str]] = {
 }
 
 
-def check_claim(claim: Claim, dimensions: Dimensions) -> None:
-    """Complains where what was printed cannot be the quantity that it is said to be."""
+def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool) -> None:
+    """Complains where what was printed cannot be the quantity that it is said to be; ``scaled``: time is a number."""
     if claim.right is not None:
         dimensions.alike(claim.equals, claim.right, "compared")
     elif claim.kind in _FIXED:
@@ -31,5 +31,5 @@ def check_claim(claim: Claim, dimensions: Dimensions) -> None:
         dimensions.expect(claim.equals, Form(wanted), what)
     elif claim.of_expression is not None:
         dimensions.alike(claim.of_expression, claim.equals, "equal")
-    elif not claim.variable and claim.kind in CLAIMS:
-        dimensions.of(claim.equals)
+    elif claim.kind in CLAIMS:
+        dimensions.with_name(claim.variable, Form() if scaled else Form(RATE)).of(claim.equals)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from mbsym.expressions.place import Span
@@ -28,6 +28,11 @@ class Dimensions:
     name_form: Callable[[str], Form]
     complain: Complain
     fresh: int = 0
+
+    def with_name(self, name: str, form: Form) -> Dimensions:
+        """The same with one more name, the variable of a polynomial; "" is no name."""
+        known = self.name_form
+        return replace(self, name_form=lambda other: form if other == name else known(other)) if name else self
 
     def expect(self, expression: Expression, wanted: Form, what: str) -> None:
         """An expression must have a dimension.  A number alone may stand for anything, in the units of the rest."""

@@ -10,15 +10,11 @@ from functools import cache
 from typing import Any
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.model.units import Declared, Dimension, dimension
+from mbsym.model.units import Declared, Dimension, dimension, times
 from mbsym.source.placed import Node
 from mbsym.source.reading import Reading, keys_of
 from mbsym.source.scope import Allowed, closest
-
-MAX_UNIT = 60
-MAX_EXPONENT = 20
-
-_TEXT = re.compile(r"[A-Za-z0-9_ .*/^()+-]+\Z")
+from mbsym.source.units.products import MAX_EXPONENT, Wrong, product
 
 #: Names of our base units in pint's dimensions.
 _BASES = {
@@ -35,8 +31,10 @@ _BASES = {
 _COMMON = ("kg", "m", "s", "N", "J", "W", "Pa", "Hz", "rad", "deg", "mm", "cm", "km", "g", "min", "h", "A", "V", "K")
 
 
-#: Products that would be taken for something else: Nm is a nautical mile.
-_CONFUSED = {"Nm": "N*m", "Nms": "N*m*s", "kgm": "kg*m", "ms^-1": "m/s", "ms^-2": "m/s^2"}
+#: Products that would be taken for something else: Nm is a number of metres a gram.
+_CONFUSED = {"Nm": "N*m", "Nms": "N*m*s", "kgm": "kg*m"}
+_MILLISECONDS = re.compile(r"ms(?:\^|\*\*)?-([12])\Z")
+_DIGIT = re.compile(r"\b([A-Za-z]+)([2-4])\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,30 +61,54 @@ def unit(text: str) -> Unit | str:
     >>> unit("bananas")
     "'bananas' is unknown"
     """
-    if text.strip() == "1":
-        return Unit(Fraction(1), ())
-    if text in _CONFUSED:
-        return "a product is written with *"
-    if len(text) > MAX_UNIT or not _TEXT.match(text):
-        return "a unit is made of names, powers, * and /, such as kg*m^2/s^2"
+    try:
+        if _likely(text) is not None and not _DIGIT.search(text):
+            return "a product is written with *"
+        powers = product(text)
+    except Wrong as wrong:
+        return str(wrong)
+    factor: Fraction | float = Fraction(1)
+    found: Dimension = ()
+    for name, power in powers.items():
+        one = _named(name)
+        if isinstance(one, str):
+            return one
+        found = times(found, one.dimension, power)
+        try:
+            factor *= one.factor ** (int(power) if power.denominator == 1 else float(power))
+        except OverflowError:
+            return "it is too large or too small"
+    if any(abs(value) > MAX_EXPONENT for _, value in found):
+        return f"powers of units go to {MAX_EXPONENT}"
+    if not 1e-300 < factor < 1e300:
+        return "it is too large or too small"
+    return Unit(factor, found)
+
+
+def _likely(text: str) -> str | None:
+    """What was meant by ``Nm/rad``, ``ms^-2`` or ``m/s2``, if it is one of these."""
+    if found := _MILLISECONDS.match(text):
+        return "m/s" if found[1] == "1" else "m/s^2"
+    made = re.sub(r"[A-Za-z_]\w*", lambda match: _CONFUSED.get(match[0], match[0]), text)
+    made = _DIGIT.sub(r"\1^\2", made)
+    return None if made == text else made
+
+
+@cache
+def _named(name: str) -> Unit | str:
+    """One unit by its name, or why it is none."""
     registry = _registry()
     try:
-        parsed = registry.parse_units(text)
-        exponents = {_BASES[name]: Fraction(value) for name, value in parsed.dimensionality.items()}
-        if any(abs(value) > MAX_EXPONENT for value in exponents.values()):
-            return f"powers of units go to {MAX_EXPONENT}"
+        parsed = registry.parse_units(name)
+        exponents = {_BASES[base]: Fraction(value) for base, value in parsed.dimensionality.items()}
         factor, _ = registry.get_base_units(parsed)
     except KeyError:
         return "only units of length, mass, time, current, temperature, light and amount are known"
-    except Exception as error:  # pint raises many kinds, those of its tokenizer included
-        names = getattr(error, "unit_names", None)
-        missing = [names] if isinstance(names, str) else list(names or ())
-        if missing:
-            return f"{ascii_safe(str(missing[0]))} is unknown"
-        return "a unit is made of names, powers, * and /, such as kg*m^2/s^2"
+    except Exception:  # pint raises many kinds, those of its tokenizer included
+        return f"{ascii_safe(name)} is unknown"
     if "[mass]" in parsed.dimensionality:
         factor = _in_kilograms(factor, exponents["kg"], registry)
-    return Unit(factor, dimension(exponents))
+    return Unit(Fraction(factor) if isinstance(factor, int) else factor, dimension(exponents))
 
 
 def _in_kilograms(factor: Any, power: Fraction, registry: Any) -> Any:
@@ -113,7 +135,8 @@ def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -
     for one in found.values():
         reason = unit(one.text)
         if isinstance(reason, str):
-            close = _CONFUSED.get(one.text) or closest(one.text, _COMMON)
+            close = _likely(one.text)
+            close = close if close and isinstance(unit(close), Unit) else closest(one.text, _COMMON)
             hint = f"did you mean '{close}'?" if close else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
             reading.error("bad-unit", f"{ascii_safe(one.text)} is no unit: {reason}", one.span, hint)
     return tuple(found.values())

@@ -181,7 +181,7 @@ class _System:
             self.expect(entry.rate, self.of(entry.coordinate).times(Form(RATE)), f"the rate of '{entry.coordinate}'")
         self.expect(system.time_scale, RATE, "the rate of dimensionless time")
         for claim in system.claims:
-            check_claim(claim, self.dimensions)
+            check_claim(claim, self.dimensions, system.time_scale is not None)
 
     def body(self, body: Body) -> None:
         for angle in body.rotation.angles:

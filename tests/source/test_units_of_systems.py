@@ -1,0 +1,82 @@
+"""The systems that come with mbsym pass with the units that their quantities have, and not with others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mbsym.source import read
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+
+#: From what each symbol is, without looking at the formulas.
+MOMENTS = "kg*m^2"
+CARRIER = {
+    **dict.fromkeys(("I1", "I2", "I3", "Jt", "Ja", "A"), MOMENTS),
+    "mu": "kg",
+    "b0": "m",
+    "d": "m",
+    "k": "N/m",
+    "cd": "N*s/m",
+    "Omega": "rad/s",
+    "omega": "rad/s",
+    "e": "1",
+    "s": "1",
+    "rho": "1",
+    "p2": "1/s^2",
+    "dc": "1/s",
+    "Lambda": "1/s",
+    "z": "m",
+    "sigma": "rad",
+}
+ORBIT = {"R": "m", "omega0": "1/s", "nu": "m^3/s^2"}
+BODY = {"A": MOMENTS, "B": MOMENTS, "C": MOMENTS}
+LINKS = {**{f"m{k}": "kg" for k in range(1, 7)}, **{f"{x}{k}": MOMENTS for x in "ABC" for k in range(1, 7)}}
+TETHER = {
+    **dict.fromkeys(("d_Ccm1", "d_AC", "d_EB", "d_Dcm2", "L1", "L2", "x_A", "y_A"), "m"),
+    **dict.fromkeys(("I_A", "I1", "I_B", "I2"), MOMENTS),
+    **dict.fromkeys(("m_A", "m_B", "m1", "m2"), "kg"),
+}
+FIXED = {"g": "m/s^2", "x0": "m", "y0": "m", "z0": "m", "lx": "N*m*s", "lz": "kg*m^2/s"}
+UNITS = {
+    "cart-pendulum": {"m0": "kg", "m1": "kg", "l0": "m", "l1": "m", "g": "m/s^2", "F": "N", "x": "m", "q1": "rad"},
+    "clebsch": {**BODY, "R": "m", "N": "1/s^2", "M": "kg", "W": "rad/s", "c": "rad"},
+    "double-pendulum": {"m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad"},
+    "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
+    "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
+    "gyrostat": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
+    "heavy-top": {"A": MOMENTS, "C": MOMENTS, "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s"},
+    "orbital-gyrostat": {**ORBIT, **BODY, "m": "kg", "h1": "N*m*s", "h2": "N*m*s", "h3": "N*m*s", "h": MOMENTS},
+    "satellite": {**ORBIT, "M2": "kg", "m": "kg", "m0": "kg", "l": "m", "r": "m", "Jx": MOMENTS, "Jy": MOMENTS},
+    "satellite-with-damper": CARRIER,
+    "satellite-with-damper-driven": CARRIER,
+    "simple-pendulum": {"m": "kg", "l": "m", "J": MOMENTS, "g": "m/s^2", "b": "N*m*s/rad", "theta": "rad"},
+    "spatial-arm": {**LINKS, "g": "m/s^2", "h": "m", "e": "m", "c4": "m", "s": "m"},
+    "spherical-pendulum": {"m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s", "theta0": "rad"},
+    "spring-pendulum": {"m": "kg", "k": "N/m", "l0": "m", "g": "m/s^2", "r": "m"},
+    "tethered-satellites": TETHER,
+    "ziegler": {"m": "kg", "l": "m", "k": "N*m/rad", "P": "N"},
+    "ziegler-damped": {"m": "kg", "l": "m", "k": "N*m/rad", "P": "N", "b1": "N*m*s/rad", "b2": "N*m*s/rad"},
+}
+
+
+def complaints(name: str, units: dict[str, str]) -> list[str]:
+    text = (SYSTEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    given = "".join(f"  {symbol}: {unit}\n" for symbol, unit in units.items())
+    _, found = read(f"{text}\nunits:\n{given}", f"{name}.yaml")
+    return [
+        one.message for one in found.items if one.code in ("dimension", "bad-unit", "incoherent-units", "unknown-name")
+    ]
+
+
+def test_no_system_is_forgotten() -> None:
+    assert {path.stem for path in SYSTEMS.glob("*.yaml")} == set(UNITS)
+
+
+@pytest.mark.parametrize("name", sorted(UNITS))
+def test_a_system_passes_with_its_units_and_not_with_a_wrong_one(name: str) -> None:
+    units = UNITS[name]
+    assert complaints(name, units) == []
+    symbol = next(symbol for symbol, unit in units.items() if unit in ("m", "kg", MOMENTS))
+    assert complaints(name, {**units, symbol: "m*s"}), symbol
