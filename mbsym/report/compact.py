@@ -36,7 +36,7 @@ _ENDLESS = 10**9
 class Compact:
     """A problem told: ``passages`` introduce every name that the formulas of ``system`` for this problem need.
 
-    ``expanded``: the terms of the closed formulas; 0 where there are none.
+    ``expanded``: the terms of the closed formulas in whose place this stands; 0 where there are none.
     """
 
     system: ToldSystem
@@ -66,10 +66,26 @@ def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
         formulas = told_formulas(told, number)
         listed = passages(told.told, analysis.system, formulas)
         length = sum(x.terms for x in formulas) + sum(y.formula.terms for x in listed for y in x.definitions)
-        one = Compact(told, listed, 0 if problems[number] is None else total)
+        one = Compact(told, listed, _replaced(problems[number], total))
         if one.definitions <= MOST_DEFINITIONS and (not one.expanded or SHORTER * length <= total):
             found[number] = one
     return found
+
+
+def _replaced(found: Any, printed: int) -> int:
+    """The terms of what is told: of T as a whole, though where it is written out its A_ij stand as M_ij in problem 3.
+
+    A velocity that is that of the joint is told as that.
+    """
+    match found:
+        case None:
+            return 0
+        case Energy():
+            return found.terms
+        case Kinematics():
+            same = (x.velocity_mass_centre for x in found.bodies if x.velocity_mass_centre == x.velocity_origin)
+            return printed - sum(x.terms for v in same for x in v)
+    return printed
 
 
 def told_formulas(told: ToldSystem, number: int) -> list[Formula]:

@@ -18,7 +18,7 @@ class Reference:
 
 
 _LITERATURE = {
-    "lagrange": r"J.-L. Lagrange, \textit{M\'ecanique analytique}, Paris, 1788.",
+    "lagrange": r"J.-L. Lagrange, \textit{M\'echanique analitique}, Paris, 1788.",
     "dirichlet": (
         r"G. Lejeune Dirichlet, \"Uber die Stabilit\"at des Gleichgewichts, "
         r"\textit{J. reine angew. Math.} \textbf{32} (1846), 85--88."
@@ -27,16 +27,20 @@ _LITERATURE = {
         r"E. J. Routh, \textit{A Treatise on the Stability of a Given State of Motion}, Macmillan, London, 1877."
     ),
     "thomson-tait": (
-        r"W. Thomson, P. G. Tait, \textit{Treatise on Natural Philosophy}, Cambridge University Press, 1879."
+        r"W. Thomson (Lord Kelvin), P. G. Tait, \textit{Treatise on Natural Philosophy}, "
+        r"Cambridge University Press, 1879."
     ),
-    "chetaev": r"N. G. Chetayev, \textit{The Stability of Motion}, Pergamon Press, Oxford, 1961.",
+    "chetaev": (
+        r"N. G. Chetaev, \textit{Stability of Motion}, Gostekhizdat, Moscow, 1946; English translation (as Chetayev): "
+        r"\textit{The Stability of Motion}, Pergamon Press, 1961."
+    ),
     "lyapunov": (
         r"A. M. Lyapunov, \textit{The General Problem of the Stability of Motion}, Kharkov, 1892; "
-        r"English translation: Taylor \& Francis, London, 1992."
+        r"English translation by A. T. Fuller: Taylor \& Francis, London, 1992."
     ),
     "malkin": (
         r"I. G. Malkin, \textit{Theory of Stability of Motion}, Gostekhizdat, Moscow, 1952; "
-        r"English translation: US Atomic Energy Commission, AEC-tr-3352, 1958."
+        r"English translation: US Atomic Energy Commission, AEC-tr-3352."
     ),
 }
 

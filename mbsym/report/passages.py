@@ -78,8 +78,8 @@ _WORDS = {
     Quantity.MASS: "Mass of {it}",
     Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of {it}",
     Quantity.INERTIA: "Inertia tensor of {it} about the connection point",
-    Quantity.UNIT_FORCE: "Force at the connection point of {b} that a unit acceleration takes of",
-    Quantity.UNIT_MOMENT: "Moment about the connection point of {b} that a unit acceleration takes of",
+    Quantity.UNIT_FORCE: "Force at the connection point of {b} required by a unit acceleration of",
+    Quantity.UNIT_MOMENT: "Moment about the connection point of {b} required by a unit acceleration of",
     Quantity.FORCE: "Force that {it} needs beyond the loads",
     Quantity.MOMENT: "Moment about the connection point that {it} needs beyond the loads",
 }  # fmt: skip

@@ -128,6 +128,25 @@ def test_the_energy_integral_is_told_through_problems_2_and_3() -> None:
     assert said not in TARGETS["latex"].render(mbsym.load(SHIPPED / "double-pendulum.yaml"), (2, 3, 7))
 
 
+def test_what_is_told_is_counted_as_the_terminal_counts_it() -> None:
+    """T as a whole, and no velocity twice."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    energy = analysis.energy
+    text = TARGETS["latex"].render(analysis, (2,))
+    assert f"Written out there are {energy.kinetic_energy.terms + energy.force_function.terms} terms." in text
+    bodies = analysis.kinematics.bodies
+    written = {
+        (k, name): getattr(x, name) for k, x in enumerate(bodies) for name in ("angular_velocity", "velocity_origin")
+    }
+    written |= {
+        (k, "centre"): x.velocity_mass_centre
+        for k, x in enumerate(bodies)
+        if [str(y) for y in x.velocity_mass_centre] != [str(y) for y in x.velocity_origin]
+    }
+    count = sum(x.terms for v in written.values() for x in v)
+    assert f"Written out there are {count} terms." in TARGETS["latex"].render(analysis, (1,))
+
+
 def test_detail_is_an_option_of_run(tmp_path: Path) -> None:
     texts = {}
     for word in ("compact", "full"):

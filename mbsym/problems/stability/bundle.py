@@ -16,7 +16,7 @@ Nothing follows where no combination is definite.
 The multipliers that annul the first variation are found exactly, in the number field of the motion; which of them make
 the second one definite is looked for in floating point and then proved with enclosures.
 
-Sources: N. G. Chetaev, The stability of motion (1946); V. V. Rumyantsev, On the stability of steady motions (1957).
+Sources: N. G. Chetaev, Stability of Motion (1946); V. V. Rumyantsev's papers on the stability of steady motions.
 """
 
 from __future__ import annotations
