@@ -192,3 +192,83 @@ def test_what_is_a_robot() -> None:
     assert is_robot("<mujoco model='x'/>")
     assert not is_robot("mbsym: 1\nname: <robot>")
     assert not is_robot("<sdf><robot/></sdf>")
+    assert not is_robot("<!---->" * 60 + "x")  # at once, not in 2^60 ways
+    assert is_robot("<!-- a --> <!-- <b> -->\n<robot/>")
+
+
+#: Its mass is pi at a density of 6.
+BALL = '<body name="b"><joint axis="0 1 0"/><geom size="0.5"/></body>'
+
+
+def mujoco(before: str, body: str = BALL, after: str = "") -> str:
+    return f"<mujoco>{before}<worldbody>{body}</worldbody>{after}</mujoco>"
+
+
+def masses(text: str, **options: bool) -> list[str]:
+    system, complaints = read(converted(text, **options).yaml, "x.yaml")
+    assert system is not None, [one.message for one in complaints]
+    return [written(body.mass) for body in system.bodies]
+
+
+def test_sections_that_come_twice_are_one() -> None:
+    defaults = '<default><geom density="6"/></default><default><joint damping="3"/></default>'
+    assert masses(mujoco(defaults)) == ["pi*1"]
+    assert "coefficient: 3" in converted(mujoco(defaults)).yaml
+    again = '<worldbody><body name="c"><joint/><geom size="0.5"/></body></worldbody>'
+    assert masses(mujoco('<default><geom density="6"/></default>', after=again)) == ["pi*1", "pi*1"]
+    assert "acceleration: 2" in converted(mujoco('<option timestep="1"/><option gravity="0 0 -2"/>')).yaml
+
+
+def test_gravity_may_be_off_and_geoms_of_other_groups_weigh_nothing() -> None:
+    assert "gravity" not in converted(mujoco('<option gravity="0 0 -2"><flag gravity="disable"/></option>')).yaml
+    two = '<body name="b"><joint/><geom size="0.5" density="6" group="1"/><geom size="0.5" group="2"/></body>'
+    assert masses(mujoco('<compiler inertiagrouprange="0 1"/>', two)) == ["pi*1"]
+
+
+def test_the_first_class_holds_for_all_whatever_it_is_called() -> None:
+    assert masses(mujoco('<default class="robot"><geom density="6"/></default>')) == ["pi*1"]
+
+
+def test_one_way_to_turn_stands_for_the_default_s() -> None:
+    box = '<body name="b"><joint/><geom type="box" size="1 2 3" axisangle="0 0 1 90"/></body>'
+    made = converted(mujoco('<default><geom euler="20 30 40"/></default>', box))
+    assert "rotation: {axes: [3], angles: [pi/2]}" in made.yaml
+    assert "20" not in made.yaml.partition("bodies:")[2].partition("mass:")[0]
+
+
+def test_only_the_first_link_is_freed_and_once() -> None:
+    two = '<body name="a"><joint/><geom size="1"/></body><body name="b"><joint/><geom size="1"/></body>'
+    system, complaints = read(converted(mujoco("", two), floating=True).yaml, "x.yaml")
+    assert system is not None, [one.message for one in complaints]
+    assert system.coordinates == ("x", "y", "z", "yaw", "pitch", "roll", "q1", "q2")
+    free, _ = read(
+        converted(mujoco("", '<body name="a"><freejoint/><geom size="1"/></body>'), floating=True).yaml, "x.yaml"
+    )
+    assert free is not None
+    assert len(free.coordinates) == 6
+
+
+@pytest.mark.parametrize(
+    ("before", "body", "code"),
+    [
+        ("", '<body childclass="nope"><joint/><geom size="1"/></body>', "unknown-name"),
+        ("", '<body><joint class="nope"/><geom size="1"/></body>', "unknown-name"),
+        ("", '<body><joint/><geom type="mesh" mesh="m"/></body>', "unsupported"),  # or the robot would be too light
+        ("", '<body><joint/><geom size="1" shellinertia="true"/></body>', "unsupported"),
+        ("", '<body><joint springdamper="1 1"/><geom size="1"/></body>', "unsupported"),
+        ("", '<body><joint/><geom size="-1"/></body>', "bad-size"),
+        ("", '<body><joint/><geom size="1" mass="-1"/></body>', "impossible-mass"),
+        ("", '<body><joint/><geom type="sfere" size="1"/></body>', "unsupported"),
+        ("", '<body euler="1 2 3" quat="1 0 0 0"><joint/><geom size="1"/></body>', "conflicting-keys"),
+        ('<compiler angle="grad"/>', BALL, "bad-word"),
+    ],
+)
+def test_what_would_be_read_wrongly_is_refused(before: str, body: str, code: str) -> None:
+    assert complaints_of(mujoco(before, body)) == [(code, 1)]
+
+
+def test_meshes_that_weigh_nothing_are_left_out() -> None:
+    body = '<body name="b"><joint/><geom type="mesh" mesh="m" mass="0"/><geom size="0.5" density="6"/></body>'
+    made = converted(mujoco("", body))
+    assert "geom of the type mesh" in made.left_out
+    assert masses(mujoco("", body)) == ["pi*1"]

@@ -11,7 +11,8 @@ from mbsym.source.robots.elements import parsed
 from mbsym.source.robots.mjcf import read_mjcf
 from mbsym.source.robots.urdf import read_urdf
 
-_ROOT = re.compile(r"\s*(?:<\?xml[^>]*\?>)?\s*(?:<!--.*?-->\s*)*<(robot|mujoco)\b", re.DOTALL)
+_BEFORE = re.compile(r"\s*+(?:<\?xml[^>]*\?>)?\s*+")
+_ROOT = re.compile(r"<(robot|mujoco)\b")
 _LOOK = 20_000
 
 
@@ -30,7 +31,13 @@ class Converted:
 
 def is_robot(text: str) -> bool:
     """Whether a text is a robot's file, URDF or MJCF."""
-    return _ROOT.match(text[:_LOOK].removeprefix("\ufeff")) is not None
+    text = text[:_LOOK].removeprefix("\ufeff")
+    start = _BEFORE.match(text)
+    assert start is not None
+    text = text[start.end() :]
+    while text.startswith("<!--"):  # one after the other: a comment ends at the first -->
+        text = text.partition("-->")[2].lstrip()
+    return _ROOT.match(text) is not None
 
 
 def convert(

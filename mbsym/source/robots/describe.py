@@ -112,7 +112,7 @@ class _Writer:
     def _link(self, link: Link) -> None:
         moving = [(joint, self._coordinates(joint)) for joint in link.joints]
         place, turned = link.place, link.turned
-        if link.parent == GROUND and self.floating:
+        if self.floating and link is self.robot.links[0] and not any(joint.kind == "free" for joint in link.joints):
             moving.insert(0, (_FREE, ("x", "y", "z", "yaw", "pitch", "roll")))
         if any(joint.kind == "free" for joint, _ in moving):
             place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground

@@ -6,6 +6,7 @@ import math
 from decimal import Decimal
 from fractions import Fraction
 
+from mbsym.expressions.parser import ascii_safe
 from mbsym.source.robots.elements import Element
 from mbsym.source.robots.numbers import Texts, number
 from mbsym.source.robots.orientation import Angles, orientation, turns_onto
@@ -13,6 +14,7 @@ from mbsym.source.robots.reader import Reader
 from mbsym.source.robots.robot import Inertial, Shape, Turns
 
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}
+_OTHERS = ("plane", "hfield", "mesh", "sdf")
 _DENSITY = "1000"
 
 #: Longer numerators and denominators come from lengths that were rounded to doubles.
@@ -22,6 +24,30 @@ _EXACT_DIGITS = 20
 def is_solid(geom: Element) -> bool:
     """Whether it is a body whose inertia follows from its sizes."""
     return geom.get("type", "sphere") in _SIZES
+
+
+def checked(geom: Element, reader: Reader) -> bool:
+    """Whether a geom has a known type, sizes and a mass that are not negative; complains where not."""
+    kind = geom.get("type", "sphere")
+    if kind not in (*_SIZES, *_OTHERS):
+        reader.error("unsupported", f"a geom of the type {ascii_safe(kind)}", geom, f"one of {', '.join(_SIZES)}")
+        return False
+    before = reader.complaints.error_count
+    if kind in _SIZES and any(float(size) <= 0 for size in _sizes(geom, reader)) and not _errors(reader, before):
+        reader.error("bad-size", "a size of a geom is not positive", geom)
+    if any(float(reader.number(geom, key)) < 0 for key in ("mass", "density")):
+        reader.error("impossible-mass", "a mass is not negative", geom)
+    return not _errors(reader, before)
+
+
+def _errors(reader: Reader, before: int) -> bool:
+    return reader.complaints.error_count > before
+
+
+def weighs(geom: Element, reader: Reader) -> bool:
+    """Whether a geom of any type has a mass."""
+    key = "mass" if geom.get("mass") else "density"
+    return float(reader.number(geom, key, _DENSITY)) > 0
 
 
 def _sizes(geom: Element, reader: Reader) -> tuple[str, ...]:

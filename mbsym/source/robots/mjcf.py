@@ -12,7 +12,7 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.defaults import Defaults
 from mbsym.source.robots.elements import Element
-from mbsym.source.robots.geoms import is_solid, matter_of, shape_of
+from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
 from mbsym.source.robots.numbers import NOWHERE, Texts, degrees, number
 from mbsym.source.robots.orientation import Angles, orientation
 from mbsym.source.robots.reader import Reader
@@ -30,6 +30,14 @@ _SECTIONS = {
     "deformable": "deformable body",
     "extension": "plugin",
 }
+_SAVED = 'let MuJoCo save the compiled model with <compiler saveinertial="true"/>'
+
+#: Settings of the compiler that are one of these words; the first one where it is not given.
+_WORDS = {
+    "angle": ("degree", "radian"),
+    "inertiafromgeom": ("auto", "true", "false"),
+    "autolimits": ("true", "false"),
+}
 _INSIDE = {"composite": "composite body", "flexcomp": "flexible body", "frame": "", "replicate": ""}
 
 
@@ -42,18 +50,33 @@ def read_mjcf(root: Element, complaints: Complaints) -> Robot | None:
     for section in root.children:
         for _ in section.children if section.tag in _SECTIONS else ():
             reader.leave_out(_SECTIONS[section.tag])
-    world = root.first("worldbody")
-    if world is None:
+    worlds = root.all("worldbody")
+    if not worlds:
         reader.error("missing-key", "there is no <worldbody>", root)
         return None
-    option = root.first("option")
-    gravity = ("0", "0", "-9.81") if option is None else reader.three(option, "gravity", "0 0 -9.81")
     bodies = _Bodies(root, reader)
-    links = tuple(bodies.links(world, GROUND, ""))
-    if not links:
-        reader.error("missing-key", "there is no <body>", world)
+    links = tuple(link for world in worlds for link in bodies.links(world, GROUND, bodies.childclass(world, "")))
+    if not links and not complaints.errors:
+        reader.error("missing-key", "there is no <body>", worlds[0])
     name = root.get("model") or "robot"
+    gravity = _gravity(root, reader)
     return None if complaints.errors else Robot(name, links, gravity, reader.left_out())
+
+
+def _together(root: Element, tag: str) -> Element:
+    """Sections of a tag as one: what a later one says stands."""
+    found = root.all(tag)
+    attributes = {key: value for element in found for key, value in element.attributes.items()}
+    return Element(tag, attributes, found[-1].span if found else root.span, [c for e in found for c in e.children])
+
+
+def _gravity(root: Element, reader: Reader) -> Texts:
+    option = _together(root, "option")
+    gravity = reader.three(option, "gravity", "0 0 -9.81")
+    for key, told in (("density", "density"), ("viscosity", "viscosity")):
+        if float(reader.number(option, key)):
+            reader.leave_out(f"forces of a fluid ({told})")
+    return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
 
 
 class _Bodies:
@@ -61,8 +84,14 @@ class _Bodies:
 
     def __init__(self, root: Element, reader: Reader) -> None:
         self.reader = reader
-        self.defaults = Defaults(root)
-        compiler = {key: value for element in root.all("compiler") for key, value in element.attributes.items()}
+        self.defaults = Defaults(root, reader)
+        section = _together(root, "compiler")
+        compiler = section.attributes
+        for key, words in _WORDS.items():
+            if compiler.get(key, words[0]) not in words:
+                message = f"'{key}' is {ascii_safe(compiler[key])}"
+                reader.error("bad-word", message, section, f"one of {', '.join(words)}")
+        self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
@@ -71,7 +100,11 @@ class _Bodies:
             if compiler.get(key, "0") not in ("0", "false", "-1"):
                 reader.leave_out(f"setting of the compiler ({key})")
         if compiler.get("coordinate", "local") != "local":
-            reader.error("unsupported", "global coordinates are not read", root.all("compiler")[0])
+            reader.error("unsupported", "global coordinates are not read", section)
+
+    def childclass(self, element: Element, above: str) -> str:
+        """The default class of what is inside an element."""
+        return self.defaults.checked(element, "childclass") or above
 
     def links(self, above: Element, parent: str, childclass: str) -> Iterator[Link]:
         """The bodies inside an element, each followed by those inside it."""
@@ -80,7 +113,7 @@ class _Bodies:
             if name in self.names:
                 self.reader.error("repeated-name", f"a second body called {ascii_safe(name)}", element)
             self.names.add(name)
-            inside = element.get("childclass") or childclass
+            inside = self.childclass(element, childclass)
             yield self.link(name, element, parent, inside)
             yield from self.links(element, name, inside)
 
@@ -93,7 +126,11 @@ class _Bodies:
         for child in element.children:
             if child.tag in _INSIDE:
                 reader.leave_out(_INSIDE[child.tag])
+        for attribute, none, told in (("gravcomp", "0", "compensation of gravity"), ("mocap", "false", "mocap body")):
+            if element.get(attribute, none) != none:
+                reader.leave_out(told)
         geoms = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
+        geoms = [geom for geom in geoms if checked(geom, reader)]
         for geom in geoms:
             if not is_solid(geom):
                 reader.leave_out(f"geom of the type {geom.get('type', 'sphere')}")
@@ -103,10 +140,27 @@ class _Bodies:
         shapes = tuple(shape_of(geom, self.angles, reader) for geom in solid)
         given = element.first("inertial")
         if self.from_geoms == "true" or (given is None and self.from_geoms != "false"):
-            matter = tuple(found for geom in solid if (found := matter_of(geom, self.angles, reader)) is not None)
+            matter = self.of_geoms(geoms)
         else:
             matter = () if given is None else (self.inertial(given),)
         return Link(name, parent, place, turned, joints, matter, shapes, element.span)
+
+    def of_geoms(self, geoms: list[Element]) -> tuple[Inertial, ...]:
+        """The matter of a body's geoms; complains about what weighs something that is not known here."""
+        reader, found = self.reader, []
+        for geom in geoms:
+            if not self.groups[0] <= float(reader.number(geom, "group")) <= self.groups[1]:
+                continue
+            if geom.get("type", "sphere") in ("plane", "hfield") or not weighs(geom, reader):
+                continue
+            if not is_solid(geom):
+                message = f"the mass of a {geom.get('type')} is not known here, and the body has no <inertial>"
+                reader.error("unsupported", message, geom, _SAVED)
+            elif geom.get("shellinertia") == "true":
+                reader.error("unsupported", "the mass of a shell ('shellinertia') is not read", geom, _SAVED)
+            elif (matter := matter_of(geom, self.angles, reader)) is not None:
+                found.append(matter)
+        return tuple(found)
 
     def pose(self, element: Element) -> tuple[Texts, Turns]:
         return self.reader.three(element, "pos"), orientation(element, self.angles, self.reader)
@@ -137,6 +191,10 @@ class _Bodies:
             float(reader.number(element, "damping")) or float(reader.number(element, "stiffness"))
         ):
             reader.leave_out("damping and stiffness of ball and free joints")
+        if any(float(part) for part in reader.numbers(element, "springdamper", 2, "0 0")):
+            reader.error(
+                "unsupported", "a joint with 'springdamper' is not read", element, "give stiffness and damping"
+            )
         if float(reader.number(element, "ref")):
             reader.error(
                 "unsupported", "a joint with 'ref' is not read", element, "let MuJoCo save the model without it"

@@ -16,6 +16,9 @@ Row = tuple[float, float, float]
 #: Columns are the new axes in the old ones.
 Matrix = tuple[Row, Row, Row]
 
+#: The attributes that turn something.
+TURNING = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
+
 #: Below this the yaw and the roll of a turn cannot be told apart.
 _LEVEL = 1e-12
 
@@ -33,6 +36,8 @@ class Angles:
 
 def orientation(element: Element, angles: Angles, reader: Reader) -> Turns:
     """The turns that an element asks for, in whichever way."""
+    if len(given := [key for key in TURNING if element.get(key)]) > 1:
+        reader.error("conflicting-keys", f"<{element.tag}> is turned in two ways: {' and '.join(given)}", element)
     if element.get("euler"):
         return _euler(element, angles, reader)
     if element.get("axisangle"):
