@@ -35,7 +35,8 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     files: dict[str, str | bytes] = {}
     if "csv" in asked.formats:
         further = {kept.column: kept.values for kept in run.invariants}
-        files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further)
+        units = {kept.column: kept.unit for kept in run.invariants}
+        files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further, units)
     if "bodies-csv" in asked.formats:
         files[f"bodies{mark}.csv"] = _bodies(run)
     kinds = [kind for kind in asked.formats if kind in FIGURES]
@@ -63,7 +64,7 @@ def _bodies(run: Simulation) -> str:
 
     found = run.trajectory
     rates = accelerations(run.dynamics, found.times, found.states)
-    return bodies_csv(body_motions(run.scenario, found.times, found.states, rates))
+    return bodies_csv(body_motions(run.scenario, found.times, found.states, rates), run.system)
 
 
 def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.counting import counted
+from mbsym.model.quantities import time_unit, unit_of, with_unit
+from mbsym.report.unit_text import pretty
 from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:
@@ -49,8 +51,9 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
         shorter = taken < setting.step * (1 - 1e-6)
         how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
     yield "setting", f"{how}, {request.arithmetic}"
-    reached = "" if found.whole else f", reached {found.times[-1]:.9g}"
-    yield "time", f"0 to {request.time:g}, {len(chosen.times)} samples{reached}"
+    unit = pretty(time_unit(run.system))
+    reached = "" if found.whole else f", reached {with_unit(f'{found.times[-1]:.9g}', unit)}"
+    yield "time", f"0 to {with_unit(f'{request.time:g}', unit)}, {len(chosen.times)} samples{reached}"
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
     evaluations = counted(work.evaluations, "evaluation", "evaluations")
@@ -70,7 +73,10 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
         yield "warning", text
     ratio, at = least_pivot(run.dynamics, found)
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
-        yield "warning", f"at t = {at:.6g} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})"
+        yield (
+            "warning",
+            f"at t = {with_unit(f'{at:.6g}', unit)} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})",
+        )
     spacing = float(chosen.times[1] - chosen.times[0])
     if chosen.frequency * spacing > pi / 2:
         yield "warning", "fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples"
@@ -93,7 +99,11 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
     from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK, UNDEFINED
 
     names = [*found.system.coordinates, *found.system.velocities]
-    state = ", ".join(f"{name} = {float(value):.6g}" for name, value in zip(names, ended.state, strict=True))
+    system, time = found.system, pretty(time_unit(found.system))
+    state = ", ".join(
+        f"{name} = {with_unit(f'{float(value):.6g}', pretty(unit_of(system, name)))}"
+        for name, value in zip(names, ended.state, strict=True)
+    )
     hints = {
         BLOW_UP: (
             "the motion grows without an end in sight, in finite time or exponentially; is a sign of the forces right?"
@@ -110,11 +120,11 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
     samples, where = counted(len(found.times), "sample", "samples"), printable(paths[0].parent)
-    kept = f"{samples} up to t = {found.times[-1]:.9g} kept in {where}"
-    code = ended.kind.replace(" ", "-")
+    kept = f"{samples} up to t = {with_unit(f'{found.times[-1]:.9g}', time)} kept in {where}"
+    code, at = ended.kind.replace(" ", "-"), with_unit(f"{ended.time:.9g}", time)
     return "\n".join(
         [
-            f"{printable(file)}: error[{code}]: {ended.kind} at t = {ended.time:.9g}: {ended.message}",
+            f"{printable(file)}: error[{code}]: {ended.kind} at t = {at}: {ended.message}",
             f"  state: {state}",
             f"  hint: {hints.get(ended.kind, '')}",
             f"{printable(file)}: {kept}",
@@ -123,6 +133,8 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
 
 
 def note(found: Trajectory) -> str:
+    """What figures say of a trajectory that is not whole."""
+    unit = pretty(time_unit(found.system))
     if found.breakdown is not None:
-        return f"ended early: {found.breakdown.kind} at t = {found.breakdown.time:.6g}"
-    return f"interrupted at t = {found.times[-1]:.6g}" if found.interrupted else ""
+        return f"ended early: {found.breakdown.kind} at t = {with_unit(f'{found.breakdown.time:.6g}', unit)}"
+    return f"interrupted at t = {with_unit(f'{found.times[-1]:.6g}', unit)}" if found.interrupted else ""

@@ -96,11 +96,12 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Kept:
-    """A first integral along a run: its column, its values (m,) and how far it is conserved."""
+    """A first integral along a run: its column, its values (m,), how far it is conserved, its unit if that is known."""
 
     column: str
     values: Any
     conservation: Conservation
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -362,5 +363,5 @@ def _kept(dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], hel
         state, doubt = Standing.PROVED, None
         if not item.proved:
             state, doubt = standing(dynamics, item.code, 0, visited(found.times, found.states, column), held)
-        kept.append(Kept(item.column, column, confronted(item.name, state, column, size, doubt)))
+        kept.append(Kept(item.column, column, confronted(item.name, state, column, size, doubt), item.unit))
     return tuple(kept)

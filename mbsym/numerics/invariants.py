@@ -11,6 +11,7 @@ import numpy as np
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
+from mbsym.model.quantities import integral_unit
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
@@ -22,12 +23,14 @@ class Invariant:
     """A first integral of problem 7 as a code over (t, q, q'): the integral I, then dI/dq' . q' part by part.
 
     The parts say how large a change counts as one: an integral that is zero is the difference of large terms.
+    ``unit`` is None where it is not known.
     """
 
     name: str
     column: str
     proved: bool
     code: Code
+    unit: str | None = None
 
 
 def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequence[str] = ()) -> tuple[Invariant, ...]:
@@ -52,7 +55,8 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
         slopes = gradient(program, node, velocities)
         parts = (program.product(slope, velocity) for slope, velocity in zip(slopes, velocities, strict=True))
         code = Code(program, dynamics.inputs, (node, *parts))
-        found.append(Invariant(integral.name, column, integral.status == PROVED, code))
+        unit = integral_unit(system, integral.kind, integral.of)
+        found.append(Invariant(integral.name, column, integral.status == PROVED, code, unit))
     return tuple(found)
 
 

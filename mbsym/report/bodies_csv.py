@@ -9,7 +9,7 @@ Columns: ``t``; for each body NAME
     NAME.kinetic_energy             1/2 m V.V + 1/2 omega.Theta_C omega
 
 then ``kinetic_energy`` (their sum), ``force_function`` U, and ``energy``, their difference T - U.  Everything is in the
-units of the description.
+units of the description; where it declares them, they stand behind the names (``arm.velocity_1 [m/s]``).
 """
 
 from __future__ import annotations
@@ -17,6 +17,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from mbsym.model.quantities import (
+    acceleration_unit,
+    angular_velocity_unit,
+    energy_unit,
+    length_unit,
+    marked,
+    speed_unit,
+    time_unit,
+)
+from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
 from mbsym.report.trajectory_csv import written
 
@@ -28,12 +38,34 @@ _VECTORS = (
 )
 
 
-def bodies_csv(found: BodyMotions) -> str:
-    """The file's text."""
+def bodies_csv(found: BodyMotions, system: System | None = None) -> str:
+    """The file's text, with the units of ``system``."""
     kinetic = found.kinetic.sum(axis=0)
     energies = {"kinetic_energy": kinetic, "force_function": found.force_function}
     table = {"t": found.times, **dict(_columns(found)), **energies, "energy": kinetic - found.force_function}
-    return written([_cell(name) for name in table], list(table.values()))
+    units = {} if system is None else _units(system)
+    return written([_cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values()))
+
+
+def _units(system: System) -> dict[str, str | None]:
+    """By what is measured."""
+    energy = energy_unit(system)
+    return {
+        "t": time_unit(system),
+        "position": length_unit(system),
+        "velocity": speed_unit(system),
+        "acceleration": acceleration_unit(system),
+        "angular_velocity": angular_velocity_unit(system),
+        "kinetic_energy": energy,
+        "force_function": energy,
+        "energy": energy,
+    }
+
+
+def _quantity(name: str) -> str:
+    """``arm.angular_velocity_1`` is an angular velocity."""
+    quantity = name.rpartition(".")[2]
+    return quantity[:-2] if quantity[-2:-1] == "_" and quantity[-1:].isdigit() else quantity
 
 
 def _columns(found: BodyMotions) -> Iterator[tuple[str, Any]]:

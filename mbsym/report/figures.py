@@ -18,10 +18,12 @@ from matplotlib.transforms import ScaledTranslation
 
 from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.quantities import energy_unit, time_unit, unit_of
 from mbsym.model.system import System
 from mbsym.numerics.between import between
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.drawing import BLUE, GREY, RED, saved, styled, thinned
+from mbsym.report.unit_text import labelled
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
 HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
@@ -76,8 +78,8 @@ def _title(system: System) -> str:
     return system.name if len(system.name) <= 70 else system.name[:67] + "..."
 
 
-def _labels(system: System) -> tuple[dict[str, str], dict[str, str]]:
-    """Coordinates and velocities as mathematical text in the user's names."""
+def _labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
+    """Coordinates and velocities as mathematical text in the user's names, ``between`` them and their units."""
     names = LatexNames(["t", *system.coordinates])
     # matplotlib knows no \mathtt{a\_b}; plain letters are as clear.
     plain = {name: "$\\mathrm{" + name.replace("_", r"\_") + "}$" for name in system.coordinates}
@@ -87,13 +89,15 @@ def _labels(system: System) -> tuple[dict[str, str], dict[str, str]]:
         odd = "mathtt" in symbol.stem
         positions[name] = plain[name] if odd else f"${symbol}$"
         velocities[name] = f"d{plain[name]}/d$t$" if odd else f"${symbol.accented('dot')}$"
+        positions[name] += labelled("", unit_of(system, name)).replace(" ", between, 1)
+        velocities[name] += labelled("", system.units.rate_of(name)).replace(" ", between, 1)
     return positions, velocities
 
 
 def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
     """q(t) on the left, q'(t) on the right, a row a coordinate."""
     system = found.system
-    positions, velocities = _labels(system)
+    positions, velocities = _labels(system, "\n")
     place = {name: i for i, name in enumerate(system.coordinates)}
     for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
         figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
@@ -105,7 +109,7 @@ def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
                 _label(axis, label)
                 axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
         for axis in axes[-1]:
-            axis.set_xlabel("$t$")
+            axis.set_xlabel(labelled("$t$", time_unit(system)))
             _span(axis, found.times)
         yield file, figure
 
@@ -128,7 +132,7 @@ def _span(axis: Any, times: Any) -> None:
 def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[str, Figure]]:
     """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
     system = found.system
-    positions, velocities = _labels(system)
+    positions, velocities = _labels(system)[0], _labels(system, "\n")[1]
     place = {name: i for i, name in enumerate(system.coordinates)}
     turning = angle_denominators(system)
     for file, names, page in _pages("phase-planes", system.coordinates, PLANE_ROWS * PLANE_COLUMNS):
@@ -191,12 +195,12 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     """
     figure = _page(10, 3.4 + (0.3 if note else 0), _title(found.system), note)
     axis = figure.subplots(1, 1)
-    axis.set_xlabel("$t$")
+    axis.set_xlabel(labelled("$t$", time_unit(found.system)))
     energy = "energy" if found.generalized_energy is found.energy else "generalised energy"
     if not conserved:
         axis.plot(*thinned(found.times, found.generalized_energy), color=BLUE)
         axis.set_title(energy)
-        _label(axis, "$h$")
+        _label(axis, labelled("$h$", energy_unit(found.system)).replace(" ", "\n", 1))
         _span(axis, found.times)
         return figure
     drift = np.maximum(np.abs(np.asarray(found.drift, dtype=float)), FLOOR)

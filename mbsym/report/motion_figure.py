@@ -17,9 +17,11 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from mbsym.model.quantities import length_unit, time_unit, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
 from mbsym.report.drawing import pictures, thinned
+from mbsym.report.unit_text import labelled, pretty
 
 #: Early and late; the eye reads darker as later, in print too.
 _TIME = LinearSegmentedColormap.from_list("time", ["#c3d3e8", "#5b87bd", "#173a6b"])
@@ -118,7 +120,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     from matplotlib.cm import ScalarMappable
 
     bar = figure.colorbar(ScalarMappable(time, _TIME), ax=axis, shrink=0.75, pad=0.02, aspect=28)
-    bar.set_label("$t$", rotation=0, fontsize=13, labelpad=8)
+    bar.set_label(labelled("$t$", time_unit(found.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8)
     bar.outline.set_visible(False)
     handles, labels = axis.get_legend_handles_labels()
     if handles:
@@ -145,9 +147,11 @@ def _title(found: Positions) -> str:
 
 def _caption(found: Positions, step: float, end: float) -> list[str]:
     last = float(found.times[-1])
-    said = f"t = 0 to {_rounded(last)}" + ("" if last == end else f" (of {_rounded(end)})")
+    unit = pretty(time_unit(found.system))
+    said = f"t = 0 to {with_unit(_rounded(last), unit)}"
+    said += "" if last == end else f" (of {with_unit(_rounded(end), unit)})"
     if found.bodied:
-        said += f", a snapshot every {_rounded(step)}"
+        said += f", a snapshot every {with_unit(_rounded(step), unit)}"
     return [said] if found.frame == INERTIAL else [said, f"seen in the frame '{found.frame}'"]
 
 
@@ -240,12 +244,18 @@ def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[i
                 axis.plot(*flat[i, :, k], "o", color=colour, markersize=4, zorder=5)
 
 
+def _length(found: Positions) -> str | None:
+    """The unit of places; none where only tips of unit vectors are drawn."""
+    return length_unit(found.system) if found.bodied else None
+
+
 def _scale(axis: Any, found: Positions, view: _View) -> None:
     """Numbers along axes that lie in the paper; else the directions of the axes, and a length."""
     if view.plane is not None:
         for label, direction in ((axis.set_xlabel, view.right), (axis.set_ylabel, view.up)):
             number = int(np.argmax(np.abs(direction))) + 1
-            label(f"axis {number}" if direction[number - 1] > 0 else f"against axis {number}")
+            name = f"axis {number}" if direction[number - 1] > 0 else f"against axis {number}"
+            label(labelled(name, _length(found)))
         axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         return
@@ -278,7 +288,12 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
     start = np.array([high[0] - bar, low[1]])
     axis.plot([start[0], start[0] + bar], [start[1], start[1]], color="#444444", linewidth=1.6, clip_on=False)
     axis.annotate(
-        f"{bar:g}", (start[0] + bar / 2, start[1]), (0, 4), textcoords="offset points", ha="center", fontsize=9
+        with_unit(f"{bar:g}", pretty(_length(found))),
+        (start[0] + bar / 2, start[1]),
+        (0, 4),
+        textcoords="offset points",
+        ha="center",
+        fontsize=9,
     )
 
 
@@ -309,9 +324,10 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, not
         axis.set_title(body, loc="left", fontsize=10, parse_math=False)
         axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)
-    grid[-1].set_xlabel("$t$")
+    grid[-1].set_xlabel(labelled("$t$", time_unit(found.system)))
     grid[-1].set_xlim(0, float(found.times[-1]))
     where = "" if found.frame == INERTIAL else f" in the frame '{found.frame}'"
-    lines = (_title(found) + part, f"places of the mass centres{where}", note)
+    what = labelled(f"places of the mass centres{where}", length_unit(found.system))
+    lines = (_title(found) + part, what, note)
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure

@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from math import isfinite
 from typing import Any
 
+from mbsym.model.quantities import energy_unit, units_by_name
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.simulation_words import conservation_json, error_json
@@ -47,6 +48,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "work": vars(found.work),
         "files": list(files),
         "versions": versions(),
+        **_units(run),
         "energy": {"is": "T - U", **conservation_json(run.energy_conservation)},
     }
     if not run.dynamics.natural:
@@ -60,6 +62,14 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "resting": _resting(chosen.resting),
     }
     return json.dumps(_plain(content), indent=2, ensure_ascii=False) + "\n"
+
+
+def _units(run: Simulation) -> dict[str, Any]:
+    """The units of everything that has a name; nothing for a description without."""
+    energy = energy_unit(run.system)
+    energies = [("energy", energy)] if run.dynamics.natural else [("energy", energy), ("generalized_energy", energy)]
+    units = units_by_name(run.system, [*energies, *((kept.column, kept.unit) for kept in run.invariants)])
+    return {"units": units} if units else {}
 
 
 def _resting(found: Reduced | None) -> dict[str, Any] | None:

@@ -4,6 +4,9 @@ Columns: ``t``, the coordinates, ``<name>_dot``, ``energy`` (T - U), where somet
 ``generalized_energy`` (h = T2 - T0 - U, else the same), ``relative_drift`` ((h - h(0)) over the largest kinetic
 energy), then whatever else was asked for.  A trajectory that ends early is told by its file's name and
 by ``simulation.json``, not by anything in the table: whoever reads it with default options gets numbers only.
+
+Of a description with units the names have theirs, ``theta [rad]``, ``t [s]``; a name without is a pure number, or its
+unit does not follow from the description.
 """
 
 from __future__ import annotations
@@ -13,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.model.quantities import energy_unit, marked, unit_of
+from mbsym.model.system import System
 from mbsym.numerics.columns import columns
 from mbsym.numerics.simulate import Trajectory
 
@@ -20,12 +25,22 @@ from mbsym.numerics.simulate import Trajectory
 BLOCK = 10_000
 
 
-def trajectory_csv(found: Trajectory, more: Mapping[str, Any] | None = None) -> str:
-    """The file's text; ``more`` maps names of further columns to their values, of shape (m,)."""
+def trajectory_csv(
+    found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
+) -> str:
+    """The file's text; ``more`` maps names of further columns to their values, of shape (m,), ``units`` to theirs."""
     further, natural = dict(more or {}), found.generalized_energy is found.energy
     energies = [found.energy] if natural else [found.energy, found.generalized_energy]
     table = [found.times, *found.states, *energies, found.drift, *further.values()]
-    return written([*columns(found.system, natural), *further], table)
+    known = column_units(found.system, natural) | dict(units or {})
+    return written([marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)], table)
+
+
+def column_units(system: System, natural: bool = True) -> dict[str, str | None]:
+    """The units of the columns of ``mbsym.numerics.columns``; "" for the relative drift."""
+    own = ["t", *system.coordinates, *system.velocities]
+    energies = [energy_unit(system)] * (1 if natural else 2)
+    return dict(zip(columns(system, natural), [*(unit_of(system, name) for name in own), *energies, ""], strict=True))
 
 
 def written(names: Sequence[str], table: Sequence[Any]) -> str:
