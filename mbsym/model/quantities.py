@@ -90,6 +90,13 @@ def integral_unit(system: System, kind: str, of: str) -> str | None:
     return None if own is None else system.units.text(times(times(ENERGY, TIME), own, -1))
 
 
+def told_units(system: System) -> list[str]:
+    """``t [s]``, ``theta [rad]``, ... of t, coordinates, rates and energies, as far as known; without pure numbers."""
+    names = ("t", *system.coordinates, *system.velocities)
+    units = [(name, unit_of(system, name)) for name in names] + [("energies", energy_unit(system))]
+    return [marked(name, unit) for name, unit in units if unit]
+
+
 def dimension_of(system: System, name: str) -> Dimension | None:
     """The dimension of a coordinate, a parameter, a prescribed motion or a symbol of the notation."""
     return dict(system.units.inferred).get(name)

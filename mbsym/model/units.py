@@ -18,6 +18,13 @@ Dimension = tuple[tuple[str, Fraction], ...]
 #: Base units in the order in which they are written.
 BASES = ("kg", "m", "s", "A", "K", "cd", "mol")
 
+#: What multiples of base units are called.
+MULTIPLES: dict[str, dict[float, str]] = {
+    "kg": {1: "kg", 1e-3: "g", 1e3: "t", 1e-6: "mg"},
+    "m": {1: "m", 1e-3: "mm", 1e-2: "cm", 1e3: "km", 1e-6: "um"},
+    "s": {1: "s", 1e-3: "ms", 60: "min", 3600: "h", 86400: "day", 1e-6: "us"},
+}
+
 NONE: Dimension = ()
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from textwrap import fill
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Limit, NoClosedForm
@@ -20,6 +20,8 @@ from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect
 from mbsym.mechanics.programs import generalized_energy
+from mbsym.model.quantities import marked, told_units
+from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
 from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value
@@ -131,7 +133,8 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         n=n,
         members=[(name, members[name]) for name in system.parameter_names],
         defaults=[(item.name, _default(item.value)) for item in system.parameters],
-        meanings={item.name: comment(item.meaning) for item in system.parameters if item.meaning},
+        meanings={item.name: comment(told) for item in system.parameters if (told := _told(system, item))},
+        units=wrap(comment(f"Units: {', '.join(told_units(system))}."), 110) if told_units(system) else [],
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=comment(no_code),
@@ -142,6 +145,11 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         upper=upper,
         entries=entries,
     )
+
+
+def _told(system: System, item: Parameter) -> str:
+    """What a parameter means, and its unit."""
+    return marked(item.meaning, system.units.of(item.name)).strip()
 
 
 def proposed(name: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.tree import ZERO, Expression, names
+from mbsym.model.quantities import marked
 from mbsym.model.system import System
 from mbsym.numerics.scenario import exact
 from mbsym.report.c_source import number
@@ -26,6 +27,12 @@ class Value:
     text: str
     meaning: str
     needs: tuple[str, ...] = ()
+    unit: str = ""
+
+    @property
+    def told(self) -> str:
+        """What it means, and its unit."""
+        return marked(self.meaning, self.unit).strip()
 
 
 def parameters_of(system: System, writer: Functions) -> list[Value]:
@@ -40,8 +47,9 @@ def parameters_of(system: System, writer: Functions) -> list[Value]:
                 written, needs = writer.expression(related[item.name]), names(related[item.name])
         if not written and item.value is not None and not _made(item.value):
             written = number(exact(item.value, {}))
+        unit = system.units.of(item.name) or ""
         used = tuple(name for name in system.parameter_names if name in needs)
-        found.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used))
+        found.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used, unit))
     return found
 
 

@@ -10,7 +10,7 @@ import keyword
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from textwrap import fill
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
@@ -21,6 +21,7 @@ from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
+from mbsym.model.quantities import told_units, unit_of
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
@@ -39,7 +40,7 @@ RESERVED = {
     "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
-    "Parameters", "INTEGRALS",
+    "Parameters", "INTEGRALS", "UNITS", "with_unit",
 }  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
@@ -61,6 +62,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     conserved = first_integrals(analysis, problems)
     parameters = parameters_of(system, writer)
     linear = analysis.stage(5) if 5 in problems else None
+    told = told_units(system)
     matrices = None
     if linear is not None and linear.failure is None:
         matrices = writer.linear(analysis, linear.value)
@@ -72,7 +74,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         description=fill(plain(system.description), 110),
         n=n,
         defaults=[(item.name, _default(item.value)) for item in system.parameters],
-        meanings=[(item.name, plain(item.meaning)) for item in system.parameters if item.meaning],
+        meanings=[(item.name, plain(item.told)) for item in parameters if item.told],
+        units=wrap(f"Units: {', '.join(told)}.", 110, break_long_words=False) if told else [],
+        axes=[
+            (name, unit) for name in ("t", *system.coordinates, *system.velocities) if (unit := unit_of(system, name))
+        ],
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=plain(no_code),

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
+import mbsym.report.exports.fmu_units as fmu_units_module
 import mbsym.report.figures as figures_module
 import mbsym.report.motion_figure as motion_module
 from mbsym.report.unit_text import latex, modelica, pretty
@@ -225,3 +228,116 @@ def test_units_are_written_for_each_target(unit: str | None, screen: str | None,
 def test_a_unit_as_somebody_wrote_it_is_raised_too() -> None:
     assert pretty("N * m * s**2") == "N·m·s²"
     assert latex("N * m * s**-2") == r"\mathrm{N}\,\mathrm{m}\,\mathrm{s}^{-2}"
+
+
+# --- generated code ---
+
+#: Of what exports hold besides parameters and the state; rates of rates by hand.
+SECOND = {"der(x)": "mm/s", "der(theta)": "rad/s", "der(x_dot)": "mm/s^2", "der(theta_dot)": "rad/s^2"}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of all reports and exports of the cart."""
+    folder = tmp_path_factory.mktemp("written")
+    formats = "python,c,casadi,jax,octave,julia,modelica,fmu2,fmu3,json,latex,html"
+    invoke("run", described(folder), "--format", formats, "--out", folder)
+    return folder
+
+
+def test_comments_of_code_tell_the_unit_of_every_parameter_and_of_the_state(written: Path) -> None:
+    state = ", ".join(f"{name} [{unit}]" for name, unit in STATE.items())
+    wanted = {name: unit for name, unit in PARAMETERS.items() if unit}
+    patterns = {
+        "model.py": r"^    (\w+): .*?\[(.*)\]$",
+        "model.h": r"^    double (\w+?)_?; /\* .*?\[(.*)\] \*/$",
+        "model_casadi.py": r'^    "(\w+)",  # .*?\[(.*)\]$',
+        "model_jax.py": r'^    "(\w+)",  # .*?\[(.*)\]$',
+        "model.m": r"^% Parameter (\w+): .*?\[(.*)\]$",
+        "model.jl": r"^    (\w+) = .*, # .*?\[(.*)\]$",
+    }
+    for name, pattern in patterns.items():
+        text = (written / name).read_text(encoding="utf-8")
+        assert dict(re.findall(pattern, text, re.MULTILINE)) == wanted, name
+        assert f"Units: {state}, energies [{ENERGY}]." in text, name
+
+
+def test_the_python_module_labels_its_axes(written: Path) -> None:
+    scope: dict[str, object] = {"__name__": "model"}
+    exec(compile((written / "model.py").read_text(encoding="utf-8"), "model.py", "exec"), scope)
+    assert scope["UNITS"] == STATE
+    assert scope["with_unit"]("theta_dot") == "theta_dot [rad/s]"  # type: ignore[operator]
+
+
+def test_modelica_has_units_in_its_own_syntax(written: Path) -> None:
+    text = (written / "model.mo").read_text(encoding="utf-8")
+    found = dict(re.findall(r'^  (?:parameter )?Real (\w+?)_?(?:\[3\])?\(.*?unit = "(.*?)"\)', text, re.MULTILINE))
+    energies = dict.fromkeys(("energy", "generalized_energy"), ENERGY)
+    wanted = {k: v for k, v in (STATE | PARAMETERS | energies).items() if k != "t" and v}
+    places = dict.fromkeys(("joint1", "joint2", "centre1", "centre2"), "mm")
+    assert found == {name: unit.replace("*", ".").replace("^", "") for name, unit in (wanted | places).items()}
+
+
+def test_modelica_counts_in_seconds_and_so_has_no_units_where_the_description_does_not(tmp_path: Path) -> None:
+    text = re.sub(r"/s\b", "/ms", CART).replace("name: Cart", "name: Fast cart")
+    invoke("run", described(tmp_path, text), "--format", "modelica", "--out", tmp_path / "out")
+    assert "unit" not in (tmp_path / "out" / "model.mo").read_text(encoding="utf-8")
+
+
+def fmu_units(path: Path) -> tuple[dict[str, str], dict[str, dict[str, float]]]:
+    """(unit by variable, attributes of the base unit by unit) of a model description."""
+    root = ElementTree.fromstring(zipfile.ZipFile(path).read("modelDescription.xml"))
+    units = {}
+    for one in root.iter("Unit"):
+        base = one.find("BaseUnit")
+        assert base is not None
+        units[one.attrib["name"]] = {name: float(value) for name, value in base.attrib.items()}
+    found = {}
+    for one in (*root.iter("ScalarVariable"), *root.iter("Float64")):
+        real = one.find("Real") if one.tag == "ScalarVariable" else one
+        assert real is not None
+        found[one.attrib["name"]] = real.attrib.get("unit", "")
+    return found, units
+
+
+def in_si(unit: str) -> dict[str, float]:
+    """The base unit as pint knows it: an independent reading of the unit's name."""
+    pint = pytest.importorskip("pint")
+    quantity = pint.UnitRegistry().Quantity(1.0, unit)
+    names = {"[mass]": ("kg", "kilogram"), "[length]": ("m", "meter"), "[time]": ("s", "second")}
+    found = {names[name][0]: float(power) for name, power in quantity.dimensionality.items()}
+    base = "*".join(f"{names[name][1]}**({power})" for name, power in quantity.dimensionality.items())
+    factor = quantity.to(base).magnitude if found else 1.0
+    return found | ({"rad": 1.0} if "rad" in unit else {}) | ({} if abs(factor - 1) < 1e-12 else {"factor": factor})
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_fmu_has_the_unit_of_every_variable_and_what_it_is_in_si(version: int, written: Path) -> None:
+    found, units = fmu_units(written / f"model-fmi{version}.fmu")
+    energies = dict.fromkeys(("energy", "generalized_energy"), ENERGY)
+    wanted = {name: unit for name, unit in STATE.items() if name != "t"} | {"time": "s"}
+    assert found == wanted | PARAMETERS | SECOND | energies
+    assert units.keys() == set(found.values()) - {""}
+    for unit, base in units.items():
+        assert base == pytest.approx(in_si(unit)), unit
+
+
+def test_a_wrong_size_of_a_unit_in_an_fmu_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: a millimetre of a centimetre."""
+    monkeypatch.setattr(fmu_units_module, "MULTIPLES", {**fmu_units_module.MULTIPLES, "m": {1e-2: "mm"}})
+    invoke("run", described(tmp_path), "--format", "fmu2", "--out", tmp_path / "out")
+    units = fmu_units(tmp_path / "out" / "model-fmi2.fmu")[1]
+    assert units["s"] == pytest.approx(in_si("s"))
+    with pytest.raises(AssertionError):
+        assert units["mm"] == pytest.approx(in_si("mm"))
+
+
+def test_without_units_nothing_that_is_generated_has_any(tmp_path: Path) -> None:
+    formats = "python,c,casadi,jax,octave,julia,modelica,fmu2,fmu3,json,latex,html"
+    invoke("run", described(tmp_path, bare()), "--format", formats, "--out", tmp_path / "out")
+    for path in sorted((tmp_path / "out").iterdir()):
+        if path.suffix == ".fmu":
+            assert fmu_units(path) == (dict.fromkeys(fmu_units(path)[0], ""), {})
+        elif path.is_file():
+            text = path.read_text(encoding="utf-8")
+            assert not re.search(r"\[(mm|t|s|rad)[]*/^]|Units:|UNITS|unit =|\"unit|mathrm\{mm", text), path.name

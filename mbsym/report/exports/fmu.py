@@ -16,7 +16,7 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from io import BytesIO
 from pathlib import Path
@@ -26,9 +26,11 @@ from xml.sax.saxutils import quoteattr
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.names import free_name, injective
+from mbsym.model.system import System
 from mbsym.numerics.scenario import exact
 from mbsym.report import c_source
 from mbsym.report.environment import rendered
+from mbsym.report.exports.fmu_units import Unit, time_and_energy, variable_unit
 from mbsym.report.exports.interface import Export, Language, export
 from mbsym.report.model_code import solved
 
@@ -104,6 +106,7 @@ class Variable:
     initial: str = ""
     start: str = ""
     derivative: int = 0
+    unit: str = ""
 
 
 def compiler() -> str | None:
@@ -162,7 +165,9 @@ def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
     }  # fmt: skip
     shared = rendered("exports/fmi.h.j2", {}, **values)
     written = rendered(f"exports/fmi{version}.c.j2", {}, shared=shared, refused=_refused(), **values)
-    about = values | {"title": system.name, "description": system.description, "variables": variables}
+    about = values | {"title": system.name, "description": system.description}
+    measured, units = _measured(system, variables)
+    about |= {"variables": measured, "units": units}
     files = {
         "modelDescription.xml": rendered(
             f"exports/modelDescription{version}.xml.j2", {"attribute": attribute}, **about
@@ -203,6 +208,27 @@ def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
     jacobi = "T2 - T0 - U: the energy where nothing moves as prescribed"
     for place, (name, words) in enumerate((("energy", "T - U"), ("generalized_energy", jacobi))):
         yield Variable(free_name(name, taken), first + place, words, "local", "continuous", "calculated")
+
+
+def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Variable], list[Unit]]:
+    """The variables with their units, and every unit once."""
+    orders = {name: (name, 0) for name in (*system.coordinates, *system.parameter_names)}
+    orders |= {rate: (name, 1) for name, rate in zip(system.coordinates, system.velocities, strict=True)}
+    orders |= {f"der({known})": (name, order + 1) for known, (name, order) in orders.items()}
+    time, energy = time_and_energy(system)
+    found, units = [], dict[str, Unit]()
+    last = len(variables) - 2  # the energies
+    for place, item in enumerate(variables):
+        if item.causality == "independent":
+            unit = time
+        elif place >= last:
+            unit = energy
+        else:
+            unit = variable_unit(system, *orders[item.name])
+        if unit is not None:
+            units[unit.name] = unit
+        found.append(replace(item, unit=unit.name if unit is not None else ""))
+    return found, list(units.values())
 
 
 def _numbers(model: Export) -> dict[str, Fraction]:

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.straight_line import Dialect
+from mbsym.model.quantities import told_units
 from mbsym.model.system import System
 from mbsym.report.functions import Function, Functions, prescribed_value
 from mbsym.report.identifiers import camel, prefix_of
@@ -90,6 +92,12 @@ class Export:
     def prescribed(self) -> list[tuple[str, str]]:
         """As the description writes them."""
         return [(item.name, text(prescribed_value(item))) for item in self.system.prescribed]
+
+    @property
+    def units(self) -> list[str]:
+        """Lines that tell the units of t, the state and energies; none for a description without units."""
+        told = ", ".join(told_units(self.system))
+        return wrap(f"Units: {told}.", 100, break_long_words=False) if told else []
 
     @property
     def starting(self) -> list[tuple[int, str]]:

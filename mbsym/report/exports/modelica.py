@@ -5,14 +5,17 @@ Mass matrix and Jacobian are left to the tools that read it: they differentiate 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect
+from mbsym.model.system import System
+from mbsym.model.units import ENERGY, LENGTH, TIME, Units
 from mbsym.report.c_source import number
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
+from mbsym.report.unit_text import base_unit, modelica
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -73,23 +76,48 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         results=results,
         accelerations=[row[0] for row in slopes],
         own=model.names,
+        unit=_units(model),
     )
 
 
-def _results(model: Export, shown: Sequence[Written], used: set[str]) -> Iterator[tuple[str, str, list[str] | str]]:
-    """(name, words, value or three components) of energies, integrals, places of bodies."""
+def _units(model: Export) -> Callable[[str], str]:
+    """What gives the units of parameters, coordinates and velocities in the syntax of Modelica.
+
+    Its time is in seconds: where that of the description is not, no unit would agree with it.
+    """
+    system = model.system
+    if not _in_seconds(system):
+        return lambda name: ""
+    rates = {rate: name for name, rate in zip(system.coordinates, system.velocities, strict=True)}
+
+    def unit(name: str) -> str:
+        return modelica(base_unit(system, rates.get(name, name), 1 if name in rates else 0))
+
+    return unit
+
+
+def _in_seconds(system: System) -> bool:
+    return system.units.text(TIME) == "s"
+
+
+def _results(
+    model: Export, shown: Sequence[Written], used: set[str]
+) -> Iterator[tuple[str, str, str, list[str] | str]]:
+    """(name, unit, words, value or three components) of energies, integrals, places of bodies."""
+    known = model.system.units if _in_seconds(model.system) else Units()
+    energy, length = modelica(known.text(ENERGY)), modelica(known.text(LENGTH))
     for one in shown:
         rows = one.rows("0.0") if one.shape else []
         if not one.shape:
-            yield _free(one.name, used), one.words, one.entries[0][1] if one.entries else "0.0"
+            yield _free(one.name, used), energy, one.words, one.entries[0][1] if one.entries else "0.0"
         elif one.name == "integrals":
             for item, row in zip(model.integrals, rows, strict=True):
-                yield _free(f"integral_{item.name}", used), f"{item.title}: constant ({item.status})", row[0]
+                yield _free(f"integral_{item.name}", used), "", f"{item.title}: constant ({item.status})", row[0]
         elif one.name in ("joints", "mass_centres"):
             words = "connection point" if one.name == "joints" else "mass centre"
             for place, (body, row) in enumerate(zip(model.system.bodies, rows, strict=True), 1):
                 name = _free(f"{'joint' if one.name == 'joints' else 'centre'}{place}", used)
-                yield name, f"{words} of {body.name}, in inertial axes", row
+                yield name, length, f"{words} of {body.name}, in inertial axes", row
 
 
 def _free(proposal: str, used: set[str]) -> str:

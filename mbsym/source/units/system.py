@@ -35,6 +35,7 @@ from mbsym.model.units import (
     INERTIA,
     LENGTH,
     MASS,
+    MULTIPLES,
     NONE,
     RATE,
     SPEED,
@@ -50,12 +51,6 @@ from mbsym.source.units.expressions import Dimensions
 from mbsym.source.units.inference import Form, Inference
 from mbsym.source.units.reading import Unit, unit
 
-#: What multiples of base units are called.
-_NAMES: dict[str, dict[float, str]] = {
-    "kg": {1: "kg", 1e-3: "g", 1e3: "t", 1e-6: "mg"},
-    "m": {1: "m", 1e-3: "mm", 1e-2: "cm", 1e3: "km", 1e-6: "um"},
-    "s": {1: "s", 1e-3: "ms", 60: "min", 3600: "h", 86400: "day", 1e-6: "us"},
-}
 _EXACT = 1e-9
 
 
@@ -133,7 +128,7 @@ def _incoherent(one: Declared, found: Unit, factor: float) -> tuple[str, Span | 
 
 def _called(base: str, size: float) -> str | None:
     """The name of a multiple of a base unit, if it has one."""
-    table = _NAMES.get(base, {1: base})
+    table = MULTIPLES.get(base, {1: base})
     return next((name for known, name in table.items() if abs(math.log(size / known)) < _EXACT), None)
 
 
