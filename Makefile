@@ -4,6 +4,7 @@
 # make systems  every description that comes with it, in one line each
 # make gallery  draws systems/figures again
 # make robots   27 robots (UR5 to Tiago Dual) derived and held against Pinocchio; installs its URDF files, 400 MB
+# make docs     builds the documentation site into build/site
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
 
 PYTHON ?= python3
@@ -11,7 +12,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery robots robot-data consumers bench clean
+.PHONY: all lint types test demo systems gallery docs robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -60,6 +61,10 @@ gallery: $(READY)
 	$(call figure,dumbbell,6000,motion,--set alpha=0.8 --set beta=0.4)
 	$(call figure,satellite,20,motion)
 	$(call figure,double-pendulum,6,motion)
+
+docs: $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/mkdocs build --strict --quiet
 
 # Four of them are among the tests already where the data are there.
 robots: robot-data

@@ -1,0 +1,36 @@
+"""The page on commands, from their own help texts."""
+
+from __future__ import annotations
+
+import click
+from in_markdown import fenced
+
+from mbsym_cli.main import COMMANDS, main
+
+_HEAD = """\
+# Commands
+
+Each command's help, as `mbsym COMMAND --help` prints it.
+[Completion of commands and options](../howto/editor.md#shell-completion) can be had for bash, zsh and fish.
+"""
+
+
+def page() -> str:
+    """The page in Markdown."""
+    parts = [_HEAD, fenced(_help(main, "mbsym"))]
+    for name, listed in COMMANDS.items():
+        parts += [
+            f"## mbsym {name}\n",
+            f"{listed.does}\n",
+            fenced(_help(main.get_command(_context(), name), f"mbsym {name}")),
+        ]
+    return "\n".join(parts)
+
+
+def _context() -> click.Context:
+    return click.Context(main, info_name="mbsym", **main.context_settings, terminal_width=100)
+
+
+def _help(command: click.Command, name: str) -> str:
+    context = click.Context(command, info_name=name, **main.context_settings, terminal_width=100)
+    return command.get_help(context)

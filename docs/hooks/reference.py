@@ -1,0 +1,32 @@
+"""Pages that are made of the program itself whenever the site is built, so that none of them can be out of date."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File, Files
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import commands_page
+import description_page
+import json_page
+import python_page
+
+PAGES = {
+    "reference/description.md": description_page.page,
+    "reference/commands.md": commands_page.page,
+    "reference/python.md": python_page.page,
+    "reference/json.md": json_page.page,
+}
+
+
+def on_files(files: Files, config: Any, **_: Any) -> Files:
+    """The files of the site, with the pages and schemas that are made."""
+    for name, page in PAGES.items():
+        files.append(File.generated(config, name, content=page()))
+    for name, text in json_page.schemas().items():
+        files.append(File.generated(config, f"reference/{name}", content=text))
+    return files
