@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from typing import Any
 
 import click
 
@@ -13,6 +14,8 @@ from mbsym_cli.options import Options
 
 #: What is read; the others are written.
 DESCRIPTION = "description"
+#: What a batch writes.
+SUMMARY = "summary"
 
 
 @click.command("schema")
@@ -20,19 +23,31 @@ DESCRIPTION = "description"
 def command(which: str) -> None:
     """Print a JSON Schema: of the YAML description, or of a JSON file that mbsym writes.
 
-    WHICH is description (the default; editors complete and check with it), or one of results, simulation, equilibria,
-    extremes and whatever else is written as JSON.
+    WHICH is description (the default; editors complete and check with it), summary (of a batch), or one of results,
+    simulation, equilibria, extremes and whatever else is written as JSON.
 
     \b
     Examples:
       mbsym schema > mbsym.schema.json
       mbsym schema results > results.schema.json
     """
-    from mbsym.report.schemas import names, schema
+    from mbsym.report.schemas import names
 
     asked = Options()
-    kinds = asked.words("WHICH", which, (DESCRIPTION, *names()), "schema")
+    kinds = asked.words("WHICH", which, (DESCRIPTION, *names(), SUMMARY), "schema")
     if asked.refused() or len(kinds) != 1:
         sys.exit(BAD_INPUT)
-    found = json_schema() if kinds[0] == DESCRIPTION else schema(kinds[0])
-    click.echo(json.dumps(found, indent=2, ensure_ascii=False))
+    click.echo(json.dumps(_schema(kinds[0]), indent=2, ensure_ascii=False))
+
+
+def _schema(kind: str) -> dict[str, Any]:
+    """What is read and what tells of a batch have their schemas where they are read and told."""
+    if kind == DESCRIPTION:
+        return json_schema()
+    if kind == SUMMARY:
+        from mbsym.batch.summary_json import schema as of_batches
+
+        return of_batches()
+    from mbsym.report.schemas import schema
+
+    return schema(kind)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.text import Text
 
+from mbsym.expressions.counting import counted
 from mbsym_cli.console import console, indented, printable
 
 if TYPE_CHECKING:
@@ -28,8 +30,19 @@ def show(found: Summary, path: Path, seconds: float) -> None:
     _claims(found.claims)
     _checks(found.checks)
     if found.files:
-        names = ", ".join(path.name for path in found.files)
-        out.print(Text.assemble("  files in ", (printable(found.files[0].parent), "bold"), f": {names}"))
+        folder = found.files[0].parent
+        out.print(
+            Text.assemble("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
+        )
+
+
+def _listed(files: Sequence[Path], folder: Path) -> list[str]:
+    """The files of a folder by name; those in folders in it are counted, each such folder where its first file is."""
+    inner = [path.relative_to(folder).parts[:-1] for path in files]
+    told = {
+        parts: f"{'/'.join(parts)} ({counted(inner.count(parts), 'file')})" if parts else "" for parts in set(inner)
+    }
+    return list(dict.fromkeys(told[parts] or path.name for parts, path in zip(inner, files, strict=True)))
 
 
 def show_brief(found: Brief, name: str, width: int) -> None:

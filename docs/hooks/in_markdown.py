@@ -9,8 +9,8 @@ _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|!&~$])")
 
 
 def escaped(text: str) -> str:
-    """Text in which nothing means anything to Markdown, in one line."""
-    return _SPECIAL.sub(r"\\\1", " ".join(text.split())).replace("\\<", "&lt;").replace("\\&", "&amp;")
+    """Text in which nothing means anything to Markdown, in one line; blanks at its ends stay."""
+    return _SPECIAL.sub(r"\\\1", re.sub(r"\s+", " ", text)).replace("\\<", "&lt;").replace("\\&", "&amp;")
 
 
 def code(text: str) -> str:

@@ -8,28 +8,33 @@ from typing import Any
 
 from in_markdown import code, escaped, table
 
+from mbsym.batch.summary_json import schema as of_batches
 from mbsym.report.schemas import names, schema
 from mbsym.source import json_schema
 
 _HEAD = """\
 # JSON files
 
-Every JSON file that mbsym writes has a JSON Schema (draft 2020-12); `mbsym schema WHICH` prints it. Of numbers, words
-and codes a program needs no sentence: `message` and the like are for people.
+What mbsym writes as JSON for other programs has a JSON Schema (draft 2020-12); `mbsym schema WHICH` prints it. The
+schema of descriptions is [description.schema.json](description.schema.json).
 """
 
 
 def schemas() -> dict[str, str]:
     """File name -> text of every schema."""
-    found = {"description": json_schema(), **{name: schema(name) for name in names()}}
+    found = {"description": json_schema(), **_written()}
     return {f"{name}.schema.json": json.dumps(each, indent=2, ensure_ascii=False) for name, each in found.items()}
+
+
+def _written() -> dict[str, dict[str, Any]]:
+    """The schemas of what is written, by name."""
+    return {**{name: schema(name) for name in names()}, "summary": of_batches()}
 
 
 def page() -> str:
     """The page in Markdown."""
     parts = [_HEAD]
-    for name in names():
-        found = schema(name)
+    for name, found in _written().items():
         parts += [f"## {name}\n", f"{escaped(found.get('description') or found.get('title', ''))}\n"]
         parts += [f"[{name}.schema.json]({name}.schema.json), from `mbsym schema {name}`.\n"]
         parts += [table(("property", "type", "meaning"), _rows(found, "", found))]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from in_markdown import code, escaped, fenced
+from in_markdown import code, escaped, fenced, table
 
 import mbsym
 from mbsym import simulation, studies
-from mbsym.analysis import Analysis
+from mbsym.analysis import PROBLEMS, Analysis
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.problems import energy, equations, equilibrium, integrals, kinematics, linearisation
 from mbsym.problems.stability.problem import Stability
@@ -25,23 +25,31 @@ _HEAD = """\
 others to use. [How to work in Python](../howto/python.md) shows them at work.
 """
 
-_RESULTS = (
-    Analysis,
-    kinematics.Kinematics,
-    energy.Energy,
-    equations.Equations,
-    equilibrium.Equilibrium,
-    linearisation.Linearisation,
-    Stability,
-    Verdict,
-    integrals.Integral,
-    Formula,
-    Matrix,
-    simulation.Simulation,
-    studies.TradeoffStudy,
-    studies.ExtremesStudy,
-    studies.EquilibriaStudy,
-)
+#: The classes of results, and what of each is meant for others; other members are the machinery's own.
+_RESULTS: dict[type, tuple[str, ...]] = {
+    kinematics.Kinematics: ("body", "bodies"),
+    kinematics.BodyKinematics: (),
+    energy.Energy: ("kinetic_energy", "A2", "A1", "A0", "force_function", "cyclic"),
+    equations.Equations: ("mass_matrix", "forcing", "generalized_force"),
+    equilibrium.Equilibrium: ("satisfied", "residuals", "conditions", "solved", "impossible", "unsteady"),
+    linearisation.Linearisation: (
+        *("coordinates", "M", "D", "G", "K", "N", "subsystems", "time_scale", "route", "time_dependence"),
+    ),
+    linearisation.Subsystem: (),
+    Stability: ("subsystems", "verdict", "numerical", "spectra"),
+    Verdict: ("word", "theorem", "theorems", "explanation", "stable"),
+    integrals.Integral: ("name", "kind", "of", "formula", "status"),
+    Formula: ("text", "latex", "wolfram", "to_sympy", "subs", "terms", "degree", "is_zero"),
+    Matrix: ("shape", "latex", "to_sympy", "is_zero", "terms"),
+    simulation.Simulation: (
+        *("system", "times", "coordinates", "velocities", "energy", "generalized_energy", "conservation", "error"),
+        *("energy_conservation", "invariants", "method", "why", "arithmetic", "whole", "ended"),
+    ),
+    studies.Table: (),
+    studies.TradeoffStudy: ("runs", "models", "advice", "reference_error"),
+    studies.ExtremesStudy: ("digits", "verdicts", "sentences", "left_out"),
+    studies.EquilibriaStudy: ("table", "complete", "remarks"),
+}
 
 
 def page() -> str:
@@ -49,10 +57,19 @@ def page() -> str:
     parts = [_HEAD, "## Functions\n"]
     for name in mbsym.__all__:
         parts.append(_entry(f"mbsym.{name}", getattr(mbsym, name), 3))
-    parts.append("## Results\n")
-    for kind in _RESULTS:
-        parts += [_entry(kind.__name__, kind, 3), *_members(kind)]
+    parts += ["## Results\n", "### `Analysis`\n", text(Analysis), *_problems()]
+    for kind, offered in _RESULTS.items():
+        parts += [_entry(kind.__name__, kind, 3), *_members(kind, offered)]
     return "\n".join(parts)
+
+
+def _problems() -> Iterator[str]:
+    """The attributes of an analysis: the numbered problems, and what stands beside them."""
+    problems = [(problem.attribute, f"problem {number}, {problem.title}") for number, problem in PROBLEMS.items()]
+    others = [("checks", "the self-check"), ("claims", "what became of the claims"), ("equilibria", "at the values")]
+    for name, _ in others:
+        getattr(Analysis, name)
+    yield table(("attribute", "what it holds"), [(code(name), escaped(held)) for name, held in problems + others])
 
 
 def _entry(title: str, what: Any, level: int) -> str:
@@ -61,38 +78,31 @@ def _entry(title: str, what: Any, level: int) -> str:
     return head + (fenced(f"{title}{signature}", "python") if signature else "") + "\n" + text(what)
 
 
-def _members(kind: type) -> Iterator[str]:
-    """What an object of a class has to offer: properties and methods of its own, with their docstrings."""
-    fields = {field.name for field in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else set()
-    for name, member in _public(kind):
+def _members(kind: type, offered: Sequence[str]) -> Iterator[str]:
+    """What an object of a class has to offer, all fields where nothing is chosen: types, first paragraphs."""
+    fields = {field.name: field for field in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else {}
+    rows = []
+    for name in offered or fields:
         if name in fields:
+            rows.append((code(name), escaped(str(fields[name].type)), ""))
             continue
-        found = member.fget if isinstance(member, property) else member
-        doc = inspect.getdoc(found) or ""
-        call = f"({', '.join(list(inspect.signature(found).parameters)[1:])})" if inspect.isfunction(member) else ""
-        yield f"* {code(f'{name}{call}')}" + (f": {_inline(_first(doc))}" if doc else "") + "\n"
-    shown = [field for field in dataclasses.fields(kind) if not field.name.startswith("_")] if fields else []
-    if shown:
-        listed = ", ".join(f"{code(field.name)} ({code(str(field.type))})" for field in shown)
-        yield f"\nFields: {listed}.\n"
-
-
-def _public(kind: type) -> Iterator[tuple[str, Any]]:
-    seen: set[str] = set()
-    for owner in kind.__mro__:
-        if not owner.__module__.startswith("mbsym"):
-            continue
-        for name, member in vars(owner).items():
-            offered = isinstance(member, property) or inspect.isfunction(member)
-            if offered and not name.startswith("_") and name not in seen:
-                seen.add(name)
-                yield name, member
+        member = inspect.getattr_static(kind, name)
+        found = getattr(member, "fget", None) or getattr(member, "func", None) or member
+        called = inspect.isfunction(member)
+        shown = f"{name}({', '.join(list(inspect.signature(found).parameters)[1:])})" if called else name
+        returned = str(inspect.signature(found).return_annotation)
+        rows.append((code(shown), escaped(returned), _inline(_first(inspect.getdoc(found) or ""))))
+    width = 3 if any(row[2] for row in rows) else 2
+    yield table(("member", "type", "what it is")[:width], [row[:width] for row in rows])
 
 
 def text(what: Any) -> str:
     """A docstring in Markdown: paragraphs, and its indented blocks as code."""
-    parts = []
-    for block in re.split(r"\n\s*\n", inspect.getdoc(what) or ""):
+    parts: list[str] = []
+    doc = inspect.getdoc(what) or ""
+    if inspect.isclass(what) and doc.startswith(f"{what.__name__}("):
+        return ""  # a dataclass without a docstring of its own
+    for block in re.split(r"\n\s*\n", doc):
         lines = block.split("\n")
         if all(line.startswith("    ") for line in lines):
             parts.append(fenced(inspect.cleandoc(block), "pycon" if ">>>" in block else "text"))

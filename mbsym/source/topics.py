@@ -10,7 +10,19 @@ from textwrap import wrap
 
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
-from mbsym.source.keys import BODY, CLAIM, INERTIA, LOAD_MEANINGS, LOADS, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
+from mbsym.source.keys import (
+    BODY,
+    CLAIM,
+    INERTIA,
+    LOAD_MEANINGS,
+    LOADS,
+    PARAMETER,
+    POINT,
+    PRESCRIBED,
+    ROTATION,
+    SHAPE,
+    SYSTEM,
+)
 
 WIDTH = 110
 
@@ -24,6 +36,7 @@ def description() -> str:
         ("A body", BODY),
         ("Its rotation", ROTATION),
         ("Its inertia, where identified values are to be taken as given", INERTIA),
+        ("One of its shapes: a kind and its sizes, and where it is", SHAPE),
     ]
     return "\n\n".join(f"{title}\n\n{_listed(table)}" for title, table in parts) + "\n\n" + _SEE
 
@@ -83,8 +96,9 @@ Formulas in a description
     time          t: in loads and claims
 
 Angles are in radians (30 degrees are pi/6); any number may be an angle, and fractions of pi and decimals stay exact:
-sin(pi/12) is made of roots, sin(pi/7) and sin(0.7853) are constants of their own.  There are no units: take all
-numbers in one consistent system of them.
+sin(pi/12) is made of roots, sin(pi/7) and sin(0.7853) are constants of their own.  All numbers belong to one
+consistent system of units; where units are declared (unit of a parameter, units of a description), every formula is
+checked for its dimension.
 2*x, not 2x."""
 
 #: Claims as they stand in a description.
