@@ -82,12 +82,12 @@ def _range(complaint: Complaint, lines: list[str]) -> types.Range:
 
 def units(line: str, column: int) -> int:
     """A column in characters as the protocol counts it, in units of UTF-16."""
-    return len(line[:column].encode("utf-16-le")) // 2
+    return len(line[:column].encode("utf-16-le", "surrogatepass")) // 2
 
 
 def characters(line: str, column: int) -> int:
     """The inverse of :func:`units`."""
-    return len(line.encode("utf-16-le")[: 2 * column].decode("utf-16-le", "ignore"))
+    return len(line.encode("utf-16-le", "surrogatepass")[: 2 * column].decode("utf-16-le", "ignore"))
 
 
 def server() -> Server:

@@ -50,6 +50,8 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     """
     lines = text.split("\n")
     found = where(lines, line, column)
+    if found.is_value and not found.path:
+        return []
     if found.is_value:
         return list(_values(found, text, system))
     known = keys_in(found.path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.editing.keys import keys_in
+from mbsym.editing.markdown import code, plain
 from mbsym.editing.place import key_at, where, word_at
 from mbsym.expressions.tree import text as written
 from mbsym.model.claims import CLAIMS
@@ -32,7 +33,7 @@ def explanation(text: str, line: int, column: int, analysis: Analysis | None = N
         known = keys_in(found.path if not found.is_value else found.path[:-1])
         meaning = known.get(ALIASES.get(key, key))
         if meaning is not None:
-            return f"**{key}**: {meaning}"
+            return f"**{plain(key)}**: {meaning}"
     value = lines[line][lines[line].find(":") + 1 :].strip(" {}[],")
     if value in CLAIMS:
         return f"**{value}**: {CLAIMS[value].meaning}"
@@ -46,17 +47,19 @@ def _name(word: str, analysis: Analysis) -> str | None:
     """A parameter, coordinate, velocity, prescribed motion, notation."""
     system = analysis.system
     unit = system.units.of(word)
-    told = f" [{unit}]" if unit else ""
+    told = f" {plain(f'[{unit}]')}" if unit else ""
     for parameter in system.parameters:
         if parameter.name == word:
-            value = "" if parameter.value is None else f" = {written(parameter.value)}"
-            meaning = f": {parameter.meaning}" if parameter.meaning else ""
-            return f"**{word}**{value}{told}, {parameter.sign}{meaning}"
+            value = "" if parameter.value is None else f" = {code(written(parameter.value))}"
+            meaning = f": {plain(parameter.meaning)}" if parameter.meaning else ""
+            return f"**{plain(word)}**{value}{told}, {parameter.sign}{meaning}"
     name = word.removesuffix("_dot")
     if name in system.coordinates:
         body = next(body.name for body in system.bodies if name in body.coordinates)
         parts = [
-            f"**{word}**{told}: {'velocity of' if name != word else ''} a coordinate of {body}".replace(":  ", ": ")
+            f"**{plain(word)}**{told}: {'velocity of' if name != word else ''} a coordinate of {plain(body)}".replace(
+                ":  ", ": "
+            )
         ]
         energy = _or_none(lambda: analysis.energy)
         if energy is not None and name in energy.cyclic:
@@ -64,10 +67,10 @@ def _name(word: str, analysis: Analysis) -> str | None:
         return "; ".join(parts)
     for motion in system.prescribed:
         if motion.name == word:
-            return f"**{word}**{told}: prescribed, {word}' = {written(motion.rate)}"
+            return f"**{plain(word)}**{told}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
     for symbol in system.notation:
         if symbol.name == word:
-            return f"**{word}** = {written(symbol.value)}"
+            return f"**{plain(word)}** = {code(written(symbol.value))}"
     return None
 
 
@@ -77,11 +80,11 @@ def _body(word: str, analysis: Analysis) -> str | None:
         return None
     kinematics = _or_none(lambda: analysis.kinematics)
     if kinematics is None:
-        return f"**{word}**: a body"
+        return f"**{plain(word)}**: a body"
     found = kinematics.body(word)
     return "\n\n".join(
         [
-            f"**{word}**, in its own axes",
+            f"**{plain(word)}**, in its own axes",
             f"angular velocity: {_vector(found.angular_velocity)}",
             f"velocity of the mass centre: {_vector(found.velocity_mass_centre)}",
         ]
@@ -89,7 +92,7 @@ def _body(word: str, analysis: Analysis) -> str | None:
 
 
 def _vector(column: Column) -> str:
-    return "`[" + ", ".join(map(_shown, column)) + "]`"
+    return code("[" + ", ".join(map(_shown, column)) + "]")
 
 
 def _shown(formula: Formula) -> str:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import mbsym
+from mbsym.analysis import Analysis
 from mbsym.editing import explanation, suggestions
+from mbsym.editing.hover import _name
 from mbsym.editing.keys import keys_in
 from mbsym.source import read
 from mbsym.source.keys import BODY, CLAIM, LOADS, MOTION, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
@@ -157,3 +161,28 @@ def test_anything_may_be_written(text: str) -> None:
         for column in range(len(content) + 1):
             suggestions(text, line, column)
             explanation(text, line, column)
+
+
+def test_what_people_wrote_is_no_markdown() -> None:
+    text = replaced("meaning: mass of the bob", 'meaning: "![x](http://a/b.png) <img src=y> [g](command:z) _k_ `c`"')
+    system, _ = read(text, "x.yaml")
+    assert system is not None
+    told = explanation(*at(text.replace("    mass: m", "    mass: |m", 1)), Analysis(system))
+    assert told is not None
+    for one in ("![", "](", "<img", "[g]", " _k"):
+        assert not re.search(r"(?<!\\)" + re.escape(one), told), told
+
+
+def test_a_formula_keeps_its_asterisks() -> None:
+    text = replaced("rate: g/l", "rate: g*m/l*g")
+    system, _ = read(text, "x.yaml")
+    assert system is not None
+    assert "`g*m/l*g`" in (_name("chi", Analysis(system)) or "")
+
+
+def test_no_place_breaks_completion() -> None:
+    lines = TEXT.replace("name: Pen", "na\nme: Pen: x").split("\n")
+    for number, line in enumerate(lines):
+        for column in range(len(line) + 3):
+            suggestions("\n".join(lines), number, column)
+            suggestions("\n".join([*lines[:number], "[x", *lines[number:]]), number, column)
