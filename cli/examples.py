@@ -7,12 +7,13 @@ from pathlib import Path
 
 import click
 
+from mbsym_cli.completion import among, examples
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, printable
 from mbsym_cli.options import Options
 
 
 @click.command("examples")
-@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.argument("names", nargs=-1, metavar="[NAME]...", shell_complete=among(examples))
 @click.option("--all", "every", is_flag=True, help="Copy all of them.")
 @click.option("-o", "--out", type=OutPath(path_type=Path), default=".", help="Folder to copy to.  [default: this one]")
 def command(names: tuple[str, ...], every: bool, out: Path) -> None:

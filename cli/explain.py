@@ -7,6 +7,7 @@ from difflib import get_close_matches
 
 import click
 
+from mbsym_cli.completion import among
 from mbsym_cli.console import BAD_INPUT
 
 TOPICS = {
@@ -18,7 +19,7 @@ TOPICS = {
 
 
 @click.command("explain")
-@click.argument("topic", required=False)
+@click.argument("topic", required=False, shell_complete=among(lambda: [*"1234567", *TOPICS]))
 def command(topic: str | None) -> None:
     """Print what problem TOPIC (1 to 7) does and the formula it uses; without TOPIC, the list of problems and topics.
 

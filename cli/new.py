@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from mbsym_cli.completion import among, examples
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable
 from mbsym_cli.options import Options
 
@@ -17,7 +18,12 @@ if TYPE_CHECKING:
 
 @click.command("new")
 @click.argument("name")
-@click.option("--like", metavar="EXAMPLE", help="Begin with one of the shipped systems instead of questions.")
+@click.option(
+    "--like",
+    metavar="EXAMPLE",
+    shell_complete=among(examples),
+    help="Begin with one of the shipped systems instead of questions.",
+)
 def command(name: str, like: str | None) -> None:
     """Write NAME.yaml, a commented description that runs as it is.
 

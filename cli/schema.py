@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from mbsym.source import json_schema
+from mbsym_cli.completion import among
 from mbsym_cli.console import BAD_INPUT
 from mbsym_cli.options import Options
 
@@ -19,7 +20,7 @@ SUMMARY = "summary"
 
 
 @click.command("schema")
-@click.argument("which", default=DESCRIPTION)
+@click.argument("which", default=DESCRIPTION, shell_complete=among(lambda: _kinds()))
 def command(which: str) -> None:
     """Print a JSON Schema: of the YAML description, or of a JSON file that mbsym writes.
 
@@ -31,13 +32,17 @@ def command(which: str) -> None:
       mbsym schema > mbsym.schema.json
       mbsym schema results > results.schema.json
     """
-    from mbsym.report.schemas import names
-
     asked = Options()
-    kinds = asked.words("WHICH", which, (DESCRIPTION, *names(), SUMMARY), "schema")
+    kinds = asked.words("WHICH", which, _kinds(), "schema")
     if asked.refused() or len(kinds) != 1:
         sys.exit(BAD_INPUT)
     click.echo(json.dumps(_schema(kinds[0]), indent=2, ensure_ascii=False))
+
+
+def _kinds() -> tuple[str, ...]:
+    from mbsym.report.schemas import names
+
+    return (DESCRIPTION, *names(), SUMMARY)
 
 
 def _schema(kind: str) -> dict[str, Any]:
