@@ -6,13 +6,16 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from mbsym.expressions.counting import counted
+from mbsym.model.quantities import unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
 from mbsym.problems.stability.word import Word
+from mbsym.report.unit_text import labelled, pretty
 from mbsym_cli.console import console, printable
 
 #: Longer equations of a family are only counted.
@@ -24,7 +27,8 @@ def show_equilibria(system: System, found: Equilibria, file: Path, seconds: floa
     out = console()
     out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
     for name, rate in found.turning:
-        out.print(Text(f"  {name} turns at the rate {rate:.10g}"))
+        unit = pretty(system.units.rate_of(name))
+        out.print(Text(f"  {name} turns at the rate {with_unit(f'{rate:.10g}', unit)}"))
     if found.equilibria:
         out.print(_table(system, found.equilibria))
     if found.singular:
@@ -38,7 +42,7 @@ def show_equilibria(system: System, found: Equilibria, file: Path, seconds: floa
         out.print(Text(f"  {count} with {lengths}, not counted: {where}", style="bold"))
         out.print(_table(system, found.beyond, judged=False))
     for number, family in enumerate(found.families, 1):
-        _show_family(number, family)
+        _show_family(system, number, family)
     _show_summary(found)
 
 
@@ -50,7 +54,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
     table.add_column("", justify="right", style="dim")
     for name in columns:
-        table.add_column(name, justify="right")
+        table.add_column(escape(labelled(name, unit_of(system, name))), justify="right")
     if judged:
         table.add_column("stability")
         table.add_column("by", style="dim")
@@ -83,7 +87,7 @@ def _text(item: CoordinateValue) -> str:
     return item.text if item.exact or item.text == "0" else f"{item.value:.8g}"
 
 
-def _show_family(number: int, family: EquilibriumFamily) -> None:
+def _show_family(system: System, number: int, family: EquilibriumFamily) -> None:
 
     out = console()
     angles = f"; angles of {family.coordinates_of}" if family.coordinates_of else ""
@@ -95,7 +99,9 @@ def _show_family(number: int, family: EquilibriumFamily) -> None:
         terms = equation.count(" + ") + equation.count(" - ") + 1
         shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
         out.print(Text(f"    {shown} = 0"))
-    sample = ", ".join(f"{item.name} = {_text(item)}" for item in family.sample)
+    sample = ", ".join(
+        f"{item.name} = {with_unit(_text(item), pretty(unit_of(system, item.name)))}" for item in family.sample
+    )
     out.print(Text(f"    for example {sample}: {family.verdict.word}"))
 
 

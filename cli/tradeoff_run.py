@@ -71,15 +71,17 @@ def _without_reference(error: Breakdown, request: Request) -> str:
 
 
 def _write(folder: Path, system: System, study: Study, request: Request) -> list[Path]:
+    from mbsym.model.quantities import time_unit, with_unit
     from mbsym.report.tradeoff_figure import work_precision
     from mbsym.report.tradeoff_table import fidelity_csv, tradeoff_csv
+    from mbsym.report.unit_text import pretty
 
     trade, models = study.trade, study.models
     mark = "-partial" if trade.interrupted else ""
-    texts: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade)}
+    texts: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, time_unit(system))}
     if models:
         texts["fidelity.csv"] = fidelity_csv(models)
-    title = f"{system.name}, t = 0 to {request.end:g}"
+    title = f"{system.name}, t = 0 to {with_unit(f'{request.end:g}', pretty(time_unit(system)))}"
     pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
     texts |= {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
     return deliver(folder, texts, "tradeoff")

@@ -54,6 +54,11 @@ def time_unit(system: System) -> str | None:
     return system.units.text(TIME)
 
 
+def rate_unit(system: System) -> str | None:
+    """Of eigenvalues and frequencies in physical time."""
+    return system.units.text(RATE)
+
+
 def energy_unit(system: System) -> str | None:
     """Of energies and of the force function."""
     return system.units.text(ENERGY)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from mbsym.model.quantities import units_by_name
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
 from mbsym.report.schemas import version
@@ -22,6 +23,7 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
         "format": FORMAT,
         "version": version(),
         "system": system.name,
+        **({"units": units} if (units := units_by_name(system)) else {}),
         "values": {name: str(value) for name, value in values.items()},
         "turning": dict(found.turning),
         "complete": found.complete,

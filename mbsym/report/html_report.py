@@ -15,6 +15,7 @@ from mbsym import __version__
 from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, power
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.model.quantities import rate_unit, unit_of
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
@@ -34,6 +35,7 @@ from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 from mbsym.report.sections.stability import root_text
+from mbsym.report.unit_text import labelled, pretty
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
@@ -68,6 +70,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "printed_name": lambda name: Markup(str(printed[name])),
         "load": lambda value: load_in_words(value, names),
         "unperturbed": lambda: _motion(analysis, names),
+        "unit": lambda name: labelled("", unit_of(system, name)),
+        "pretty": pretty,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
     motion, no_motion = asked_motion(system)
@@ -78,6 +82,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         motion=motion,
         no_motion=no_motion,
         system=system,
+        rate=labelled("", rate_unit(system)),
         accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         found=found,

@@ -115,6 +115,7 @@ SENTENCES = {
     "No loads.": "Sin fuerzas aplicadas.",
     "Relations": "Relaciones",
     "(used from problem 4 on)": "(usadas desde el problema 4)",
+    "Limits of the coordinates, which no force keeps": "Límites de las coordenadas, que ninguna fuerza mantiene",
     "Assumptions": "Hipótesis",
     "Unperturbed motion": "Movimiento no perturbado",
     "Initial values": "Valores iniciales",

@@ -169,6 +169,7 @@ SENTENCES = {
     "No loads.": "Активных сил нет.",
     "Relations": "Соотношения",
     "(used from problem 4 on)": "(используются начиная с задачи 4)",
+    "Limits of the coordinates, which no force keeps": "Пределы координат, которые никакая сила не удерживает",
     "Assumptions": "Предположения",
     "Unperturbed motion": "Невозмущённое движение",
     "Initial values": "Начальные значения",

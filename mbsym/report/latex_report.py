@@ -18,6 +18,7 @@ from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_names, latex_text
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.model.quantities import rate_unit, unit_of
 from mbsym.model.system import System, Tensor
 from mbsym.problems.integrals import ENERGY
 from mbsym.problems.linearisation import Subsystem
@@ -39,6 +40,7 @@ from mbsym.report.latex_references import keys_of, references, theorems_named
 from mbsym.report.latex_told import packed, paragraphs
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.report.unit_text import bracketed
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
@@ -112,6 +114,7 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
             "dotted": lambda name: names[name].accented("dot"),
             "math": lambda value: formula(value, long),
             "expression": lambda value: expression(value, names),
+            "unit": lambda name, space="": bracketed(unit_of(system, name), space),
             "matrix": lambda value: matrix(value, long, form.widest),
             "tensor": lambda value: tensor(value, names, form.widest),
             "row": lambda values: row(values, long, form.widest),
@@ -162,6 +165,7 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
         statements=statements,
         cases=cases,
         Shown=Shown,
+        rate=bracketed(rate_unit(system), "\\;\\penalty0 "),
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         provided=provided(len(analysis.equilibrium.conditions)) if verdicts is not None else "",

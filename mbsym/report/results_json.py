@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
+from mbsym.model.quantities import energy_unit, unit_of, units_by_name
 from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.claims import claim_line, left_side
@@ -50,6 +51,9 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
         "parameters": _parameters(system),
         "checks": [vars(check) for check in analysis.checks],
     }
+    units = units_by_name(system, [("energy", energy_unit(system))])
+    if units:
+        found["units"] = units
     unavailable: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
     long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
@@ -145,6 +149,7 @@ def _parameters(system: System) -> list[dict[str, str | None]]:
             "sign": item.sign,
             "value": None if item.value is None else text(item.value),
             "meaning": item.meaning,
+            **({"unit": unit} if (unit := unit_of(system, item.name)) else {}),
         }
         for item in system.parameters
     ]

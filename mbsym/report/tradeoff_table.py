@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from io import StringIO
 from math import isfinite
 
+from mbsym.model.quantities import marked
 from mbsym.numerics.fidelity import RESOLVED, ModelError
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.tradeoff import Measured, Tradeoff, duration
@@ -17,9 +18,9 @@ COLUMNS = (
 MODEL_COLUMNS = ("model", "neglected", "error", "operations", "evaluations", "seconds", "trouble")
 
 
-def tradeoff_csv(found: Tradeoff) -> str:
-    """One row a run; an empty field where there is no number."""
-    return _csv(COLUMNS, (_row(row) for row in found.rows))
+def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
+    """One row a run; an empty field where there is no number.  ``time`` is the unit of the step, if it is known."""
+    return _csv([marked(name, time if name == "step" else "") for name in COLUMNS], (_row(row) for row in found.rows))
 
 
 def fidelity_csv(rows: Sequence[ModelError]) -> str:

@@ -52,6 +52,11 @@ def latex(unit: str | None) -> str:
     return "".join(found)
 
 
+def bracketed(unit: str | None, space: str = "") -> str:
+    r"""Mathematical LaTeX: ``[\mathrm{m}]`` after a space; "" for a pure number, and where the unit is not known."""
+    return f"{space}[{latex(unit)}]" if unit else ""
+
+
 def modelica(unit: str | None) -> str:
     """In the syntax of Modelica, ``kg.m2/s2``; "" for a pure number, and for what Modelica cannot write.
 

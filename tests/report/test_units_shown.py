@@ -16,6 +16,9 @@ from matplotlib.figure import Figure
 import mbsym.report.exports.fmu_units as fmu_units_module
 import mbsym.report.figures as figures_module
 import mbsym.report.motion_figure as motion_module
+from mbsym.numerics.tradeoff import Tradeoff
+from mbsym.report.schemas import schema
+from mbsym.report.tradeoff_table import tradeoff_csv
 from mbsym.report.unit_text import latex, modelica, pretty
 from mbsym_cli.main import main
 
@@ -341,3 +344,73 @@ def test_without_units_nothing_that_is_generated_has_any(tmp_path: Path) -> None
         elif path.is_file():
             text = path.read_text(encoding="utf-8")
             assert not re.search(r"\[(mm|t|s|rad)[]*/^]|Units:|UNITS|unit =|\"unit|mathrm\{mm", text), path.name
+
+
+# --- reports ---
+
+
+def in_latex(unit: str) -> str:
+    """t*mm^2/s as LaTeX writes it, by hand for the units of this system."""
+    return re.sub(r"\^(\d)", r"^{\1}", re.sub(r"[a-z]+", r"\\mathrm{\g<0>}", unit)).replace("*", r"\,")
+
+
+def test_report_tex_has_the_units_of_coordinates_parameters_limits_and_eigenvalues(written: Path) -> None:
+    text = " ".join((written / "report.tex").read_text(encoding="utf-8").split())
+    table = dict(re.findall(r"\$(?:\\mathit\{)?(\w+)\}?\$ & positive & (.*?) &", text))
+    for name, unit in PARAMETERS.items():
+        assert table[name].partition(" ")[2] == (f"$[{in_latex(unit)}]$" if unit else ""), name
+    assert r"$q = (x\ [\mathrm{mm}],\, \theta\ [\mathrm{rad}])$" in text
+    assert r"-500 \leq x \leq 500\ [\mathrm{mm}]" in text
+    assert re.search(r"Eigenvalues there, in physical time, of \$x,\\, \\theta\$: .*?\[1/\\mathrm\{s\}\]\$\.", text)
+
+
+def test_report_html_has_the_units_of_coordinates_parameters_limits_and_eigenvalues(written: Path) -> None:
+    text = (written / "report.html").read_text(encoding="utf-8")
+    rows = re.findall(r"<td><code>(\w+)</code></td><td>positive</td><td>.*?</td><td>(.*?)</td>", text)
+    raised = {name: unit.replace("^2", "²").replace("*", "·") for name, unit in PARAMETERS.items()}
+    assert dict(rows) == raised
+    assert re.search(r"Generalised coordinates: <math.*?</math> \[mm\], <math.*?</math> \[rad\]\.", text)
+    assert re.search(r"<td><math.*?</math> \[rad\]</td><td>", text)
+    assert re.search(r"Eigenvalues there, in physical time, of .*? \[1/s\]\.</p>", text)
+
+
+def test_results_json_names_the_units_and_follows_its_schema(written: Path) -> None:
+    content = json.loads((written / "results.json").read_text(encoding="utf-8"))
+    assert {item["name"]: item.get("unit", "") for item in content["parameters"]} == PARAMETERS
+    assert content["units"] == {k: v or "1" for k, v in (STATE | PARAMETERS | {"energy": ENERGY}).items()}
+    for name in ("results", "equilibria", "simulation"):
+        assert schema(name)["properties"]["units"]
+    jsonschema = pytest.importorskip("jsonschema")
+    jsonschema.validate(content, schema("results"))
+
+
+def test_equilibria_are_listed_with_units(tmp_path: Path) -> None:
+    path = described(tmp_path)
+    assert re.search(r"x \[mm\] +theta \[rad\] +stability", invoke("equilibria", path))
+    content = json.loads(invoke("equilibria", path, "--json"))
+    assert content["units"] == {k: v or "1" for k, v in (STATE | PARAMETERS).items()}
+    assert "[" not in invoke("equilibria", described(tmp_path, bare()))
+    assert "units" not in json.loads(invoke("equilibria", path, "--json"))
+
+
+def test_the_step_of_a_method_is_a_time() -> None:
+    found = Tradeoff.__new__(Tradeoff)
+    object.__setattr__(found, "rows", ())
+    assert tradeoff_csv(found, "ms").splitlines()[0].split(",")[3] == "step [ms]"
+    assert tradeoff_csv(found).splitlines()[0].split(",")[3] == "step"
+
+
+def test_dimensionless_results_have_no_physical_unit(tmp_path: Path) -> None:
+    """In dimensionless time and notation the linear equations are numbers; only eigenvalues are in physical time."""
+    folder = ROOT / "tests" / "source" / "test_units.py"
+    units = re.search(r'SATELLITE = """(.*?)"""', folder.read_text(encoding="utf-8"), re.DOTALL)
+    assert units is not None
+    path = tmp_path / "satellite.yaml"
+    path.write_text((ROOT / "systems" / "satellite.yaml").read_text(encoding="utf-8") + units[1], encoding="utf-8")
+    invoke("run", path, "--format", "latex", "--problems", "4,5,6", "--out", tmp_path / "out")
+    text = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
+    assert r"[\mathrm{kg}\,\mathrm{m}^{2}]" in text
+    after = text[text.index("Unperturbed motion") :]
+    assert "Eigenvalues" in after
+    assert not re.search(r"\[\\mathrm\{(kg|m|s|rad)", after)
+    assert len(re.findall(r"\[1/\\mathrm\{s\}\]", after)) == len(re.findall("Eigenvalues there", after))
