@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,9 +41,9 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
       mbsym check --skip-others docker-compose.yaml systems/top.yaml
     """
     if skip_others:
-        files = tuple(file for file in files if file.is_dir() or is_description(file))
-        if not files:
-            return
+        files = tuple(file for file in files if file.is_dir() or not os.access(file, os.R_OK) or is_description(file))
+    if not files:
+        sys.exit(OK if output_format == "text" else _for_programs((), output_format))
     asked = Options()
     paths = asked.descriptions(files)
     if asked.refused():

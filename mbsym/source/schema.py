@@ -69,9 +69,9 @@ def _system_values() -> dict[str, Schema]:
     expression = _reference("expression")
     return {
         "mbsym": {"enum": [1, "1"]},
-        "name": {"type": "string"},
-        "description": {"type": "string"},
-        "source": {"type": "string"},
+        "name": _TEXT,
+        "description": _TEXT,
+        "source": _TEXT,
         "latex": _named({"type": "string", "maxLength": LONGEST}),
         "order": names,
         "language": {"enum": list(LANGUAGES)},
@@ -94,8 +94,10 @@ def _system_values() -> dict[str, Schema]:
 
 
 _UNIT: Schema = {"type": ["string", "integer"]}
-_TEXTS: dict[str, Schema] = {"meaning": {"type": "string"}, "unit": _UNIT}
-_BODY_NAME: Schema = {"type": ["string", "integer"]}
+#: What is for people: a name may be 2024 or yes, and nobody needs quotes for it.
+_TEXT: Schema = {"type": ["string", "number", "boolean"]}
+_TEXTS: dict[str, Schema] = {"meaning": _TEXT, "unit": _UNIT}
+_BODY_NAME = _TEXT
 
 
 def _definitions() -> dict[str, Schema]:
@@ -125,7 +127,7 @@ def _body_values() -> dict[str, Schema]:
     angles: Schema = {"type": "array", "items": _reference("expression"), "maxItems": 3}
     matrix: Schema = {"type": "array", "items": vector, "minItems": 3, "maxItems": 3}
     return {
-        "name": {"type": "string"},
+        "name": _TEXT,
         "attached to": _BODY_NAME,
         "rotation": _record(ROTATION, {"axes": axes, "angles": angles}, required=("axes", "angles")),
         "connection point": vector,
@@ -171,7 +173,7 @@ def _claim_values() -> dict[str, Schema]:
         "as": {"enum": [NECESSARY, SUFFICIENT]},
         "digits": {"anyOf": [{"type": "integer", "minimum": 1}, {"type": "string", "pattern": "^[1-9][0-9]{0,3}$"}]},
         "state": {"anyOf": [{"const": INITIAL_STATE}, {**state, "additionalProperties": False}]},
-        "place": {"type": "string"},
+        "place": _TEXT,
     }
 
 

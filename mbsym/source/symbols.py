@@ -70,6 +70,8 @@ def check(text: str) -> None:
         raise _Wrong(f"a symbol has at most {LONGEST} characters", 0, len(text))
     tokens = [(match[0].strip() or " ", match.start()) for match in _TOKEN.finditer(text)]
     place = _stem(tokens, 0, text)
+    if [token for token, _ in tokens] == ["\\pi"]:
+        raise _Wrong(r"\pi is the number, in formulas as in descriptions", 0, len(text))
     if place < len(tokens):
         if tokens[place][0] != "_":
             raise _unexpected(tokens[place], "a symbol is one letter, command or word, then its index")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 from typing import Any
@@ -93,3 +94,13 @@ def test_a_description_without_its_first_line_is_not_passed_over(first: str, hin
     assert done.exit_code == 2
     assert hint in done.stderr
     assert "good.yaml: ok" in done.stdout
+
+
+def test_skip_others_passes_over_no_file_that_cannot_be_read(tmp_path: Path) -> None:
+    others = filled(tmp_path)
+    assert mbsym("check", "--skip-others", others / "docker-compose.yaml").exit_code == 0
+    done = mbsym("check", "--skip-others", tmp_path / "misspelled.yaml")
+    assert done.exit_code == 2
+    assert "misspelled.yaml: error[unreadable]" in done.stderr
+    log = mbsym("check", "--skip-others", "--output-format", "sarif", others / "docker-compose.yaml")
+    assert json.loads(log.stdout)["runs"][0]["results"] == []

@@ -436,3 +436,15 @@ def test_an_empty_motion_is_the_rest_of_all_at_zero() -> None:
         ("q", 0, 0),
     ]
     assert good(to_text(rest), "x.txt") == rest == good(to_yaml(rest))
+
+
+def test_what_is_for_people_may_be_any_plain_scalar() -> None:
+    """An editor complains about nothing that is read: a name 2024, a body called true, a meaning 1.5."""
+    text = """mbsym: 1
+name: 2024
+source: 1.5
+parameters: {m: {sign: positive, meaning: 7}}
+bodies: [{name: true, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}]
+"""
+    assert good(text).name == "2024"
+    jsonschema.validate(yaml.safe_load(text), json_schema())

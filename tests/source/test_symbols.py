@@ -46,6 +46,7 @@ def test_no_two_names_look_alike() -> None:
 
 #: The symbol, and how many characters into it the complaint points.
 WRONG = [
+    (r"\pi", 0),  # the number
     (r"\input{x}", 0), ("a^2", 1), ("{x}", 0), (r"\hat x", 0), ("d_", 2), ("d_{", 2), ("x y", 1), (r"\hat{}", 4),
     ("a_b_c", 3), ("$x$", 0), (r"\mathrm{a b}", 9), ("%", 0), ("é", 0), ("\\\\", 0), ("a_{b_c}", 4), ("a}", 1),
     (r"a_{\input x}", 3), (r"\hat{xy}", 6), (r"\def\x{1}", 0), ("a_{}", 2), (r"\mathrm{x}^^5c", 10), ("#1", 0),
