@@ -74,8 +74,9 @@ def command(
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
 
-    With --language ru or es the headings, captions and sentences of the LaTeX reports are in Russian or Spanish; what
-    explains a verdict in a sentence of its own, and outcomes of claims, stay English.
+    With --language ru or es the headings, captions, sentences and verdicts of the
+    LaTeX reports are in Russian or Spanish; what claims are about, and why a
+    problem has no result, stay English.
 
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from markupsafe import Markup, escape
 
 from mbsym.expressions.counting import counted
-from mbsym.expressions.tree import names, text
+from mbsym.expressions.tree import text
 from mbsym.formulas.mathml import letter
 from mbsym.formulas.names import parts
 from mbsym.model.system import System
@@ -107,8 +107,7 @@ def _lines(found: Interconnection) -> Iterator[str]:
 def _beside(joint: Joint) -> str:
     """``3: \u03b4, 1: \u03c3; s``: turns about axes by angles, then the other coordinates."""
     turns = ", ".join(f"{axis}: {_readable(text(angle))}" for axis, angle in joint.turns)
-    turning = {name for _, angle in joint.turns for name in names(angle)}
-    others = ", ".join(_readable(name) for name in joint.coordinates if name not in turning)
+    others = ", ".join(map(_readable, joint.others))
     return _cut("; ".join(filter(None, (turns, others))), ANGLES)
 
 

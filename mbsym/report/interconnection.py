@@ -59,6 +59,12 @@ class Joint:
     coordinates: tuple[str, ...]
     slides: bool
 
+    @property
+    def others(self) -> tuple[str, ...]:
+        """The coordinates that no angle holds."""
+        turning = {name for _, angle in self.turns for name in names(angle)}
+        return tuple(name for name in self.coordinates if name not in turning)
+
 
 @dataclass(frozen=True)
 class Interaction:

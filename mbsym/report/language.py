@@ -1,12 +1,14 @@
-"""The language of a LaTeX report: its fixed sentences, and the words of verdicts and theorems, in another language.
+"""The language of a LaTeX report: its fixed sentences, and the words of its results, in another language.
 
 Sentences stand in English in the templates and are looked up by themselves; ``[[name]]`` in them is filled in
-afterwards.  What the kernel of problem 6 explains in sentences of its own, and the words of claims and self-checks that
-are not listed, stay English.
+afterwards.  What the results say in sentences of their own is read sentence by sentence (``explained_ru`` and so on),
+with gaps for names and numbers; what is not listed stays English.
 """
 
 from __future__ import annotations
 
+import re
+from functools import cached_property
 from importlib import import_module
 from typing import Any
 
@@ -26,6 +28,17 @@ class Language:
         self._sentences: dict[str, str] = getattr(catalogue, "SENTENCES", {})
         self._words: dict[str, str] = getattr(catalogue, "WORDS", {})
 
+    @cached_property
+    def _explained(self) -> list[tuple[re.Pattern[str], str]]:
+        """What is read, and what is said for it: first what has no gaps, then the longest: it leaves least to them."""
+        if self.name == "en":
+            return []
+        catalogue: dict[str, str] = import_module(f"mbsym.report.explained_{self.name}").EXPLAINED
+        return [
+            (re.compile(_reading(english)), other)
+            for english, other in sorted(catalogue.items(), key=lambda item: ("{}" in item[0], -len(item[0])))
+        ]
+
     def sentence(self, english: str, **values: object) -> str:
         """A sentence of the templates, in TeX, with its values filled in."""
         text = self._sentences.get(english, english)
@@ -34,5 +47,38 @@ class Language:
         return text
 
     def say(self, english: str) -> str:
-        """A word or a clause of the results, as plain text; English where there is no other."""
-        return self._words.get(str(english), str(english))
+        """A word, a clause or the sentences of a result, as plain text; English where there is no other."""
+        text = str(english)
+        return self._words[text] if text in self._words else self._read(text)
+
+    def _read(self, text: str) -> str:
+        said: list[str] = []
+        while text:
+            for pattern, other in self._explained:
+                match = pattern.match(text)
+                if match is not None:
+                    said.append(other.format(*(_Gap(x, self) for x in match.groups())))
+                    text = text[match.end() :]
+                    break
+            else:
+                sentence, stop, text = text.partition(". ")
+                said.append(sentence + stop.rstrip())
+        return " ".join(said)
+
+
+def _reading(english: str) -> str:
+    """The pattern of a phrase, which is all of a text, or of a sentence, which another one may follow."""
+    end = "(?: |$)" if english.endswith(".") else "$"
+    return "(.+?)".join(map(re.escape, english.split("{}"))) + end
+
+
+class _Gap:
+    """What stands in a gap: as it is, in the other language (``said``), or said item by item (``list``)."""
+
+    def __init__(self, text: str, language: Language) -> None:
+        self.text, self.language = text, language
+
+    def __format__(self, how: str) -> str:
+        if how == "list":
+            return "; ".join(self.language.say(x) for x in re.split(", | and ", self.text))
+        return self.language.say(self.text) if how == "said" else self.text

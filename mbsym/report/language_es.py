@@ -183,7 +183,7 @@ WORDS = {
     "provided the conditions of problem 4 hold": "si se cumplen las condiciones del problema 4",
     ", decided exactly": ", exactamente",
     ", decided by rigorous enclosures": ", con cotas rigurosas",
-    "proved": "demostrada",
+    "proved": "demostrado",
     "verified numerically": "verificado numéricamente",
     "undecided": "sin decidir",
     "exact": "exacto",

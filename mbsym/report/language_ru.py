@@ -74,7 +74,7 @@ SENTENCES = {
     ),
     "Lagrange's equations of the second kind, $M(q)\\, \\ddot q = f(q, \\dot q, t)$, as a straight-line program; $M$ is "
     "symmetric.": (
-        "Уравнения Лагранжа второго рода, $M(q)\\, \\ddot q = f(q, \\dot q, t)$, в виде линейной программы; $M$ "
+        "Уравнения Лагранжа второго рода, $M(q)\\, \\ddot q = f(q, \\dot q, t)$, в виде программы без ветвлений; $M$ "
         "симметрична."
     ),
     "Problem 4. The unperturbed motion": "Задача 4. Невозмущённое движение",
@@ -117,7 +117,7 @@ SENTENCES = {
     ),
     "For the whole system": "Для всей системы",
     "At the given values of the parameters": "При заданных значениях параметров",
-    "Eigenvalues there, in physical time, of $[[names]]$": "Собственные значения там, в физическом времени, $[[names]]$",
+    "Eigenvalues there, in physical time, of $[[names]]$": "Собственные значения при них, в физическом времени, для $[[names]]$",
     "On the theorems": "О теоремах",
     "Problem 7. First integrals": "Задача 7. Первые интегралы",
     "None of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, нет.",
@@ -303,7 +303,7 @@ WORDS = {
     "kinematics": "кинематика",
     "energy": "энергия",
     "equations of motion": "уравнения движения",
-    "straight-line program": "линейная программа",
+    "straight-line program": "программа без ветвлений",
     "mass matrix": "матрица масс",
     "equilibrium": "невозмущённое движение",
     "linearisation": "линеаризация",

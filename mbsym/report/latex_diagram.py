@@ -70,10 +70,7 @@ def _joint(joint: Joint, found: Interconnection, scale: _Scale, names: LatexName
     label = ""
     if scale.labelled:
         turns = [f"{axis}\\colon {expression(angle, names)}" for axis, angle in joint.turns]
-        angles = {
-            name for name in joint.coordinates if any(expression(a, names) == str(names[name]) for _, a in joint.turns)
-        }
-        shifts = [str(names[name]) for name in joint.coordinates if name not in angles]
+        shifts = [str(names[name]) for name in joint.others]
         written = ",\\; ".join([*turns, *shifts])
         if written and len(turns) + len(shifts) <= 4:
             upright = found.nodes[joint.before].column == found.nodes[joint.after].column

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from fractions import Fraction
 from math import gcd
@@ -122,8 +122,8 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
             "sum": polynomial,
             "condition": condition,
             "eigenvalues": eigenvalues,
-            "label": label,
-            "refer": refer,
+            "label": lambda words: label(words, tongue.say),
+            "refer": lambda reference: refer(reference, tongue.say),
             "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
             "index": index,
             "displays": lambda part, k: displays(part, k, form.widest),
@@ -135,7 +135,9 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
             "printed": lambda value: expression(value, printed),
             "printed_name": lambda name: str(printed[name]),
             "same": lambda words: same(words, printed),
-            "paragraphs": lambda item: paragraphs(item.system.told, item.passages, escaped),
+            "paragraphs": lambda item: paragraphs(
+                item.system.told, item.passages, lambda words: escaped(tongue.say(words))
+            ),
             "packed": lambda value, symbol, key: packed(entries(value, True), symbol, key),
             "zero": lambda values: all(x.is_zero for x in values),
         },
@@ -277,11 +279,11 @@ def broken(line: str) -> str:
     return "\n".join(pieces)
 
 
-def refer(reference: Reference) -> str:
+def refer(reference: Reference, say: Callable[[str], str] = str) -> str:
     """``v_4 < 0`` for a polynomial that was shown before."""
-    under = f"{label(reference.label)} \\colon\\quad " if reference.under != reference.label else ""
+    under = f"{label(reference.label, say)} \\colon\\quad " if reference.under != reference.label else ""
     relation = _RELATIONS.get(reference.relation, reference.relation)
-    return f"{under}{label(reference.under)} {relation} 0"
+    return f"{under}{label(reference.under, say)} {relation} 0"
 
 
 def prose(words: str) -> str:
@@ -290,17 +292,17 @@ def prose(words: str) -> str:
     return re.sub(power, lambda m: rf"$\lambda^{{{m[2]}}}$" if m[1] else r"$\lambda$", escaped(words))
 
 
-def label(words: str) -> str:
-    """v6 as a coefficient's symbol, other labels as text."""
+def label(words: str, say: Callable[[str], str] = str) -> str:
+    """v6 as a coefficient's symbol, other labels as text, which ``say`` may put into another language."""
     opposite = re.fullmatch(r"-\((.*)\)", words)
     if opposite is not None:
-        return "-" + label(opposite[1])
+        return "-" + label(opposite[1], say)
     bare, comma, part = words.partition(", ")
     match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
     if match is not None and comma:
-        return label(bare) + f"\\text{{, {escaped(part)}}}"
+        return label(bare) + f"\\text{{, {escaped(say(part))}}}"
     if match is None:
-        return f"\\text{{{escaped(words)}}}"
+        return f"\\text{{{escaped(say(bare) + (f', {say(part)}' if comma else ''))}}}"
     raised = f"^{{({match[4]})}}" if match[4] else ""
     return f"{match[1]}_{{{match[2]}}}{raised}"
 

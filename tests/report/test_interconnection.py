@@ -14,6 +14,7 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import System
 from mbsym.report.interconnection import MOST_COLUMNS, MOST_ROWS, Interconnection, Kind, interconnection
 from mbsym.report.latex_diagram import diagram
+from mbsym.report.targets import TARGETS
 from tests.conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 
@@ -145,3 +146,12 @@ def test_pictures_of_long_and_wide_trees_fit_their_page(width: float, tmp_path: 
     for across, down in found:
         assert float(across) / 28.45 <= width + 1
         assert 2 < float(down) / 28.45 <= 19
+
+
+def test_a_coordinate_inside_an_angle_is_not_told_again() -> None:
+    """The tethers turn by theta2 + alpha2 - theta1 - alpha1: neither theta2 nor alpha2 is a coordinate besides."""
+    system = mbsym.load(SHIPPED / "tethered-satellites.yaml").system
+    joints = interconnection(system).joints
+    assert [joint.others for joint in joints] == [("x_A", "y_A"), (), (), ()]
+    text = TARGETS["latex"].render(mbsym.load(SHIPPED / "tethered-satellites.yaml"), (1,))
+    assert "{$3\\colon -\\alpha_{2}$}" in text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import re
 import subprocess
 from pathlib import Path
@@ -13,8 +14,11 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.problems.stability import theorems
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
 from mbsym.report import latex_description
+from mbsym.report.compact import compact
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
@@ -55,6 +59,54 @@ def test_every_sentence_is_there_with_its_gaps(name: str) -> None:
     for word in (*Word, *names):
         assert language.say(word) != word, word
     assert len({language.say(word) for word in Word}) == len(Word), "two verdicts are two"
+
+
+def explained() -> set[str]:
+    """What explains verdicts, one sentence for each code, and what is said of these systems."""
+    found = set()
+    for code in Because:
+        words = [("1", Word.STABLE, Word.UNSTABLE)] if code is Because.DIFFERS_ALONG else [(), (1,), (3,), ("1", "2")]
+        for data in words:
+            with contextlib.suppress(TypeError, IndexError):
+                found.add(sentence(Reason(code, data)))
+    for name in ("satellite", "heavy-top", "satellite-with-damper", "spatial-arm", "ziegler-damped"):
+        analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+        parts = analysis.stability.subsystems if analysis.system.motion else ()
+        for part in parts:
+            found |= {*part.theory.remarks, *(x.verdict.explanation for x in part.theory.cases)}
+            found |= {x.label for x in (*part.theory.requirements, *part.theory.stiffness.requirements)}
+        found |= {x.name for x in analysis.integrals}
+        for check in analysis.checks:
+            found |= {check.name, check.first, check.second, check.outcome, check.detail}
+        for told in compact(analysis, {1: analysis.kinematics, 2: analysis.energy, 3: analysis.equations}).values():
+            found |= {x.words for x in told.passages}
+    return {x for x in found if not re.fullmatch(r"[av]\d+( of factor \d+)?|\w{0,2}", x)}
+
+
+def test_what_results_say_is_said_in_russian_and_spanish() -> None:
+    """No word of the English stays but names and symbols."""
+    russian, spanish = Language("ru"), Language("es")
+    asked = explained()
+    assert len(asked) > 120
+    for english in asked:
+        said = re.sub(r"\([a-z ]+\)|lambda|det|phi|psi|theta|delta|sigma|alpha|beta|eta", "", russian.say(english))
+        assert not re.search(r"[a-z]{3,}", said), (english, said)
+        said = spanish.say(english)
+        assert said != english or said == "regular"
+        assert not re.search(r"\b(the|of|is|are|with|roots?|in|and|body)\b", said), (english, said)
+
+
+def test_what_has_no_gap_goes_before_what_has_one() -> None:
+    russian = Language("ru")
+    assert russian.say("A root with positive real part.") == "Есть корень с положительной вещественной частью."
+    assert russian.say("2 roots with positive real part. Terms of higher order decide.") == (
+        "Корней с положительной вещественной частью: 2. Вопрос решают члены более высокого порядка."
+    )
+    assert russian.say("Nobody knows this. Terms of higher order decide.").startswith("Nobody knows this. Вопрос")
+    assert Language().say("A root with positive real part.") == "A root with positive real part."
+    assert Language("es").say("Angular velocity of body 2 (rod) relative to body 1") == (
+        "Velocidad angular del cuerpo 2 (rod) respecto al cuerpo 1"
+    )
 
 
 @needs_pdflatex
