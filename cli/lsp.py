@@ -17,8 +17,8 @@ def command() -> None:
     pip install 'mbsym[lsp]'.
 
     \b
-    Example (Neovim):
-      vim.lsp.start({ name = "mbsym", cmd = { "mbsym", "lsp" } })
+    Example (what an editor starts; in Neovim: vim.lsp.start({ name = "mbsym", cmd = { "mbsym", "lsp" } })):
+      mbsym lsp
     """
     try:
         from mbsym_cli.language_server import serve
