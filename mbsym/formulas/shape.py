@@ -61,6 +61,8 @@ COMPARED = 24
 #: Of formulas with more terms, so many of the longest coefficients of velocities are tried; if none is shorter in sums
 #: of angles, none of the formula is.
 PROBED, PROBES = 200, 3
+#: The terms of polynomials with more of them are not remembered: they would take more room than the polynomials.
+REMEMBERED = 3000
 #: A longer polynomial stands in sums of angles if that leaves at most this share of its terms.
 WORTH_SUMS = Fraction(3, 4)
 
@@ -109,6 +111,7 @@ class Presenter:
         self._inverted: dict[int, Polynomial | None] = {}
         self._pairs: dict[tuple[int, int], int] = {}
         self._shapes: dict[tuple[int, Angles], tuple[Polynomial, Sum]] = {}
+        self._read: dict[int, tuple[Polynomial, int, Terms]] = {}
         self._factored: dict[frozenset[Any], Product] = {}
         self._brackets: dict[frozenset[Any], Sum] = {}
         self._slots: dict[tuple[int, int], tuple[int, tuple[Factor, ...]]] = {}
@@ -131,7 +134,7 @@ class Presenter:
     def _present(self, polynomial: Polynomial, angles: Angles) -> Sum:
         used = occurring([polynomial])
         numerator, under = self._as_fraction(polynomial, used, angles)
-        scale, terms = self._terms(numerator, used if numerator is polynomial else occurring([numerator]))
+        scale, terms = self._terms(numerator)
         if not terms:
             return Sum(())
         if angles == "products":
@@ -147,7 +150,7 @@ class Presenter:
     def terms_read(self, polynomial: Polynomial, angles: Angles) -> int:
         if angles == "products":
             return len(polynomial)
-        _, terms = self._terms(polynomial, occurring([polynomial]))
+        _, terms = self._terms(polynomial)
         return len(self._with_angles(terms, angles)[1])
 
     def _with_angles(self, terms: Terms, angles: Angles) -> tuple[int, Terms]:
@@ -274,9 +277,17 @@ class Presenter:
 
     # --- terms -----------------------------------------------------------------------------------------------------
 
-    def _terms(self, polynomial: Polynomial, occurring: Sequence[int]) -> tuple[int, Terms]:
+    def _terms(self, polynomial: Polynomial) -> tuple[int, Terms]:
         """(common denominator, terms of what is left)."""
-        used = sorted(occurring, key=self.place)
+        known = self._read.get(id(polynomial))
+        if known is None:
+            known = (polynomial, *self._terms_of(polynomial))
+            if len(polynomial) <= REMEMBERED:
+                self._read[id(polynomial)] = known
+        return known[1:]
+
+    def _terms_of(self, polynomial: Polynomial) -> tuple[int, Terms]:
+        used = sorted(occurring([polynomial]), key=self.place)
         scale = lcm(*[int(c.q) for c in polynomial.coeffs()])
         # In a context of its own: flint hands out all exponents, and the ring has many more generators.
         context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.tree import angles_or
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
@@ -51,10 +53,21 @@ class Compact:
 def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compact]:
     """By number, the problems that are told; ``problems`` holds the results of those shown, None where there is none.
 
-    Nothing is derived unless some problem is long.
+    Nothing is derived unless some problem is long.  The choice is made once for all files of an analysis.
     """
     if detail() == FULL:
         return {}
+    key = (angles_or("shorter"), *((n, id(problems[n])) for n in (1, 2, 3) if n in problems))
+    made = _MADE.setdefault(analysis, {})
+    if key not in made:  # the results are kept with the choice, so that their ids stay their own
+        made[key] = tuple(problems.values()), _chosen(analysis, problems)
+    return made[key][1]
+
+
+_MADE: WeakKeyDictionary[Analysis, dict[tuple[Any, ...], tuple[Any, dict[int, Compact]]]] = WeakKeyDictionary()
+
+
+def _chosen(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compact]:
     wanted = {n: _formulas(problems[n]) for n in (1, 2, 3) if n in problems}
     wanted = {n: formulas for n, formulas in wanted.items() if _is_long(formulas)}
     told = analysis.optional("told") if wanted else None
