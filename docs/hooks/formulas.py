@@ -19,4 +19,4 @@ def on_page_content(html: str, **_: Any) -> str:
 def _mathml(found: re.Match[str]) -> str:
     tag, bracket, formula = found.groups()
     display = "inline" if bracket == "(" else "block"
-    return f"<{tag}>{convert(unescape(formula), display=display)}</{tag}>"
+    return f'<{tag} class="formula">{convert(unescape(formula), display=display)}</{tag}>'
