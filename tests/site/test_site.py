@@ -16,6 +16,8 @@ import pytest
 from pages import ROOT, pages
 
 import mbsym
+from mbsym.problems.stability.theorems import THEOREMS
+from mbsym.problems.stability.word import Word
 from mbsym.report.schemas import names, schema
 from mbsym.source import keys
 from mbsym_cli.main import COMMANDS, main
@@ -80,6 +82,12 @@ def test_formulas_are_mathml(site: Path) -> None:
     assert page.tags.count("math") == len(displayed) + len(re.findall(r"\$[^$]+\$", rest)) > 50
     assert "merror" not in page.tags
     assert not re.search(r"\\[a-z]{2,}|\$", page.text)
+
+
+def test_every_verdict_and_theorem_is_told(site: Path) -> None:
+    text = Page(site / "theory.html").text
+    assert [word.value for word in Word if word.value not in text] == []
+    assert [theorem.name for theorem in THEOREMS if theorem.name not in text] == []
 
 
 def test_every_key_of_a_description_is_on_its_page(site: Path) -> None:
