@@ -272,3 +272,16 @@ def test_meshes_that_weigh_nothing_are_left_out() -> None:
     made = converted(mujoco("", body))
     assert "geom of the type mesh" in made.left_out
     assert masses(mujoco("", body)) == ["pi*1"]
+
+
+def test_a_template_is_told_to_be_one() -> None:
+    text = PENDULUM.replace("<robot ", '<robot xmlns:xacro="http://x" ').replace(
+        '<link name="world"/>', '<xacro:macro name="m"/><link name="world"/>'
+    )
+    assert complaints_of(text) == [("unsupported", 3)]
+
+
+def test_misspelled_elements_do_not_go_by_in_silence() -> None:
+    assert "unknown element <orign> in <joint>" in converted(PENDULUM.replace("<origin rpy", "<orign rpy")).left_out
+    made = converted(PENDULUM.replace("<mass value", "<mas value"))
+    assert "unknown element <mas> in <inertial>" in made.left_out

@@ -30,9 +30,32 @@ _LEFT_OUT = {
 }
 
 
+#: What URDF and its common extensions have inside these elements; another one is most likely a slip of the pen.
+_KNOWN = {
+    "robot": ("link", "joint", "material", *_LEFT_OUT, "group", "loop_joint"),
+    "link": ("inertial", "visual", "collision", "self_collision_checking", "contact", *_LEFT_OUT),
+    "joint": ("origin", "parent", "child", "axis", "calibration", "dynamics", "limit", "mimic", "safety_controller"),
+    "inertial": ("origin", "mass", "inertia"),
+}
+
+
+def _slips(root: Element, reader: Reader) -> None:
+    """Notes the elements that nothing knows, so that a misspelled <origin> does not go by in silence."""
+    bodies = [*root.all("link"), *root.all("joint")]
+    for element in (root, *bodies, *(inertial for body in bodies for inertial in body.all("inertial"))):
+        for child in element.children:
+            if child.tag not in _KNOWN[element.tag] and ":" not in child.tag:
+                reader.leave_out(f"unknown element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>")
+
+
 def read_urdf(root: Element, complaints: Complaints) -> Robot | None:
     """The robot of a URDF, or None with complaints."""
     reader = Reader(complaints)
+    template = next((element for element in root.walk() if element.tag.startswith("xacro:")), None)
+    if template is not None:
+        reader.error("unsupported", "this is a template, no URDF yet", template, "expand it with xacro first")
+        return None
+    _slips(root, reader)
     links = _links(root, reader)
     joints = _joints(root, links, reader)
     for element in root.walk():
