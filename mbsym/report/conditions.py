@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
+from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement
 from mbsym.report.coefficients import InCoefficients, in_coefficients
 
@@ -183,3 +184,22 @@ def provided(conditions: int) -> str:
     return (
         "provided the condition of problem 4 holds" if conditions == 1 else "provided the conditions of problem 4 hold"
     )
+
+
+def factors(part: SubsystemStability) -> list[tuple[list[Formula], int]]:
+    """The irreducible factors of a characteristic polynomial by powers of lambda, and how often each occurs.
+
+    Their signs are those of the conditions, where a leading coefficient is positive.
+    """
+    even = part.theory.variable == "lambda^2"
+    wanted = {item.label: item.polynomial for item in part.theory.requirements}
+    found = []
+    for number, factor in enumerate(part.theory.factors, 1):
+        powers = list(factor.coefficients)
+        labels = [f"v{2 * k} of factor {number}" if even else f"a{k} of factor {number}" for k in range(len(powers))]
+        if any(x and label in wanted and wanted[label] == -x for label, x in zip(labels, powers, strict=True)):
+            powers = [-x for x in powers]
+        if even:
+            powers = [x for power in powers for x in (power, part.ring.zero)][:-1]
+        found.append(([Formula(part.ring, x) for x in powers], factor.multiplicity))
+    return found

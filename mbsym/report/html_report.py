@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup
 
 from mbsym import __version__
-from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, power
+from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext, power
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.model.quantities import rate_unit, unit_of
@@ -24,7 +24,7 @@ from mbsym.report import html_formulas as shown
 from mbsym.report.brief import brief
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Shown, cases, provided, statements
+from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
 from mbsym.report.html_description import expression, load_in_words
 from mbsym.report.html_diagram import diagram
@@ -91,6 +91,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         code=_code(analysis) if 3 in stages and 3 not in found else None,
         told=compact(analysis, {number: found.get(number) for number in problems}),
         variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
+        characteristic="Lambda" if "<mi>Λ</mi>" not in taken else "Delta",
+        factors=factors,
+        math_text=lambda words: Markup(mtext(words)),
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         decided=_decided,
         DEPENDS=Word.DEPENDS,

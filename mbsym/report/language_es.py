@@ -64,7 +64,7 @@ SENTENCES = {
     "Problem 6. Stability": "Problema 6. Estabilidad",
     "Subsystem": "Subsistema",
     "The characteristic polynomial $[[symbol]]$, freed of a positive factor, is": "El polinomio característico $[[symbol]]$, sin un factor positivo, es",
-    "Number of its factors: [[count]].": "Número de sus factores: [[count]].",
+    "Number of its factors: [[count]]. A label with $k$ below and $(j)$ above belongs to the power $k$ of $[[variable]]$ in factor $j$.": "Número de sus factores: [[count]]. Un símbolo con $k$ abajo y $(j)$ arriba pertenece a la potencia $k$ de $[[variable]]$ en el factor $j$.",
     "Conditions": "Condiciones",
     "Otherwise": "En otro caso,",
     "if all of these hold": "si se cumple todo esto",

@@ -101,7 +101,7 @@ SENTENCES = {
     "The characteristic polynomial $[[symbol]]$, freed of a positive factor, is": (
         "Характеристический многочлен $[[symbol]]$, без положительного множителя:"
     ),
-    "Number of its factors: [[count]].": "Число его множителей: [[count]].",
+    "Number of its factors: [[count]]. A label with $k$ below and $(j)$ above belongs to the power $k$ of $[[variable]]$ in factor $j$.": "Число его множителей: [[count]]. Обозначение с индексом $k$ внизу и $(j)$ наверху относится к степени $k$ величины $[[variable]]$ в множителе $j$.",
     "Conditions": "Условия",
     "Otherwise": "Иначе",
     "if all of these hold": "если выполнено всё следующее",

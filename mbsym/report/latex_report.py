@@ -27,7 +27,7 @@ from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Reference, Shown, cases, provided, statements
+from mbsym.report.conditions import Reference, Shown, cases, factors, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
@@ -170,6 +170,8 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
         rate=bracketed(rate_unit(system), "\\;\\penalty0 "),
         relations=_RELATIONS,
         variable="\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
+        characteristic="\\Lambda" if "\\Lambda" not in taken else free_name("\\hat{\\Lambda}", taken),
+        factors=factors,
         provided=provided(len(analysis.equilibrium.conditions)) if verdicts is not None else "",
         DEPENDS=Word.DEPENDS,
         ENERGY=ENERGY,

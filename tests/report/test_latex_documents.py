@@ -15,6 +15,7 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.report import conditions
 from mbsym.report.latex_appendix import joined
 from mbsym.report.latex_labels import labels, slug
 from mbsym.report.parsing import unreadable
@@ -198,3 +199,21 @@ def test_figures_of_a_simulation_stand_in_the_report_of_the_same_description_onl
     assert sorted(included()) == made[1:]
     path.write_text(text.replace("positive", "nonzero", 1))  # another description
     assert included() == []
+
+
+def test_factors_that_labels_speak_of_are_written() -> None:
+    """And their product is the characteristic polynomial, whose name is not that of a parameter."""
+    analysis = mbsym.load(SHIPPED / "satellite-with-damper.yaml")
+    text = TARGETS["latex"].render(analysis, (5, 6))
+    part = analysis.stability.subsystems[1]
+    product = [part.ring.one]
+    for powers, multiplicity in conditions.factors(part):
+        for _ in range(multiplicity):
+            whole = [part.ring.zero] * (len(product) + len(powers) - 1)
+            for i, a in enumerate(product):
+                for j, b in enumerate(powers):
+                    whole[i + j] = whole[i + j] + a * b.polynomial
+            product = whole
+    assert list(map(str, product)) == [str(x.polynomial) for x in part.characteristic]
+    assert r"1 \colon\quad  \penalty0  \lambda^{2} \penalty0 + \omega^{2}" in text
+    assert r"\hat{\Lambda}^{(2)}(\lambda)" in text
