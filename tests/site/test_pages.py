@@ -61,12 +61,12 @@ def run(words: list[str], folder: Path) -> tuple[str, int]:
 
 
 def shell(block: Block, folder: Path) -> tuple[str, int]:
-    """What the lines of a block print, and the code of the last; none is run that a test cannot run."""
+    """What the lines of a block print, up to one that fails, and its code; none is run that a test cannot run."""
     lines = [line for line in block.text.splitlines() if not line.startswith(tuple(NOT_RUN))]
     for start, tool in NEEDED.items():
         if shutil.which(tool) is None and find_spec(tool) is None:
             lines = [line for line in lines if not line.startswith(start)]
-    return run(["bash", "-c", "\n".join(lines)], folder)
+    return run(["bash", "-ec", "\n".join(lines)], folder)
 
 
 @pytest.mark.slow
