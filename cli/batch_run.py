@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +25,7 @@ from mbsym_cli.batch_folders import Found, chosen, found_in, share
 from mbsym_cli.batch_machine import memory_is_bounded
 from mbsym_cli.batch_store import FolderStore
 from mbsym_cli.batch_table import complaints, totals, watcher
-from mbsym_cli.console import BAD_INPUT, INTERRUPTED, printable
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
 from mbsym_cli.files import obstacle, write_whole
 from mbsym_cli.options import SUFFIXES
 
@@ -68,7 +70,7 @@ def run(request: Request) -> int:
     if request.budget.memory and not memory_is_bounded():
         print("--memory has no effect here: this system has no such bound", file=sys.stderr)
     summary, stopped = _summed_up(request, places, found, started)
-    write_files(request, summary)
+    whole = write_files(request, summary)
     if request.output_format != "text":
         sys.stdout.write(_for_programs(request, summary))
     elif not request.quiet:
@@ -77,7 +79,7 @@ def run(request: Request) -> int:
     if stopped:
         print("interrupted; what was finished is kept", file=sys.stderr)
         return INTERRUPTED
-    return summary.exit_code
+    return summary.exit_code if whole else summary.exit_code or FAILED
 
 
 def _summed_up(request: Request, places: list[Place], found: Found, started: float) -> tuple[Summary, bool]:
@@ -160,15 +162,30 @@ def _for_programs(request: Request, summary: Summary) -> str:
     return github_annotations(found) if request.output_format == "github" else json_lines(found)
 
 
-def write_files(request: Request, summary: Summary) -> None:
-    """Each of them whole.  Raises OSError where one cannot be written."""
-    for name, text in summary_files(request, summary).items():
-        write_whole(request.out / name, text)
+def write_files(request: Request, summary: Summary) -> bool:
+    """Each of them whole; whether all could be written.
+
+    Of one that cannot be, the reason is told, and none is left of an earlier batch, which would speak for this one.
+    """
+    writers: dict[str, Callable[[], object]] = {
+        name: partial(write_whole, request.out / name, text) for name, text in summary_files(request, summary).items()
+    }
     if request.appendix:
         from mbsym_cli.batch_appendix import FILENAME as APPENDIX
         from mbsym_cli.batch_appendix import write_appendix
 
-        write_appendix(request.out, _of_part(request, APPENDIX), summary)
+        name = _of_part(request, APPENDIX)
+        writers[name] = partial(write_appendix, request.out, name, summary)
+    whole = True
+    for name, write in writers.items():
+        try:
+            write()
+        except OSError as error:
+            whole = False
+            print(f"{printable(request.out / name)} cannot be written: {error.strerror or error}", file=sys.stderr)
+            with suppress(OSError):
+                (request.out / name).unlink(missing_ok=True)
+    return whole
 
 
 def _unreadable(folder: str, reason: str) -> Row:

@@ -18,6 +18,7 @@ from mbsym.batch.coordinator import Place
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row
 from mbsym.batch.task import Asked, Finished, Task
 from mbsym.batch.transport import MALFORMED, read_row, row_data
+from mbsym.report.targets import FORMATS
 from mbsym_cli.batch_locks import Locks
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle, recover
 
@@ -46,6 +47,8 @@ class FolderStore:
             "terms": asked.terms,
             "angles": asked.angles,
             "detail": asked.detail,
+            # What this machine lacks for a file, as a compiler, is lacking in the file, too.
+            "remarks": [remark() for name in asked.formats if (remark := FORMATS[name].remark) is not None],
         }
         self._locks = Locks(out)
 

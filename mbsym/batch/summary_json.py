@@ -12,6 +12,7 @@ from typing import Any
 
 from mbsym.batch.outcome import FORMAT, Row, Summary
 from mbsym.batch.transport import row_data
+from mbsym.expressions.safe import encodable
 
 #: The file, and the schema that it keeps to, which is a file of this package.
 FILENAME, SCHEMA = "summary.json", "summary.schema.json"
@@ -55,7 +56,7 @@ def summary_data(summary: Summary) -> dict[str, Any]:
 
 def summary_text(summary: Summary) -> str:
     """The file's text."""
-    return json.dumps(summary_data(summary), indent=2, ensure_ascii=False) + "\n"
+    return encodable(json.dumps(summary_data(summary), indent=2, ensure_ascii=False)) + "\n"
 
 
 def _system(row: Row) -> dict[str, Any]:

@@ -33,4 +33,13 @@ def hides(character: str) -> bool:
     return character.isascii() or not character.isspace() or character in "\x85\u2028\u2029"
 
 
+def encodable(json_text: str) -> str:
+    """A text of JSON that UTF-8 can hold: halves of characters, as names of files have them that are no UTF-8, are
+    written as JSON's escapes, so that whoever reads it has the same names.
+    """
+    if json_text.isascii():
+        return json_text
+    return "".join(f"\\u{ord(c):04x}" if "\ud800" <= c <= "\udfff" else c for c in json_text)
+
+
 _BLANKS = {ord("\t"): " ", ord("\n"): " ", ord("\r"): " "}

@@ -66,7 +66,7 @@ def github_annotations(findings: Iterable[Finding]) -> str:
 
 
 def _annotation(finding: Finding) -> str:
-    properties = {"file": finding.path}
+    properties = {"file": finding.path.encode(errors="backslashreplace").decode()}
     if finding.line is not None and finding.column is not None:
         last = finding.column + finding.length - 1
         properties |= {"line": str(finding.line), "col": str(finding.column), "endColumn": str(last)}
@@ -102,7 +102,7 @@ def sarif(findings: Sequence[Finding], version: str) -> str:
 
 
 def _result(finding: Finding, rule: int) -> dict[str, object]:
-    place: dict[str, object] = {"artifactLocation": {"uri": quote(finding.path)}}
+    place: dict[str, object] = {"artifactLocation": {"uri": quote(finding.path, errors="surrogateescape")}}
     if finding.line is not None and finding.column is not None:
         place["region"] = {
             "startLine": finding.line,

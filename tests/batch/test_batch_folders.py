@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import jsonschema
 import pytest
@@ -17,6 +19,7 @@ from mbsym.batch.coordinator import Place
 from mbsym.batch.summary_json import schema
 from mbsym_cli.batch import command
 from mbsym_cli.batch_folders import chosen, found_in, share
+from mbsym_cli.files import write_whole
 
 
 def places(*paths: Path, out: Path = Path("nowhere")) -> dict[str, str]:
@@ -170,6 +173,48 @@ def test_results_that_cannot_be_written_cost_a_row(tmp_path: Path) -> None:
         ended = subprocess.run([*START, "batch", "in", "-o", "out", *QUICK], cwd=tmp_path, stdout=full, check=False)
     assert ended.returncode == 1
     assert cached(tmp_path / "out")["c"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
+@pytest.mark.parametrize("form", ["text", "github", "sarif", "junit", "json"])
+def test_a_name_that_is_no_utf8_costs_no_summary(tmp_path: Path, form: str) -> None:
+    """Its file is found again by the name in the summary; SARIF has its bytes in the address."""
+    (tmp_path / "in").mkdir()
+    file = Path(os.fsdecode(bytes(tmp_path / "in") + b"/odd\xff.yaml"))
+    file.write_text(pendulum().replace("mass: m", "mass: mm"), encoding="utf-8")
+    folder_of(tmp_path / "in", a=pendulum())
+    batch("in", "-o", "out", "--output-format", form, *QUICK, cwd=tmp_path, code=2)
+    listed = [Path(tmp_path, one["file"]) for one in summary(tmp_path / "out")["systems"]]
+    assert listed == [tmp_path / "in" / "a.yaml", file]
+    assert file.exists()
+    log = json.loads((tmp_path / "out" / "mbsym.sarif").read_bytes())
+    place = log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
+    assert place["uri"] == "in/odd%FF.yaml"
+    assert ElementTree.parse(tmp_path / "out" / "junit.xml").getroot().get("failures") == "1"
+
+
+def test_what_an_earlier_batch_said_does_not_speak_for_this_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The disk is full for one file about the batch: the others are written, it is gone, and the exit code tells."""
+    monkeypatch.chdir(tmp_path)
+    folder_of(Path("in"), a=pendulum())
+    assert CliRunner().invoke(command, ["in", "-o", "out", *QUICK]).exit_code == 0
+    before = {name: Path("out", name).read_bytes() for name in ("summary.json", "junit.xml", "index.html")}
+
+    def full(path: Path, content: str | bytes) -> None:
+        if path.name == "junit.xml":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write_whole(path, content)
+
+    monkeypatch.setattr("mbsym_cli.batch_run.write_whole", full)
+    folder_of(Path("in"), a=pendulum(), b=pendulum("B"))
+    done = CliRunner().invoke(command, ["in", "-o", "out", *QUICK])
+    assert done.exit_code == 1
+    assert f"{Path('out/junit.xml')} cannot be written: {os.strerror(errno.ENOSPC)}" in done.stderr
+    assert "2 systems" in done.stdout
+    assert not Path("out/junit.xml").exists()
+    assert all(Path("out", name).read_bytes() != before[name] for name in ("summary.json", "index.html"))
 
 
 def test_the_summary_keeps_to_its_schema(tmp_path: Path) -> None:

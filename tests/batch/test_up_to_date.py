@@ -6,6 +6,7 @@ import json
 import shutil
 import subprocess
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,8 @@ from mbsym.batch.coordinator import Place
 from mbsym.batch.isolation import isolated
 from mbsym.batch.outcome import Outcome, Row
 from mbsym.batch.task import Asked, Budget, Task
+from mbsym.batch.work import work
+from mbsym.report.exports import fmu
 from mbsym_cli.batch_store import FolderStore
 
 DAMPED = pendulum().replace("loads:\n", "loads:\n  - damper: {coordinate: theta, coefficient: m}\n")
@@ -185,6 +188,31 @@ def test_a_description_with_errors_leaves_what_was_there(place: Path) -> None:
     folder_of(place / "in", a=pendulum())
     batch("in", "-o", "out", *QUICK, cwd=place)
     assert cached(place / "out") == {"a": True}
+
+
+def test_a_compiler_that_came_since_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An FMU without a binary is not up to date where there can be one; and one with it is."""
+    if fmu.compiler() is None:
+        pytest.skip("there is no C compiler")
+    file = folder_of(tmp_path / "in", a=pendulum()) / "a.yaml"
+    place, asked = Place(str(file), "a"), Asked(("fmu2",), (1,))
+
+    def look() -> Row | Task:
+        return FolderStore(tmp_path / "out", asked, "d").look(place)
+
+    def derive() -> set[str]:
+        task = look()
+        assert isinstance(task, Task)
+        FolderStore(tmp_path / "out", asked, "d").keep(task, work(task))
+        with zipfile.ZipFile(tmp_path / "out" / "a" / "model-fmi2.fmu") as archive:
+            return {Path(name).parts[0] for name in archive.namelist()}
+
+    with monkeypatch.context() as without:
+        without.setattr(fmu, "compiler", lambda: None)
+        assert "binaries" not in derive()
+        assert isinstance(look(), Row)
+    assert "binaries" in derive()
+    assert isinstance(look(), Row)
 
 
 def test_a_claim_that_does_not_hold_is_said_again(tmp_path: Path) -> None:
