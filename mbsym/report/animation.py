@@ -6,12 +6,12 @@ has both: principal moments A <= B <= C and mass m give the semi-axes
 
     a^2 = 5 (B + C - A) / (2 m),  ...
 
-which turn with it.
+which turn with it.  A body with shapes is drawn by their outlines instead.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,7 @@ from mbsym.numerics.between import accelerations
 from mbsym.numerics.body_motion import BodyMotions, body_motions
 from mbsym.numerics.positions import JOINT, ORIGIN, Positions, positions
 from mbsym.numerics.scenario import Scenario
+from mbsym.report.outlines import Outline, outlines
 from mbsym.simulation import Simulation
 
 #: At most so many frames, and so many numbers in all of them.
@@ -61,6 +62,7 @@ class Animation:
     energy: Any
     drift: Any
     stride: int
+    outlines: tuple[Outline, ...] = ()
 
     @property
     def system(self) -> System:
@@ -79,7 +81,8 @@ def animation(run: Simulation) -> Animation | None:
     count = len(found.times)
     if count < 2:
         return None
-    numbers = 3 * (2 * len(run.system.bodies) + 2) + 12 * sum(body.inertia is not None for body in run.system.bodies)
+    turning = sum(body.inertia is not None or bool(body.shapes) for body in run.system.bodies)
+    numbers = 3 * (2 * len(run.system.bodies) + 2) + 12 * turning
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // numbers))
     stride = -(-count // most)
     times, states = found.times[::stride], np.asarray(found.states[:, ::stride], dtype=float)
@@ -103,18 +106,24 @@ def _scene(
         bodies = body_motions(scenario, times, states, rates, places.frame)
     except Failure:
         return None
-    ellipsoids, true_size = _ellipsoids(scenario, places, bodies)
+    shapes = outlines(scenario, bodies) if places.bodied else ()
+    ellipsoids, true_size = _ellipsoids(scenario, places, bodies, {item.body for item in shapes})
     kinetic, energy, drift = (np.asarray(x, dtype=float) for x in energies)
-    return Animation(places, times, ellipsoids, true_size, kinetic, energy, drift, stride)
+    return Animation(places, times, ellipsoids, true_size, kinetic, energy, drift, stride, shapes)
 
 
-def _ellipsoids(scenario: Scenario, places: Positions, bodies: BodyMotions) -> tuple[tuple[Ellipsoid, ...], bool]:
-    """Those that can be seen: true to scale where bodies extend, else as large as is good to look at."""
+def _ellipsoids(
+    scenario: Scenario, places: Positions, bodies: BodyMotions, shaped: Collection[str]
+) -> tuple[tuple[Ellipsoid, ...], bool]:
+    """Of bodies that are not ``shaped``, those that can be seen: true to scale where bodies extend.
+
+    Elsewhere they are as large as is good to look at.
+    """
     picture = extent(places)
     found = []
     for k, name in enumerate(bodies.names):
         own = _semi_axes(scenario, name)
-        if own is not None:
+        if own is not None and name not in shaped:
             sizes, directions = own
             if np.sort(sizes)[1] < THIN * np.max(sizes):
                 continue  # a rod is a line already

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from mbsym.model.quantities import time_unit, with_unit
 from mbsym.report.animation import Animation, dots, moving_points, projection, view
 
 #: Pixels of the picture, how many times larger it is drawn, most frames, and seconds of the loop.
@@ -37,11 +38,16 @@ class _Picture:
         look = projection(*view(found.positions))
         self.flat = np.einsum("ij,pjm->pim", look, found.positions.places)
         self.bodies = [(np.einsum("ij,pjm->pim", look, item.axes), look @ item.places) for item in found.ellipsoids]
+        self.look = look
         low, high = np.min(self.flat[:, :2], axis=(0, 2)), np.max(self.flat[:, :2], axis=(0, 2))
         for axes, place in self.bodies:
             reach = np.sqrt(np.sum(axes[:, :2] ** 2, axis=0))
             low = np.minimum(low, np.min(place[:2] - reach, axis=1))
             high = np.maximum(high, np.max(place[:2] + reach, axis=1))
+        for outline in found.outlines:
+            place = (look @ outline.places)[:2]
+            low = np.minimum(low, np.min(place - outline.reach, axis=1))
+            high = np.maximum(high, np.max(place + outline.reach, axis=1))
         self.middle = (low + high) / 2
         size = np.maximum(high - low, 1e-12 * max(1.0, float(np.max(np.abs(high)))))
         self.scale = 0.86 * FINER * min(WIDE / float(size[0]), (TALL - 40) / float(size[1]))
@@ -73,6 +79,9 @@ class _Picture:
                     + np.outer(axes[q, :, k], np.sin(around))
                 )
                 draw.line(self.at(ring), fill=SOFT, width=FINER)
+        for outline in self.found.outlines:
+            for line in outline.at(k):
+                draw.line(self.at(self.look @ line), fill=SOFT, width=FINER)
         drawn = self.found.positions
         for pairs, width in ((drawn.slides, FINER), (drawn.links, 3 * FINER)):
             for i, j in pairs:
@@ -86,5 +95,6 @@ class _Picture:
         title = name if len(name) <= 44 else name[:43] + "\u2026"
         printable = "".join(c if 32 <= ord(c) < 127 else "?" for c in title.replace("\u2026", "..."))
         draw.text((10 * FINER, 7 * FINER), printable, fill=INK, font=self.font)
-        draw.text((10 * FINER, 24 * FINER), f"t = {float(self.found.times[k]):.3g}", fill=SOFT, font=self.font)
+        now = with_unit(f"t = {float(self.found.times[k]):.3g}", time_unit(drawn.system))
+        draw.text((10 * FINER, 24 * FINER), now, fill=SOFT, font=self.font)
         return image.reduce(FINER)

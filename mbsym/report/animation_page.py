@@ -15,10 +15,12 @@ from markupsafe import Markup
 
 from mbsym import __version__
 from mbsym.expressions.counting import counted
+from mbsym.model.quantities import energy_unit, time_unit, unit_of, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.report.animation import Animation, basis, dots, extent, moving_points, view
 from mbsym.report.html_environment import embedded, page
 from mbsym.report.simulation_words import conservation_line, error_lines, warnings
+from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 
 #: A motion of so many units of time runs at one a second; a shorter or longer one takes ``LASTS`` seconds.
@@ -41,8 +43,12 @@ def animation_page(found: Animation, run: Simulation) -> str:
     system = found.system
     values = run.scenario.parameters
     start = dict(zip([*system.coordinates, *system.velocities], map(float, run.scenario.state), strict=True))
-    parameters = [(item.name, f"{float(values[item.name]):.9g}", item.meaning) for item in system.parameters]
-    parameters += [(name, f"{value:.9g}", "initial value") for name, value in start.items()]
+    units = {name: pretty(unit_of(system, name)) for name in (*system.parameter_names, *start)}
+    parameters = [
+        (item.name, with_unit(f"{float(values[item.name]):.9g}", units[item.name]), item.meaning)
+        for item in system.parameters
+    ]
+    parameters += [(name, with_unit(f"{value:.9g}", units[name]), "initial value") for name, value in start.items()]
     return page(
         "animation.html.j2",
         {},
@@ -74,6 +80,7 @@ def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
         "times": _packed(found.times),
         "places": _packed(drawn.places),
         "ellipsoids": [{"axes": _packed(item.axes), "places": _packed(item.places)} for item in found.ellipsoids],
+        **_outlines(found),
         "kinetic": _packed(found.kinetic),
         "energy": _packed(found.energy),
         "drift": _packed(found.drift),
@@ -91,8 +98,24 @@ def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
     }
     bodies = ", ".join(body.name for body in found.system.bodies)
     moves = found.frames > 1
-    label = f"{'The moving' if moves else 'The'} system: {bodies}" + (f"; t = 0 to {end:.6g}" if moves else "")
+    units = {"time": pretty(time_unit(found.system)), "measure": pretty(energy_unit(found.system))}
+    data |= {name: unit for name, unit in units.items() if unit}
+    until = with_unit(f"{end:.6g}", units["time"])
+    label = f"{'The moving' if moves else 'The'} system: {bodies}" + (f"; t = 0 to {until}" if moves else "")
     return Motion(embedded(data), label, sentences, moves)
+
+
+def _outlines(found: Animation) -> dict[str, Any]:
+    """Outlines of shapes; nothing where no body has any."""
+    made = [
+        {
+            "axes": _packed(item.axes),
+            "places": _packed(item.places),
+            "lines": [[[float(f"{x:.6g}") for x in point] for point in line] for line in item.lines],
+        }
+        for item in found.outlines
+    ]
+    return {"outlines": made} if made else {}
 
 
 def _packed(values: Any) -> str:
@@ -107,6 +130,8 @@ def _room(found: Animation) -> tuple[list[float], float]:
     for item in found.ellipsoids:
         reach = np.sqrt(np.sum(item.axes**2, axis=0))
         points += [item.places - reach, item.places + reach]
+    for outline in found.outlines:
+        points += [outline.places - outline.reach, outline.places + outline.reach]
     every = np.concatenate(points, axis=1)
     low, high = np.min(every, axis=1), np.max(every, axis=1)
     middle = (low + high) / 2
@@ -117,13 +142,14 @@ def _room(found: Animation) -> tuple[list[float], float]:
 def _sentences(found: Animation, run: Simulation) -> Iterator[str]:
     trajectory, setting = run.trajectory, run.trajectory.setting
     how = f"tolerance {setting.tolerance:g} per step" if setting.step is None else f"step {setting.step:g}"
+    unit = pretty(time_unit(found.system))
+    until = with_unit(f"{float(trajectory.times[-1]):.9g}", unit)
     yield (
-        f"Integrated from t = 0 to {float(trajectory.times[-1]):.9g} by {run.chosen.method.traits.title} ({how}, "
-        f"{run.arithmetic}; {run.why})."
+        f"Integrated from t = 0 to {until} by {run.chosen.method.traits.title} ({how}, {run.arithmetic}; {run.why})."
     )
     if not run.whole:
         why = run.ended.kind if run.ended is not None else "interrupted"
-        yield f"The run ended early ({why}); {float(run.chosen.times[-1]):.9g} was asked for."
+        yield f"The run ended early ({why}); {with_unit(f'{float(run.chosen.times[-1]):.9g}', unit)} was asked for."
     yield f"Energy: {conservation_line(run.conservation)}."
     errors = list(error_lines(run.error))
     yield f"Error of the run: {'; '.join(errors)}." if errors else "The error of the run was not estimated."
@@ -136,16 +162,18 @@ def drawn_sentences(found: Animation) -> Iterator[str]:
     """What is drawn, and what is not computed."""
     drawn = found.positions
     if found.frames > 1:
-        step = float(found.times[1] - found.times[0])
+        step = with_unit(f"{float(found.times[1] - found.times[0]):.4g}", pretty(time_unit(found.system)))
         which = "every sample" if found.stride == 1 else f"one of {found.stride} samples"
         yield (
-            f"{counted(found.frames, 'frame')} ({which} of the run), {step:.4g} apart; between frames points are "
+            f"{counted(found.frames, 'frame')} ({which} of the run), {step} apart; between frames points are "
             "joined by straight lines, nothing is computed there."
         )
     where = "inertial axes" if drawn.frame == INERTIAL else f"the frame '{drawn.frame}'"
     yield f"Seen in {where}; lines join joints and mass centres."
     if drawn.tips:
         yield "Lines from a joint with nothing at their end are axes of the body; their length means nothing."
+    if found.outlines:
+        yield "Outlines are the shapes that the description gives, true to scale; no force depends on them."
     if found.ellipsoids:
         scale = "true to scale" if found.true_size else "not to scale"
         yield f"Ellipsoids are homogeneous bodies with the same mass and inertia, {scale}."

@@ -10,6 +10,8 @@
   const frames = times.length;
   const places = floats(data.places);                       // [point][component][frame]
   const ellipsoids = data.ellipsoids.map((item) => ({ axes: floats(item.axes), place: floats(item.places) }));
+  const outlines = (data.outlines || []).map((item) => (
+    { axes: floats(item.axes), place: floats(item.places), lines: item.lines }));
   const series = { kinetic: floats(data.kinetic), energy: floats(data.energy), drift: floats(data.drift) };
   const change = series.energy.map((value) => value - series.energy[0]);
   const still = frames < 2;
@@ -102,6 +104,18 @@
         pen.stroke();
       }
     }
+    for (const item of outlines) {
+      const centre = [0, 1, 2].map((k) => between(item.place, k * frames, place));
+      const axes = [0, 1, 2].map((p) => [0, 1, 2].map((k) => between(item.axes, (3 * p + k) * frames, place)));
+      for (const line of item.lines) {
+        pen.beginPath();
+        for (const own of line) {
+          pen.lineTo(...flat(...[0, 1, 2].map(
+            (k) => centre[k] + own[0] * axes[0][k] + own[1] * axes[1][k] + own[2] * axes[2][k])));
+        }
+        pen.stroke();
+      }
+    }
     pen.strokeStyle = ink.ink;
     for (const [pairs, width, dash] of [[data.slides, 1.2, [6, 4]], [data.links, 2.6, []]]) {
       pen.lineWidth = width;
@@ -139,11 +153,12 @@
   const number = (value) => Number.isFinite(value) ? String(Number(value.toPrecision(5))) : "\u2013";
   const read = (place) => {
     if (still) return;
-    const k = Math.round(place);
-    reading.textContent = `t = ${number(now)}`;
-    slider.setAttribute("aria-valuetext", `t = ${number(now)}`);
-    element("motion-kinetic").textContent = number(series.kinetic[k]);
-    element("motion-energy").textContent = number(series.energy[k]);
+    const k = Math.round(place), measure = data.measure ? " " + data.measure : "";
+    const shown = `t = ${number(now)}${data.time ? " " + data.time : ""}`;
+    reading.textContent = shown;
+    slider.setAttribute("aria-valuetext", shown);
+    element("motion-kinetic").textContent = number(series.kinetic[k]) + measure;
+    element("motion-energy").textContent = number(series.energy[k]) + measure;
     element("motion-drift").textContent = series.drift[k] === 0 ? "0" : series.drift[k].toExponential(1);
     const { pen, wide, tall } = fit(chart);
     let low = Infinity, high = -Infinity;
