@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,8 +60,9 @@ def command(name: str, like: str | None) -> None:
         complain(path, f"cannot be written: {error.strerror}")
         sys.exit(FAILED)
     shown = printable(path)
+    quoted = shlex.quote(shown)
     click.echo(
-        f"{shown}\n  mbsym run {shown}      derives it;  mbsym watch {shown}  derives it again whenever you save"
+        f"{shown}\n  mbsym run {quoted}      derives it;  mbsym watch {quoted}  derives it again whenever you save"
     )
 
 

@@ -80,6 +80,13 @@ def test_new_where_nobody_answers_takes_the_pendulum(tmp_path: Path, monkeypatch
     assert Path("my-crane.yaml").read_text(encoding="utf-8") == text
 
 
+def test_what_new_says_to_run_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    told = command("new", "a b.yaml", "--like", "pendulum").stdout
+    assert "mbsym run 'a b.yaml' " in told
+    assert "mbsym watch 'a b.yaml' " in told
+
+
 def test_new_asks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(new, "_answers", lambda: True)  # click's own input stands for a terminal
