@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym_cli.console import BAD_INPUT, OutPath
 from mbsym_cli.options import Options
 

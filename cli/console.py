@@ -17,7 +17,6 @@ import click
 from mbsym.algebra.failures import LOG
 from mbsym.expressions.counting import counted
 from mbsym.expressions.safe import safe as escaped
-from mbsym.source import load, render
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -107,6 +106,8 @@ def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
 
 def read_description(path: Path) -> System | None:
     """The system of a file, or None after printing every complaint on standard error."""
+    from mbsym.source import load, render
+
     system, complaints, text = load(path)
     for complaint in complaints.sorted():
         print(render(complaint, text, str(path)), file=sys.stderr)

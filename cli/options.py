@@ -11,12 +11,10 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from mbsym.expressions.counting import counted
-from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, Name, walk
+from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS
-from mbsym.source import is_description, render_option
-from mbsym.source.scope import closest
+from mbsym.source import render_option
 from mbsym_cli.console import printable
 
 #: The text of an option has at most so many characters.
@@ -52,6 +50,8 @@ class Options:
 
         What lies in a folder and does not say that it is a description is passed over.
         """
+        from mbsym.source.recognition import is_description
+
         found: dict[str, Path] = {}
         others = 0
         for path in files:
@@ -105,11 +105,13 @@ class Options:
 
     def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:
         """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""
-        from mbsym.algebra.failures import Failure
-        from mbsym.numerics.scenario import exact
-
         if text is None:
             return None
+        from mbsym.algebra.failures import Failure
+        from mbsym.expressions.parser import parse_expression
+        from mbsym.expressions.tree import CONSTANTS, Name, walk
+        from mbsym.numerics.scenario import exact
+
         text = " ".join(text.splitlines())
         complaints = Complaints()
         value, whole = None, Span(1, 1, max(1, len(text)))
@@ -180,6 +182,8 @@ class Options:
         return tuple(name for name in chosen if name in choices)
 
     def _unknown(self, option: str, name: str, choices: Iterable[str], what: str) -> None:
+        from mbsym.source.scope import closest
+
         known = list(choices)
         close = closest(name, known, _MISSPELT)
         hint = f"did you mean '{close}'? There are {', '.join(known)}" if close else _listed(known)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 
 def guess(name: str, known: Iterable[str]) -> str:
     """``: did you mean 'mass_matrix'?``, or what there is instead where nothing is near."""
+    from difflib import get_close_matches
+
     names = list(known)
     near = get_close_matches(name, names, 1)
     if near:

@@ -12,8 +12,9 @@ from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
-from mbsym.source.text_reader import has_text_marks, looks_like_text, read_text
-from mbsym.source.yaml_reader import has_bodies, has_key, has_yaml_marks, read_yaml
+from mbsym.source.recognition import is_text
+from mbsym.source.text_reader import read_text
+from mbsym.source.yaml_reader import read_yaml
 
 #: So many complaints are shown, in all and of one kind; when so many were met, reading stops.
 MAX_COMPLAINTS = 200
@@ -78,41 +79,8 @@ def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, boo
 
 
 def _placed_tree(text: str, filename: str, complaints: Complaints) -> tuple[Node | None, bool]:
-    editor = _is_text(text, filename)
+    editor = is_text(text, filename)
     return (read_text if editor else read_yaml)(text, complaints), editor
-
-
-def is_description(path: Path) -> bool:
-    """Whether a file says of itself that it is a description: by the key ``mbsym``, or the labels of the editor.
-
-    A list of bodies that are ``attached to`` others says so, too: it is not passed over for a misspelt first line.
-    What is no plain file, as a pipe or a link to nothing, is none; what may not be read could be one.
-    """
-    try:
-        if not path.is_file():
-            return False
-        with path.open("rb") as file:
-            data = file.read(4 * MAX_TEXT)
-    except PermissionError:
-        return True
-    except (OSError, ValueError):
-        return False
-    return b"\0" not in data and says_so(data.decode("utf-8", "replace"))
-
-
-def says_so(text: str) -> bool:
-    """Whether a text says of itself that it is a description."""
-    text = normalised(text)
-    return has_key(text) or has_bodies(text) or has_text_marks(text)
-
-
-def _is_text(text: str, filename: str) -> bool:
-    """Whether it is the editor's, by the look of the text or by the ending of the name."""
-    editor, other = has_text_marks(text), has_yaml_marks(text)
-    if editor != other:
-        return editor
-    ending = filename.lower().rpartition(".")[2]
-    return ending == "txt" or (ending not in ("yaml", "yml", "json") and looks_like_text(text))
 
 
 def load(path: str | Path) -> tuple[System | None, Complaints, str]:

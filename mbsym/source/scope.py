@@ -6,7 +6,6 @@ import keyword
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from difflib import SequenceMatcher, get_close_matches
 
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
@@ -203,6 +202,8 @@ def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
 
 def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known word that a word resembles (1: is equal to) more than ``cutoff``, if there is one."""
+    from difflib import get_close_matches
+
     candidates = list(known)[:200]
     same = [one for one in candidates if one.lower() == word.lower()]
     close = same or get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=cutoff)
@@ -217,6 +218,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str | None:
 
 def slip_of(name: str, known: Iterable[str]) -> str | None:
     """The known name that a name looks like a slip of the pen for; ``theta1`` and ``thetaB`` are none of ``theta2``."""
+    from difflib import SequenceMatcher
+
     best: tuple[float, str] | None = None
     for one in list(known)[:100]:
         short, long = sorted((name, one), key=len)

@@ -26,77 +26,21 @@ from mbsym.source.labels import (
     LOAD_TYPE,
     LOAD_VECTORS,
     SECTIONS,
-    SPELLINGS,
 )
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
+from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
 
-_HEADING = re.compile(r"(body|load|claim) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
 _OPENING = {"(": ")", "{": "}", "[": "]"}
-
-
-def has_text_marks(text: str) -> bool:
-    """Whether some line can only be the editor's: its first label, or the heading of a body or a load."""
-    labels = ((line, _label_of(line)[0]) for line in _lines(text))
-    return any(
-        _HEADING.match(line.text) or (label is not None and _word(label.text) == "mechanical system")
-        for line, label in labels
-    )
-
-
-def looks_like_text(text: str) -> bool:
-    """Whether the first line that says something is a label of the editor."""
-    for line in _lines(text):
-        label = _label_of(line)[0]
-        word = _word(label.text if label else line.text)
-        return word in HEADER or word in SECTIONS or bool(_HEADING.match(line.text))
-    return False
 
 
 def read_text(text: str, complaints: Complaints) -> Node | None:
     """The placed tree of an editor text (already normalised), or None with complaints."""
-    lines = list(_lines(text))
+    lines = list(lines_of(text))
     if not lines:
         complaints.error("empty", "there is no description in this file")
         return None
     return _TextReader(complaints).document(lines)
-
-
-def _lines(text: str) -> Iterator[Scalar]:
-    """Lines that say something, without comments and surrounding blanks, each in its place."""
-    for number, line in enumerate(text.split("\n"), start=1):
-        whole = Scalar(line, Span(number, 1, max(1, len(line))))
-        content = whole.part(0, _comment_start(line))
-        if content.text:
-            yield content
-
-
-def _comment_start(line: str) -> int:
-    """Where the comment begins: at a ``#`` outside of quotes."""
-    quoted, escaped = False, False
-    for position, character in enumerate(line):
-        if escaped:
-            escaped = False
-        elif character == "\\" and quoted:
-            escaped = True
-        elif character == '"':
-            quoted = not quoted
-        elif character == "#" and not quoted:
-            return position
-    return len(line)
-
-
-def _label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
-    """``label: value`` cut at its first colon or equals sign; no label where there is neither."""
-    match = re.search(r"[:=]", line.text)
-    if match is None:
-        return None, line
-    return line.part(0, match.start()), line.part(match.end(), len(line.text))
-
-
-def _word(text: str) -> str:
-    word = " ".join(text.lower().split())
-    return SPELLINGS.get(word, word)
 
 
 @dataclass(slots=True)
@@ -137,7 +81,7 @@ class _TextReader:
         header: list[Scalar] = []
         blocks: list[_Block] = []
         for line in lines:
-            if _HEADING.match(line.text) or _word(line.text.rstrip(":")) in (*SECTIONS, ASSUMPTIONS):
+            if HEADING.match(line.text) or word_of(line.text.rstrip(":")) in (*SECTIONS, ASSUMPTIONS):
                 blocks.append(_Block(line))
             elif blocks:
                 blocks[-1].lines.append(line)
@@ -146,7 +90,7 @@ class _TextReader:
         return header, blocks
 
     def kind(self, block: _Block) -> str:
-        match = _HEADING.match(block.heading.text)
+        match = HEADING.match(block.heading.text)
         return match.group(1).lower() if match else "section"
 
     def error(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
@@ -155,21 +99,21 @@ class _TextReader:
     def check_numbers(self, blocks: list[_Block]) -> None:
         """Blocks are numbered 1, 2, 3, ... in the order of the file."""
         for number, block in enumerate(blocks, start=1):
-            match = _HEADING.match(block.heading.text)
+            match = HEADING.match(block.heading.text)
             if match is not None and int(match.group(2)) != number:
                 span = block.heading.place(match.start(2), match.end(2))
                 self.error("bad-number", f"this is description number {number}", span, "number them 1, 2, 3, ...")
 
     def check_count(self, header: list[Scalar], count: int) -> None:
         for line in header:
-            label, value = _label_of(line)
-            if label is not None and _word(label.text) == "number of bodies" and value.text != str(count):
+            label, value = label_of(line)
+            if label is not None and word_of(label.text) == "number of bodies" and value.text != str(count):
                 self.error("body-count", f"{count} bodies are described", value.span)
 
     def labelled(self, line: Scalar, known: Iterable[str], what: str) -> tuple[Scalar, str, Scalar] | None:
         """A label out of a known set (or taken for what it resembles): its scalar, its normal form, the value."""
-        label, value = _label_of(line)
-        word = _word(label.text if label is not None else line.text)
+        label, value = label_of(line)
+        word = word_of(label.text if label is not None else line.text)
         if label is not None and word in known:
             return label, word, value
         span = line.span if label is None else label.span
@@ -194,13 +138,13 @@ class _TextReader:
         return entries
 
     def section(self, block: _Block) -> Entry:
-        title = _word(block.heading.text.rstrip(":"))
+        title = word_of(block.heading.text.rstrip(":"))
         if title == ASSUMPTIONS:
             return Entry(_key(block.heading, "assumptions"), Sequence(tuple(block.lines), block.heading.span))
         key, first = SECTIONS[title]
         entries = []
         for line in block.lines:
-            label, value = _label_of(line)
+            label, value = label_of(line)
             if label is None:
                 self.error("syntax", "here 'name = value' is wanted", line.span)
                 continue
@@ -215,14 +159,14 @@ class _TextReader:
             return parts[0]
         entries = []
         for index, part in enumerate(parts):
-            label, rest = _label_of(part)
+            label, rest = label_of(part)
             if label is None and index == 0:
                 key = "value" if first == "sign" and part.text[:1].isdigit() else first
                 entries.append(Entry(Scalar(key, part.span, literal=False), part))
             elif label is None:
                 self.error("syntax", "here 'key = value' is wanted", part.span)
             else:
-                word = _word(label.text)
+                word = word_of(label.text)
                 entries.append(Entry(_key(label, word), self.unquoted(rest) if word == "meaning" else rest))
         return Mapping(tuple(entries), value.span)
 
@@ -243,7 +187,7 @@ class _TextReader:
         read = self.body(block)
         given = {entry.key.text: entry for entry in read.entries}
         more = []
-        match = _HEADING.match(block.heading.text)
+        match = HEADING.match(block.heading.text)
         if "name" not in given and match is not None:
             more.append(Entry(_key(block.heading, "name"), _key(block.heading, _unnamed(int(match.group(2))))))
         if "inertia" in given and "inertia about" not in given:
@@ -298,11 +242,11 @@ class _TextReader:
         entries: list[Entry] = []
         rotation: list[Entry] = []
         for part in _split(value, ";"):
-            label, rest = _label_of(part)
+            label, rest = label_of(part)
             if label is None:
                 self.error("syntax", "here 'kind = sizes' or 'at = (x, y, z)' is wanted", part.span)
                 continue
-            word = _word(label.text)
+            word = word_of(label.text)
             (rotation if word in ("axes", "angles") else entries).append(Entry(_key(label, word), self.items(rest)))
         if rotation:
             entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
@@ -344,16 +288,16 @@ class _TextReader:
     def load(self, block: _Block) -> Mapping | None:
         """``{kind: data}`` from the lines below ``Load description (1)``."""
         found = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
-        kinds = [value for label, value in found if _word(label.text) == LOAD_TYPE]
+        kinds = [value for label, value in found if word_of(label.text) == LOAD_TYPE]
         if len(kinds) != 1:
             how = "no 'Type of load'" if not kinds else "a second 'Type of load'"
             place = block.heading.span if not kinds else kinds[1].span
             self.error("missing-key" if not kinds else "repeated-key", f"this load has {how}", place)
             return None
-        data = [(label, value) for label, value in found if _word(label.text) != LOAD_TYPE]
+        data = [(label, value) for label, value in found if word_of(label.text) != LOAD_TYPE]
         if ALIASES.get(kinds[0].text, kinds[0].text) == "generalized force":
             value: Node = Mapping(tuple(Entry(label, value) for label, value in data), kinds[0].span)
-        elif len(data) == 1 and _word(data[0][0].text) == LOAD_EXPRESSION:
+        elif len(data) == 1 and word_of(data[0][0].text) == LOAD_EXPRESSION:
             value = data[0][1]
         else:
             value = self.load_data(data, kinds[0].span)
@@ -363,10 +307,10 @@ class _TextReader:
         """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
         entries = []
         lines = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
-        kinds = [_word(value.text) for label, value in lines if _word(label.text) == "claim"]
+        kinds = [word_of(value.text) for label, value in lines if word_of(label.text) == "claim"]
         about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY_OF for kind in kinds)
         for label, value in lines:
-            word = _word(label.text)
+            word = word_of(label.text)
             node: Node = value
             if word == "of" and about_body:
                 node = self.body_reference(value)
@@ -381,7 +325,7 @@ class _TextReader:
 
     def numbers(self, value: Scalar) -> Node:
         """``theta = 0.1; theta_dot = 2`` as a mapping; a single word stays what it is."""
-        parts = [_label_of(part) for part in _split(value, ";")]
+        parts = [label_of(part) for part in _split(value, ";")]
         if len(parts) == 1 and parts[0][0] is None:
             return value
         for label, rest in parts:
@@ -390,7 +334,7 @@ class _TextReader:
         return Mapping(tuple(Entry(label, rest) for label, rest in parts if label is not None), value.span)
 
     def load_line(self, line: Scalar) -> tuple[Scalar | None, Scalar]:
-        label, value = _label_of(line)
+        label, value = label_of(line)
         if label is None:
             self.error("syntax", "here 'label: value' is wanted", line.span)
         return label, value
@@ -400,7 +344,7 @@ class _TextReader:
         entries: list[Entry] = []
         points: tuple[list[Entry], list[Entry]] = ([], [])
         for label, value in data:
-            word = _word(label.text)
+            word = word_of(label.text)
             if word in BETWEEN:
                 which, key = BETWEEN[word]
                 points[which].append(Entry(_key(label, key), self.load_value(word, value)))
@@ -423,8 +367,8 @@ def _key(label: Scalar, key: str) -> Scalar:
 
 def _name_in(block: _Block) -> str:
     for line in block.lines:
-        label, value = _label_of(line)
-        if label is not None and _word(label.text) == "name":
+        label, value = label_of(line)
+        if label is not None and word_of(label.text) == "name":
             return " ".join(value.text.split())
     return ""
 
@@ -436,7 +380,7 @@ def _unnamed(number: int) -> str:
 
 def _bare_label(line: Scalar, known: Iterable[str]) -> tuple[Scalar, str, Scalar] | None:
     """A line that is a label and nothing else, as above a field of a form."""
-    word = _word(line.text)
+    word = word_of(line.text)
     end = len(line.text)
     return (line, word, line.part(end, end)) if word in known else None
 
@@ -446,7 +390,7 @@ def _goes_on(lines: list[Scalar], position: int) -> bool:
     if position >= len(lines):
         return False
     line = lines[position]
-    return _label_of(line)[0] is None and _bare_label(line, BODY) is None
+    return label_of(line)[0] is None and _bare_label(line, BODY) is None
 
 
 def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping | None]) -> list[Entry]:
@@ -470,7 +414,7 @@ def _with_accepted(entries: list[Entry], accept: list[Entry]) -> list[Entry]:
 def _rows(lines: list[Scalar], position: int) -> list[Scalar]:
     rows = []
     for line in lines[position : position + 3]:
-        label, _ = _label_of(line)
+        label, _ = label_of(line)
         if label is not None:
             break
         rows.append(line)

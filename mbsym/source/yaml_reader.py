@@ -7,7 +7,6 @@ plain tree, and what it says must not depend on YAML's finer points.
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import yaml
@@ -22,32 +21,8 @@ _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_BRACKETS = 100
 
 
-#: Lines that can only be YAML (or JSON): keys that are no labels of the editor.
-_MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|loads)["']?[ \t]*:""", re.MULTILINE)
-_FIRST = re.compile(r"""(?:[ \t]*(?:\#.*|---.*|%.*)?\n)*([ \t]*)(.?)""")
-_KEY = r"""["']?mbsym["']?[ \t]*:"""
-
-
 class _Refused(Exception):
     """Internal: the document cannot be composed; the complaint is recorded."""
-
-
-def has_yaml_marks(text: str) -> bool:
-    """Whether some line can only be YAML."""
-    return bool(_MARKS.search(text))
-
-
-def has_key(text: str) -> bool:
-    """Whether ``mbsym`` is a key of the outermost mapping, as far as a look at the lines can tell."""
-    first = _FIRST.match(text)
-    assert first is not None  # it matches nothing, too
-    before = r"[{,\s]" if first[2] == "{" else f"^{first[1]}"
-    return bool(re.search(before + _KEY, text, re.MULTILINE))
-
-
-def has_bodies(text: str) -> bool:
-    """Whether bodies attached to each other stand there, as in a description whose first line was lost or misspelt."""
-    return bool(re.search(r"^bodies\s*:", text, re.MULTILINE) and re.search(r"\battached to\s*:", text))
 
 
 def read_yaml(text: str, complaints: Complaints) -> Node | None:

@@ -274,10 +274,10 @@ def test_in_the_ledger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_in_the_reading_of_one_file(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym_cli import console
+    from mbsym.source import document
 
-    honest = console.load
-    monkeypatch.setattr(console, "load", lambda path: broken() if path.name == "first.yaml" else honest(path))
+    honest = document.load
+    monkeypatch.setattr(document, "load", lambda path: broken() if path.name == "first.yaml" else honest(path))
     for name in ("first", "second"):
         (tmp_path / f"{name}.yaml").write_text(PENDULUM.read_text())
     further = ["-o", tmp_path / "out", "-f", "json", "-p", "1"] if command == "run" else []

@@ -38,6 +38,9 @@ Rows = Sequence[Sequence[Element]]
 #: Directions that are tried where more than two multipliers are free.
 ATTEMPTS = 60
 
+#: So many turns of a pencil of two forms are tried, for one that is far from singular.
+_TURNS = 16
+
 
 @dataclass(frozen=True)
 class NumberField:
@@ -161,21 +164,24 @@ def _in_plane(a: Any, b: Any, best_only: bool = False) -> list[tuple[float, floa
     The intervals end where its determinant vanishes.  ``best_only``: wherever its least eigenvalue is greatest.
     """
     import numpy as np
-    from scipy.linalg import eigvals
 
-    above, below = eigvals(a, -b, homogeneous_eigvals=True)
+    def at(x: float) -> Any:
+        return a * math.cos(x) + b * math.sin(x)
+
+    # The pencil is turned to where it is farthest from singular: singular at x + y is then -cot y an eigenvalue.
+    angle = max((math.pi * k / _TURNS for k in range(_TURNS)), key=lambda x: min(abs(np.linalg.eigvalsh(at(x)))))
     borders = {0.0, math.pi / 2}
-    for x, y in zip(above, below, strict=True):
-        if abs(y) + abs(x) > 0 and abs((x * np.conj(y)).imag) <= 1e-7 * (abs(x) + abs(y)) ** 2:
-            # a y + b x is singular, up to a common factor
-            phase = np.conj(y if abs(y) > abs(x) else x)
-            borders.add(math.atan2((x * phase).real, (y * phase).real) % math.pi)
+    try:
+        found = np.linalg.eigvals(np.linalg.solve(at(angle), at(angle + math.pi / 2)))
+    except np.linalg.LinAlgError:  # singular everywhere: no combination is definite
+        found = np.array([])
+    for root in found:
+        if abs(root.imag) <= 1e-7 * (1 + abs(root)) ** 2:
+            borders.add((angle + math.atan2(1.0, -root.real)) % math.pi)
     ordered = sorted(borders)
     ends = [*ordered, *(x + math.pi for x in ordered), ordered[0] + 2 * math.pi]
     middles = [(p + q) / 2 for p, q in pairwise(ends)]
-    seen = [
-        (float(np.linalg.eigvalsh(a * math.cos(x) + b * math.sin(x))[0]), (math.cos(x), math.sin(x))) for x in middles
-    ]
+    seen = [(float(np.linalg.eigvalsh(at(x))[0]), (math.cos(x), math.sin(x))) for x in middles]
     seen.sort(reverse=True)
     return [pair for value, pair in seen[:1] if best_only or value > 0] or ([seen[0][1]] if best_only else [])
 
