@@ -488,7 +488,7 @@ def _unit_hint(value: str, unit: str, named: bool) -> str | None:
     if named and unit not in _UNITS:
         return None
     product = f"; for a product write {value}*{unit}" if named else ""
-    return f"units are not used: write numbers only, in one consistent system of units{product}"
+    return f"no units beside numbers: write numbers only, and units under units:{product}"
 
 
 def _function_hint(name: str) -> str:

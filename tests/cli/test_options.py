@@ -138,7 +138,7 @@ def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
         ("--tolerance", "bad-number"),
     ]
     assert "did you mean 'rk45'?" in done.stderr
-    assert "units are not used: write numbers only" in done.stderr
+    assert "no units beside numbers: write numbers only" in done.stderr
     assert done.stderr.endswith("9 errors; nothing was written.\n")
     assert not (tmp_path / "out").exists()
 

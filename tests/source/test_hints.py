@@ -153,7 +153,7 @@ def followed(text: str, complaint: Complaint) -> str:
         else:
             lines.insert(number + 1, "    " + listed.group(2))
         return "\n".join(lines)
-    if hint.startswith("units are not used: write numbers only") and "kg" in complaint.message:
+    if hint.startswith("no units beside numbers: write numbers only") and "kg" in complaint.message:
         lines[span.line - 1] = re.sub(r"(\d+) kg", r"\1", line)
         return "\n".join(lines)
     if factor := re.match(r"write (\w+)\*\(\.\.\.\) for a product", hint):
