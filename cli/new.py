@@ -61,8 +61,9 @@ def command(name: str, like: str | None) -> None:
         sys.exit(FAILED)
     shown = printable(path)
     quoted = shlex.quote(shown)
+    begun = f", begun with the example {example}" if example is not None else ""
     click.echo(
-        f"{shown}\n  mbsym run {quoted}      derives it;  mbsym watch {quoted}  derives it again whenever you save"
+        f"{shown}{begun}\n  mbsym run {quoted}      derives it;  mbsym watch {quoted}  derives it again whenever you save"
     )
 
 
