@@ -62,9 +62,8 @@ def command(name: str, like: str | None) -> None:
     shown = printable(path)
     quoted = shlex.quote(shown)
     begun = f", begun with the example {example}" if example is not None else ""
-    click.echo(
-        f"{shown}{begun}\n  mbsym run {quoted}      derives it;  mbsym watch {quoted}  derives it again whenever you save"
-    )
+    derive, watch = f"mbsym run {quoted}", f"mbsym watch {quoted}"
+    click.echo(f"{shown}{begun}\n  {derive}      derives it;  {watch}  derives it again whenever you save")
 
 
 def _answers() -> bool:
