@@ -13,6 +13,7 @@ import pytest
 
 from mbsym.model.units import ENERGY, LENGTH, MASS, TIME, Units, times, written
 from mbsym.source import read, to_text, to_yaml
+from mbsym.source.units.common import COMMON
 from mbsym.source.units.inference import Form, Inference
 from mbsym.source.units.reading import Unit, unit
 
@@ -236,3 +237,19 @@ def test_how_dimensions_are_written() -> None:
     assert written(times((), TIME, -1)) == "1/s"
     assert written(times(times(times((), MASS), LENGTH, -1), TIME, -2)) == "kg/(m*s^2)"
     assert written(times((), LENGTH, Fraction(1, 2))) == "m^(1/2)"
+
+
+@pytest.mark.parametrize("name", COMMON)
+def test_common_units_are_those_of_pint(name: str) -> None:
+    """The table in front of pint, by pint's own conversion to kg, m, s."""
+    import pint
+
+    registry = pint.UnitRegistry(cache_folder=None)
+    size, dimension = COMMON[name]
+    wanted = " * ".join(["1", *(f"{base}**({exponent})" for base, exponent in dimension)])
+    assert (1.0 * registry.Unit(name)).to(wanted.removeprefix("1 * ") if dimension else "").magnitude == float(size)
+
+
+def test_common_units_do_not_load_pint() -> None:
+    script = "import sys; from mbsym.source import read; assert read(sys.argv[1])[0]; assert 'pint' not in sys.modules"
+    subprocess.run([sys.executable, "-c", script, with_units()], check=True)

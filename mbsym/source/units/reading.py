@@ -14,6 +14,7 @@ from mbsym.model.units import Declared, Dimension, dimension, times
 from mbsym.source.placed import Node
 from mbsym.source.reading import Reading, keys_of
 from mbsym.source.scope import Allowed, closest
+from mbsym.source.units.common import COMMON
 from mbsym.source.units.products import MAX_EXPONENT, Wrong, product
 
 #: Names of our base units in pint's dimensions.
@@ -97,6 +98,8 @@ def _likely(text: str) -> str | None:
 @cache
 def _named(name: str) -> Unit | str:
     """One unit by its name, or why it is none."""
+    if name in COMMON:
+        return Unit(*COMMON[name])
     registry = _registry()
     try:
         parsed = registry.parse_units(name)
