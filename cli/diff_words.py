@@ -19,6 +19,7 @@ WORDS = {
     "A2": "A2 of T", "A1": "A1 of T", "A0": "A0 of T", "at_values": "at the values", "linearisation": "linear form",
     "velocity_origin": "velocity of the joint", "velocity_mass_centre": "velocity of the mass centre",
     "parameters": "parameter", "checks": "self-check", "subsystems": "subsystem", "claims": "claim",
+    "initial": "initial state", "motion": "unperturbed motion",
     "integrals": "first integral", "unavailable": "without a result", "conditions": "conditions",
 }  # fmt: skip
 
@@ -105,7 +106,7 @@ def show(name: str, first: str, second: str, found: Diff, everything: bool) -> N
         out.print(Text.assemble((printable(name), "bold"), f": no change{more}"))
         _versions(found)
         return
-    counts = counted(len(found.changes), "change", "changes")
+    counts = counted(len(found.changes), "change", "changes") if found.changes else "only names are others"
     out.print(Text.assemble((printable(name), "bold"), f": {counts}   ", (printable(f"{first} -> {second}"), "dim")))
     for one in found.renamed:
         out.print(Text.assemble(("  ~ ", "cyan"), printable(f"{one.kind} {one.before} is called {one.after}")))

@@ -54,6 +54,11 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     units = units_by_name(system, [("energy", energy_unit(system))])
     if units:
         found["units"] = units
+    if system.motion:
+        found["motion"] = {one.coordinate: {"value": text(one.value), "rate": text(one.rate)} for one in system.motion}
+    initial = _initial(system)
+    if initial:
+        found["initial"] = initial
     unavailable: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
     long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
@@ -73,6 +78,17 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     if system.claims:
         found["claims"] = [_claim(result, system) for result in analysis.claims]
     return found | {"unavailable": unavailable}
+
+
+def _initial(system: System) -> dict[str, dict[str, str]]:
+    """What the description says of the state at t = 0, and of where prescribed motions begin, by name."""
+    given = [(one.coordinate, one.position, one.velocity) for one in system.initial]
+    given += [(one.name, one.initial, None) for one in system.prescribed]
+    found = {
+        name: {key: text(x) for key, x in (("position", position), ("velocity", velocity)) if x is not None}
+        for name, position, velocity in given
+    }
+    return {name: said for name, said in found.items() if said}
 
 
 def counted(formula: Formula) -> dict[str, Any]:

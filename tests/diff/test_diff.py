@@ -233,6 +233,27 @@ def test_swapped_and_added_names_are_no_renaming() -> None:
     assert ("parameters", "k") in [change.path for change in found.changes if change.kind is Kind.REMOVED]
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "path"),
+    [
+        ("theta1: 1, theta2", "theta1: 3/2, theta2", ("initial", "theta1", "position")),
+        ("theta2: 0.5}", "theta2: {position: 0.5, velocity: 1/2}}", ("initial", "theta2", "velocity")),
+        ("theta2: 0.5}\n", "theta2: 0.5}\nprescribed: {chi: {rate: g, initial: 1}}\n", ("initial", "chi")),
+        ("motion: {theta1: 0,", "motion: {theta1: pi,", ("motion", "theta1", "value")),
+    ],
+)
+def test_what_no_formula_holds_is_compared(before: str, after: str, path: tuple[str, ...]) -> None:
+    """Exports and simulations begin at the initial state, so that it is a part of what is derived."""
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
+    assert text.count(before) == 1
+    other = results(text.replace(before, after))
+    assert list(Draft202012Validator(schema("results")).iter_errors(other)) == []
+    found = {change.path for change in diff(results(text), other).changes}
+    assert path in found
+    if path[1:2] != ("chi",) and path[0] == "initial":  # the others change formulas, too
+        assert found == {path}
+
+
 # --- the command ------------------------------------------------------------------------------------------------------
 
 

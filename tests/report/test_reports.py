@@ -173,7 +173,7 @@ def test_results_hold_what_was_asked_for():
     analysis = analysis_of("satellite.yaml")
     found = json.loads(TARGETS["json"].render(analysis, (1, 2, 3, 4, 5, 6, 7)))
     assert set(found) == {
-        "format", "version", "problems", "terms", "prescribed",
+        "format", "version", "problems", "terms", "prescribed", "motion", "initial",
         "system", "coordinates", "parameters", "kinematics", "energy", "equations", "equilibrium", "linearisation",
         "stability", "integrals", "claims", "checks", "unavailable",
     }  # fmt: skip
