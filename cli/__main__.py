@@ -1,5 +1,5 @@
 """``python -m mbsym_cli``: the command, of the same interpreter."""
 
-from mbsym_cli.main import main
+from mbsym_cli.process import command
 
-main()
+command()

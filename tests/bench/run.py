@@ -300,7 +300,7 @@ def compile_ours() -> None:
 def mbsym_command() -> list[str]:
     """The installed command, or the module behind it."""
     script = Path(sys.executable).with_name("mbsym")
-    return [str(script)] if script.exists() else [sys.executable, "-m", "mbsym_cli.main"]
+    return [str(script)] if script.exists() else [sys.executable, "-m", "mbsym_cli"]
 
 
 def measure_command(path: str, arm: str | None = None) -> list[str]:
@@ -378,8 +378,13 @@ def show_satellite(results: Record) -> None:
         ),
         (
             "whole process, wall",
-            ">= 20",
+            ">= 20; by Jacobians >= 4",
             lambda r: ratio(results[r].get("process", {}).get("seconds"), process.get("seconds")),
+        ),
+        (
+            "whole process, user + system",
+            "",
+            lambda r: ratio(results[r].get("process", {}).get("cpu_seconds"), process.get("cpu_seconds")),
         ),
         (
             "whole process, peak memory",
@@ -480,6 +485,14 @@ def versions() -> dict[str, str]:
     return found
 
 
+def machine() -> dict[str, Any]:
+    """What seconds on the wall depend on: where more is running than there are processors, they are too many."""
+    found: dict[str, Any] = {"processors": os.cpu_count()}
+    if hasattr(os, "getloadavg"):
+        found["load before"] = round(os.getloadavg()[0], 1)
+    return found
+
+
 def main() -> None:
     """Run the sections asked for, print their tables, write the record."""
     parser = argparse.ArgumentParser(description="mbsym beside SymPy: time, memory, size of formulas")
@@ -515,8 +528,9 @@ def main() -> None:
         for name, (work, show) in numbers_bench.SECTIONS.items():
             sections[name] = (work, partial(show, table=table))
     compile_ours()
-    record: Record = {"versions": versions(), "runs": options.runs}
+    record: Record = {"versions": versions(), "runs": options.runs, "machine": machine()}
     print(", ".join(f"{name} {version}" for name, version in record["versions"].items()))
+    print(", ".join(f"{name} {value}" for name, value in record["machine"].items()))
     for name in options.sections.split(","):
         if name not in sections:
             parser.error(f"no section called {name!r}; there are {', '.join(sections)}")

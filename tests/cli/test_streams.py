@@ -210,6 +210,7 @@ def test_a_signal_during_a_batch_leaves_whole_reports(tmp_path: Path) -> None:
         "model.c",
         "model.h",
         "results.json",
+        "report.html",
         ".mbsym.json",
     }
     for folder in tmp_path.iterdir():

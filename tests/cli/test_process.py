@@ -1,0 +1,72 @@
+"""The end of the command's process: at once, but not before everything is done that has to be."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+SCRIPT = """
+import atexit, sys, threading, time
+from mbsym_cli.process import command
+
+class Built:
+    def __del__(self):
+        print("taken down", file=sys.__stderr__, flush=True)
+
+built = Built()
+atexit.register(lambda: print("registered", file=sys.__stderr__, flush=True))
+{before}
+sys.argv = ["mbsym", *{arguments!r}]
+try:
+    command()
+finally:
+    print("came back", file=sys.__stderr__, flush=True)
+"""
+LOOKING_ON = "sys.setprofile(lambda *_: None)"
+AT_WORK = "threading.Thread(target=lambda: (time.sleep(1), print('worked', file=sys.__stderr__, flush=True))).start()"
+
+
+def ended(*arguments: str, before: str = "") -> subprocess.CompletedProcess[str]:
+    script = SCRIPT.format(before=before, arguments=list(arguments))
+    return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_it_ends_at_once_with_everything_said() -> None:
+    done = ended("--version")
+    assert done.returncode == 0
+    assert done.stdout.startswith("mbsym")
+    assert "registered" in done.stderr, "what registered for the end is called"
+    assert "taken down" not in done.stderr
+    assert "came back" not in done.stderr
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(("check", "there-is-no-such.yaml"), 2), (("nonsense",), 2)])
+def test_the_exit_code_is_the_commands(arguments: tuple[str, ...], code: int) -> None:
+    done = ended(*arguments)
+    assert done.returncode == code
+    assert "no" in done.stderr
+    assert "taken down" not in done.stderr
+    assert "came back" not in done.stderr
+
+
+def test_who_looks_on_sees_the_end() -> None:
+    """A profiler writes what it has seen when the command has come back to it."""
+    assert "came back" in ended("--version", before=LOOKING_ON).stderr
+
+
+def test_a_thread_that_is_at_work_is_waited_for() -> None:
+    done = ended("--version", before=AT_WORK)
+    assert done.returncode == 0
+    assert "worked" in done.stderr
+    assert "taken down" in done.stderr
+
+
+def test_output_that_nobody_takes_is_told() -> None:
+    with open("/dev/full", "w") if sys.platform == "linux" else pytest.skip("/dev/full") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "mbsym_cli", "--help"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 1
+    assert "standard output cannot be written" in done.stderr
