@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from mbsym.report.latex_form import Form
 from mbsym.report.latex_labels import free_prefix, labels, with_prefix
-from mbsym.report.latex_report import Form, filled
+from mbsym.report.latex_report import filled
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

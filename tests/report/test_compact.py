@@ -14,7 +14,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.formulas.tree import angles_as
 from mbsym.report import compact as choice
-from mbsym.report import latex_report
+from mbsym.report import latex_report, latex_told, latex_words
 from mbsym.report.compact import compact, told_formulas
 from mbsym.report.detail import detailed
 from mbsym.report.passages import passages
@@ -96,7 +96,7 @@ def test_passages_stand_in_anyones_document() -> None:
     """They use no macro of report.tex."""
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     listed = compact(analysis, {3: analysis.equations})[3]
-    text = latex_report.paragraphs(listed.system.told, listed.passages, latex_report.escaped)
+    text = latex_told.paragraphs(listed.system.told, listed.passages, latex_words.escaped)
     assert "longformula" not in text
     assert text.count(r"\par") == len(listed.passages)
 

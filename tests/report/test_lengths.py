@@ -10,7 +10,7 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.report import latex_report, wolfram_report
+from mbsym.report import latex_report, latex_values, wolfram_report
 from mbsym.report.lengths import FILE, PAPER, Limit, formulas, withheld
 from mbsym.report.parsing import unreadable
 from mbsym.report.targets import TARGETS
@@ -79,7 +79,7 @@ def test_reports_of_a_long_chain_are_short_and_whole(long: Analysis) -> None:
 @needs_pdflatex
 def test_a_report_with_counted_formulas_compiles(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     analysis = chain(2)
-    monkeypatch.setattr(latex_report, "PAPER", Limit(3, 20))
+    monkeypatch.setattr(latex_values, "PAPER", Limit(3, 20))
     text = latex_report.render(analysis, (1, 2, 3))
     assert "terms, not printed" in text
     compiled_latex(text, tmp_path)
@@ -92,7 +92,7 @@ def test_long_programs_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = latex_report.render(analysis, (3,)), wolfram_report.render(analysis, (3,))
     assert "s_{1} =" in whole[0]
     assert "dynamics[t_" in whole[1]
-    monkeypatch.setattr(latex_report, "PAPER_PROGRAM", 5)
+    monkeypatch.setattr(latex_values, "PAPER_PROGRAM", 5)
     monkeypatch.setattr(wolfram_report, "FILE_PROGRAM", 5)
     for text in (latex_report.render(analysis, (3,)), wolfram_report.render(analysis, (3,))):
         assert "steps, not printed; model.py and model.c have them" in text

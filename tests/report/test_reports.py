@@ -30,8 +30,9 @@ from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.conditions import Reference, Shown, Statement, cases, statements
 from mbsym.report.latex_description import expression
-from mbsym.report.latex_report import LINE, LONGEST_CONDITION, broken, counted
-from mbsym.report.latex_report import label as latex_label
+from mbsym.report.latex_formulas import LONGEST_CONDITION, counted
+from mbsym.report.latex_words import LINE, broken
+from mbsym.report.latex_words import label as latex_label
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from importlib.resources import files
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis import PROBLEMS, Problem
+from mbsym.formulas.latex import write_as
+from mbsym.formulas.tree import angles_as
 from mbsym.report.latex_report import render
 from mbsym.report.sections import section_of
 from mbsym.report.sections.stability import ALONE
@@ -43,3 +46,25 @@ def test_a_subsystem_is_judged_while_the_others_keep_to_the_motion() -> None:
     assert "x: stable (Lagrange-Dirichlet)" in lines
     assert lines[lines.index("whole system: undecided") - 1] == ALONE
     assert "while the others keep to the unperturbed motion" in render(analysis, (6,))
+
+
+def test_what_was_printed_for_one_file_is_not_taken_where_something_else_was_asked_for() -> None:
+    """Formulas are printed once for all LaTeX files: those of one way of writing angles are none of another's."""
+    analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
+    fresh = {}
+    for angles in ("products", "sums"):
+        with angles_as(angles):  # type: ignore[arg-type]
+            fresh[angles] = render(mbsym.load(SHIPPED / "double-pendulum.yaml"), (3,))
+    assert fresh["products"] != fresh["sums"]
+    for angles in ("sums", "products", "sums"):
+        with angles_as(angles):  # type: ignore[arg-type]
+            assert render(analysis, (3,)) == fresh[angles]
+
+
+def test_a_formula_is_printed_anew_when_its_names_are_written_otherwise() -> None:
+    analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
+    entry = analysis.equations.mass_matrix[0, 0]
+    name = analysis.system.parameters[0].name
+    assert r"\mathcal{X}" not in entry.latex()
+    write_as(analysis.ring, {name: r"\mathcal{X}"})
+    assert r"\mathcal{X}" in analysis.equations.mass_matrix[0, 0].latex()

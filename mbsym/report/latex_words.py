@@ -1,0 +1,91 @@
+"""Words in LaTeX: plain text escaped, labels of coefficients, sentences, lines that are not too long."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from mbsym.model.system import System
+from mbsym.report.conditions import Reference
+
+#: Longer lines of the file are broken: TeX reads whole lines into a buffer.
+LINE = 400
+RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq"}
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+    "^": r"\^{}", "~": r"\~{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': "''",
+}  # fmt: skip
+
+
+def escaped(words: str) -> str:
+    """Plain text; characters that plain pdflatex cannot set become question marks."""
+    plain = "".join(_SPECIAL.get(c, c if _can_be_set(c) else "?") for c in " ".join(words.split()))
+    return plain.replace("--", "-{}-")
+
+
+def _can_be_set(character: str) -> bool:
+    """Whether inputenc knows it for Latin or Cyrillic letters."""
+    return character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451"
+
+
+def broken(line: str) -> str:
+    """A line of the file as several, where it is long: to TeX the end of a line is a space."""
+    if len(line) <= LINE or line.startswith("%"):
+        return line
+    pieces: list[str] = []
+    size = LINE + 1
+    for word in line.split(" "):
+        # A backslash before a space belongs to it, and no line may be empty: that would end the paragraph.
+        if size + len(word) > LINE and word.strip() and not (pieces and pieces[-1].endswith("\\")):
+            pieces.append(word)
+            size = len(word)
+        elif pieces:
+            pieces[-1] += " " + word
+            size += 1 + len(word)
+    return "\n".join(pieces)
+
+
+def spared(text: str) -> str:
+    """One empty line where there are several."""
+    return re.sub(r"\n{3,}", "\n\n", text)
+
+
+def displayed(words: str) -> str:
+    """Formulas of a sentence that stand by themselves, as the others do."""
+    return re.sub(r"\\\[ (.*?) \\\]", lambda m: f"\\longformula{{{m[1]}}}", words)
+
+
+def refer(reference: Reference, say: Callable[[str], str] = str) -> str:
+    """``v_4 < 0`` for a polynomial that was shown before."""
+    under = f"{label(reference.label, say)} \\colon\\quad " if reference.under != reference.label else ""
+    relation = RELATIONS.get(reference.relation, reference.relation)
+    return f"{under}{label(reference.under, say)} {relation} 0"
+
+
+def prose(words: str) -> str:
+    """Words of the stability kernel, with lambda as a symbol."""
+    power = r"\blambda(\\\^\{\}(\d+))?"
+    return re.sub(power, lambda m: rf"$\lambda^{{{m[2]}}}$" if m[1] else r"$\lambda$", escaped(words))
+
+
+def label(words: str, say: Callable[[str], str] = str) -> str:
+    """v6 as a coefficient's symbol, other labels as text, which ``say`` may put into another language."""
+    opposite = re.fullmatch(r"-\((.*)\)", words)
+    if opposite is not None:
+        return "-" + label(opposite[1], say)
+    bare, comma, part = words.partition(", ")
+    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    if match is not None and comma:
+        return label(bare) + f"\\text{{, {escaped(say(part))}}}"
+    if match is None:
+        return f"\\text{{{escaped(say(bare) + (f', {say(part)}' if comma else ''))}}}"
+    raised = f"^{{({match[4]})}}" if match[4] else ""
+    return f"{match[1]}_{{{match[2]}}}{raised}"
+
+
+def is_cyrillic(system: System) -> bool:
+    texts = [system.name, system.description, system.source, *(item.meaning for item in system.parameters)]
+    texts += [item.meaning for item in system.prescribed] + [body.name for body in system.bodies]
+    texts += [claim.place for claim in system.claims]
+    return any("\u0400" <= c <= "\u045f" for text in texts for c in text)
