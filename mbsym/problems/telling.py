@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from flint import ctx
 
 from mbsym.algebra.base import Scalar
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -86,13 +87,22 @@ class ToldSystem:
     forcing: Column
 
 
+#: A system of more operations has definitions for pages (about one in seven operations is one), and takes seconds:
+#: a hand of 16 joints has 2200, a humanoid of 50 coordinates 19000.
+MOST_OPERATIONS = 5_000
+
+
 def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     """The results told through named intermediates; ``ring`` is the system's.
 
-    Raises NoClosedForm and SingularPoint, and Untold where they are not what the general recursion gives.
+    Raises NoClosedForm and SingularPoint, TooLargeError where nobody would read so many definitions, and Untold where
+    they are not what the general recursion gives.
     """
     found = body_equations(system, ring)
     outputs = _outputs(found)
+    operations = len(found.program.live(outputs))
+    if operations > MOST_OPERATIONS:
+        raise TooLargeError(f"{operations} operations are too many to be told through intermediates")
     numbers = {body.name: k for k, body in enumerate(system.bodies, start=1)}
     proposed = _names(ring, found, numbers)
     cosines = {name for k, name in proposed.items() if found.meanings[k].quantity is Quantity.DIRECTION_COSINE}

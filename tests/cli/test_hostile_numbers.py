@@ -205,9 +205,9 @@ def test_two_runs_into_one_folder_do_not_mix_their_files(tmp_path: Path) -> None
 def test_interrupting_any_command_gives_130(command: str, tmp_path: Path) -> None:
     """The signal comes while the description is read."""
     script = (
-        "import os, signal, sys, mbsym_cli.console as console\n"
+        "import os, signal, sys, mbsym.source as source\n"
         "def load(path): os.kill(os.getpid(), signal.SIGINT)\n"
-        "console.load = load\n"
+        "source.load = load\n"
         "from mbsym_cli.main import main\n"
         "main(sys.argv[1:])\n"
     )

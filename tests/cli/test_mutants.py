@@ -72,11 +72,13 @@ def check_files(number: int, folder: Path) -> dict[str, str]:
     _ = analysis.checks, analysis.claims
     files = [file for target in TARGETS.values() for file in rendered(target, analysis, analysis.problems)]
     assert not analysis.defects, text
-    assert not [file for file in files if file.text is None or file.withheld], text
+    assert not [file for file in files if file.failure is not None or file.withheld], text
+    assert {file.filename for file in files if file.text is None} <= {"fragments/claims.tex"}  # where there are none
     summary(analysis, analysis.problems, [])
-    texts = {file.filename: file.text or "" for file in files}
+    texts = {file.filename: str(file.text) for file in files if file.text is not None}
     for name, content in texts.items():
         assert not unreadable(name, content), (name, text)
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content, encoding="utf-8")
     module: dict[str, Any] = {}
     exec(compile(texts["model.py"], "model.py", "exec"), module)

@@ -25,6 +25,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.analysis import Analysis
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems import checks
+from mbsym.report.language import Language
 from mbsym.report.latex_description import load_in_words
 from mbsym.source import read, to_text, to_yaml
 
@@ -482,6 +483,6 @@ def test_the_schema_knows_the_orders() -> None:
 )
 def test_the_report_states_the_field(order: int | str, there: str, absent: str) -> None:
     a = mbsym.loads(with_order(SATELLITE, order), (1,))
-    text = load_in_words(a.system.loads[0], LatexNames(a.ring.names()), lambda name: name)
+    text = load_in_words(a.system.loads[0], LatexNames(a.ring.names()), lambda name: name, Language("en"))
     assert there in text
     assert absent not in text
