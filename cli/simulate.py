@@ -67,28 +67,23 @@ def command(
     histories, phase planes, drift, the moving system itself and the paths of its mass centres, and simulation.json.
     Whether an energy is conserved is proved, or seen along the run; the error is the difference from a better run.
 
-    Formats: csv (trajectory.csv), bodies-csv (bodies.csv: for each body the place, velocity and acceleration of its
-    mass centre in inertial axes, its angular velocity in its own axes, its kinetic energy; then T, U and T - U; all in
-    the units of the description), figures as svg, png and pdf, and the moving system in three dimensions as html (one
-    page with time controls, without network) and gif.
-
-    Coordinates that provably rest (a spatial system that moves in a plane) are not integrated but put back into every
-    state, as the summary says; --whole integrates everything.
+    Formats: csv, bodies-csv (of each body place, velocity, acceleration of the mass centre in inertial axes, angular
+    velocity in its own axes, kinetic energy; T, U, T - U), figures as svg, png, pdf, and the moving system in three
+    dimensions as html (one page with time controls, without network) and gif.
 
     Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit); radau, lsoda, bdf (stiff
     systems); taylor (very exact, needs heyoka); with a fixed step rk4 and, for conservative systems, midpoint,
     midpoint4, midpoint6 (whose energy does not drift).
 
-    A blow-up, a singular mass matrix or too many steps end a simulation early, and so does Ctrl-C: what was computed is
-    kept in files named ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or
-    wrong, 3 ended early, 130 interrupted.
+    A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
+    ...-partial.  Exit codes: 0 done, 1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
 
     \b
     Examples:
       mbsym simulate systems/double-pendulum.yaml --time 60
       mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
       mbsym simulate systems/double-pendulum.yaml --time 6 --animate --bodies --format csv,pdf
-      mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4 --format csv --out top
+      mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4
     """
     texts = {
         "--time": end,
@@ -115,8 +110,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[s
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     wanted = read_request(system, texts, flags, asked)
-    refused = asked.refused(None if system is None else file)
-    if refused or given is None:
+    if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)
     if reason:

@@ -5,6 +5,7 @@ Matplotlib's settings and list of fonts are global: ``styled`` changes them whil
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import BytesIO
@@ -22,6 +23,9 @@ from matplotlib.font_manager import fontManager
 from matplotlib.ticker import LogFormatterMathtext, ScalarFormatter
 from matplotlib.transforms import Bbox
 from PIL import Image
+
+#: A list of fonts that another installation left behind is no news to whoever asked for a figure.
+logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
 
 #: Pixels per inch of a PNG.
 RESOLUTION = 150
