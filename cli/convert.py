@@ -28,7 +28,8 @@ def command(
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
-    in an open tree have no place for (contacts, closed loops, actuators, ...) is left out, and listed.
+    in an open tree have no place for (contacts, actuators, sensors, ...) is left out, and listed; a link that hangs on
+    two joints is an error.
 
     \b
     Examples:

@@ -34,7 +34,7 @@ COMMANDS = {
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
-    "convert": Listed("convert", "Convert descriptions between YAML and plain text."),
+    "convert": Listed("convert", "Convert YAML, plain text, and robots (URDF, MJCF)."),
     "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
     "lsp": Listed("lsp", "Serve an editor: complaints, completion, hover."),
     "explain": Listed("explain", "Tell what a problem computes, what a description holds."),

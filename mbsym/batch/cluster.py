@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 #: A scheduler is waited for so many seconds, and its first worker so many.
 CONNECT, FIRST_WORKER = 15.0, 120.0
 
-#: A task is given up when so many workers were lost over it: then it is most likely what they died of.
-LOST_WORKERS = 3
-
 #: For each worker there is so much to do that it need not wait for the next.
 _AHEAD = 2
 
@@ -123,7 +120,7 @@ def _finished(done: Future[tuple[str, float]], task: Task) -> Finished:
         return replace(finished, row=replace(finished.row, seconds=seconds))
     except Exception as error:
         if type(error).__name__ == "KilledWorker":
-            message = f"{LOST_WORKERS + 1} workers were lost over it"
+            message = "so many workers were lost over it that the scheduler gave it up"  # how many is its own setting
         elif type(error).__name__ in ("CancelledError", "FutureCancelledError"):
             return Finished(Row(task.file, task.folder, Outcome.INTERRUPTED))
         else:

@@ -1,4 +1,6 @@
-"""Geoms of MJCF: what they look like and what they weigh.  Masses are exact: those of round bodies hold pi."""
+"""Geoms of MJCF: what they look like and what they weigh.  Masses are exact (those of round bodies hold pi) where the
+lengths are: between two given ends they are rounded to a double.
+"""
 
 from __future__ import annotations
 
