@@ -9,56 +9,20 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
-from mbsym_cli.simulation_request import ARITHMETIC, Flags, read_request
+from mbsym_cli.simulation_options import Output, Span, Way, output_options, span_options, typed, way_options
+from mbsym_cli.simulation_request import Flags, read_request
 from mbsym_cli.simulation_run import run
 
 
 @click.command("simulate")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--time", "-t", "end", metavar="T", help="Simulate from 0 to T (60, 2*pi, 1e3).  [required]")
-@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
-@click.option("--samples", metavar="N", help="Rows of the table.  [default: 2001, more for fast motion]")
-@click.option("--every", metavar="DT", help="A row every DT instead.")
-@click.option("--method", "-m", default="auto", show_default=True, help="auto or one of those above.")
-@click.option("--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10 in float64]")
-@click.option("--step", metavar="H", help="Length of a step, for methods of fixed step.")
-@click.option("--arithmetic", metavar=f"[{'|'.join(ARITHMETIC)}]", default="float64", show_default=True)
-@click.option("--step-limit", metavar="N", default="10000000", show_default=True)
-@click.option("--invariants", is_flag=True, help="Add the first integrals of problem 7 as columns.")
-@click.option(
-    "--estimate/--no-estimate",
-    default=None,
-    help="Estimate the error by a better run.  [default: if the run was short]",
-)
-@click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well.")
-@click.option("--format", "-f", "formats", default="csv,svg,png", show_default=True)
-@click.option("--bodies", is_flag=True, help="What each body does, in bodies.csv; the same as format bodies-csv.")
-@click.option("--animate", is_flag=True, help="animation.html and animation.gif; the same as formats html,gif.")
-@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
-@click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
-def command(
-    file: Path,
-    end: str | None,
-    settings: tuple[str, ...],
-    samples: str | None,
-    every: str | None,
-    method: str,
-    tolerance: str | None,
-    step: str | None,
-    arithmetic: str,
-    step_limit: str,
-    invariants: bool,
-    estimate: bool | None,
-    whole: bool,
-    formats: str,
-    bodies: bool,
-    animate: bool,
-    out: Path | None,
-    quiet: bool,
-) -> None:
+@span_options
+@way_options
+@output_options
+def command(file: Path, span: Span, way: Way, output: Output) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -85,20 +49,10 @@ def command(
       mbsym simulate systems/double-pendulum.yaml --time 6 --animate --bodies --format csv,pdf
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4
     """
-    texts = {
-        "--time": end,
-        "--samples": samples,
-        "--every": every,
-        "--method": method,
-        "--tolerance": tolerance,
-        "--step": step,
-        "--arithmetic": arithmetic,
-        "--step-limit": step_limit,
-        "--format": ",".join([formats, *(["bodies-csv"] if bodies else []), *(["html", "gif"] if animate else [])]),
-    }
-    folder = folder_for(file, out)
+    folder = folder_for(file, output.out)
+    flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
-        sys.exit(_command(file, folder, settings, texts, Flags(invariants, estimate, quiet, whole)))
+        sys.exit(_command(file, folder, span.settings, typed(span, way, output), flags))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)

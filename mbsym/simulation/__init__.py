@@ -1,0 +1,30 @@
+"""A simulation from a description to a result.
+
+==============  ====================================================================================
+``request``     what is asked for, and what of it cannot be done
+``choosing``    what that leaves open: method and samples (``sampling``)
+``run``         integrates, judges what is kept (``kept``), estimates the error
+``result``      what was found
+==============  ====================================================================================
+"""
+
+from mbsym.simulation.request import TOLERANCE, Request, read_values
+from mbsym.simulation.result import Chosen, Kept, Simulation
+from mbsym.simulation.run import COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, simulate
+from mbsym.simulation.sampling import SAMPLES, sample_times
+
+__all__ = [
+    "COMPILING",
+    "ESTIMATING",
+    "INTEGRATING",
+    "SAMPLES",
+    "SOON_DONE",
+    "TOLERANCE",
+    "Chosen",
+    "Kept",
+    "Request",
+    "Simulation",
+    "read_values",
+    "sample_times",
+    "simulate",
+]

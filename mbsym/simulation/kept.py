@@ -1,0 +1,42 @@
+"""How far a run keeps its energies and first integrals, and how it is known that they are constant."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any
+
+from mbsym.numerics.columns import columns
+from mbsym.numerics.conservation import Conservation, Standing, confronted, energy_standing, standing, visited
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.invariants import invariants, values
+from mbsym.simulation.result import Kept
+
+if TYPE_CHECKING:
+    from mbsym.numerics.simulate import Trajectory
+
+
+def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
+    """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
+    points = visited(found.times, found.states, found.change)
+    scale = found.energy_scale
+    known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held)
+    if dynamics.natural:
+        same = confronted("energy", known, found.change, scale, doubt)
+        return same, same
+    generalized = confronted("generalised energy", known, found.change, scale, doubt)
+    known, doubt = standing(dynamics, dynamics.energies, 0, visited(found.times, found.states, found.energy), held)
+    return generalized, confronted("energy", known, found.energy, scale, doubt)
+
+
+def kept_integrals(
+    dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str]
+) -> tuple[Kept, ...]:
+    """First integrals along the run; one that is not proved is looked at where the run goes."""
+    known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural)) if integrals else ()
+    kept = []
+    for item, (column, size) in zip(known, values(known, found.times, found.states), strict=True):
+        state, doubt = Standing.PROVED, None
+        if not item.proved:
+            state, doubt = standing(dynamics, item.code, 0, visited(found.times, found.states, column), held)
+        kept.append(Kept(item.column, column, confronted(item.name, state, column, size, doubt), item.unit))
+    return tuple(kept)

@@ -1,0 +1,96 @@
+"""What is asked of a simulation, and what of it cannot be done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isfinite
+
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import Expression, names, number
+from mbsym.model.system import System
+from mbsym.numerics.methods.table import METHODS
+
+#: The local error unless asked for otherwise.
+TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked for.
+
+    ``samples`` rows from 0 to ``time``, or one ``every`` so often (by default as many as the motion needs); a method's
+    name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
+    well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
+    integrated, too.
+    """
+
+    time: float
+    samples: int | None = None
+    every: float | None = None
+    method: str = "auto"
+    tolerance: float | None = None
+    step: float | None = None
+    arithmetic: str = "float64"
+    step_limit: int = 10_000_000
+    invariants: bool = False
+    estimate: bool | None = None
+    whole: bool = False
+
+
+def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+    """Values by name as expressions: numbers, or text such as ``pi/6`` made of numbers, pi and parameters.
+
+    A name is that of a parameter, a coordinate (its initial position) or ``<coordinate>_dot`` (its initial velocity).
+    Raises ValueError with everything that is wrong.
+    """
+    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    found: dict[str, Expression] = {}
+    wrong = [f"there is nothing called {name} to set" for name in given if name not in known]
+    for name, value in given.items():
+        complaints = Complaints()
+        if isinstance(value, str):
+            read = parse_expression(value, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+            unknown = sorted(names(read) - {*system.parameter_names, "pi"}) if read is not None else []
+            wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
+            wrong += [f"{name} = {value}: unknown name {other}" for other in unknown]
+            if read is not None:
+                found[name] = read
+        elif isinstance(value, (int, float, Fraction)):
+            if not isfinite(value):
+                wrong.append(f"{name} = {value} is no number")
+            else:
+                found[name] = number(Fraction(value))
+        else:
+            found[name] = value
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    return found
+
+
+def wrong_with(request: Request) -> Iterator[str]:
+    """What of it cannot be done, a sentence each."""
+    positive = {"time": request.time, "every": request.every, "tolerance": request.tolerance, "step": request.step}
+    for name, value in positive.items():
+        if value is not None and not (isfinite(value) and value > 0):
+            yield f"{name} must be positive, not {value}"
+    if request.samples is not None and request.samples < 2:
+        yield f"samples must be 2 at least, not {request.samples}"
+    if request.samples is not None and request.every is not None:
+        yield "samples and every exclude each other"
+    if request.step_limit < 1:
+        yield f"step_limit must be 1 at least, not {request.step_limit}"
+    if request.arithmetic not in TOLERANCE:
+        yield f"there is no arithmetic {request.arithmetic}: choose from {', '.join(TOLERANCE)}"
+    if request.method != "auto" and request.method not in METHODS:
+        yield f"there is no method {request.method}: choose from auto, {', '.join(METHODS)}"
+        return
+    fixed = request.method != "auto" and METHODS[request.method].traits.fixed
+    if fixed and request.step is None:
+        yield f"{request.method} takes steps of one length: give a step"
+    if not fixed and request.step is not None:
+        yield f"{request.method} chooses its steps by a tolerance, not by a step"
+    if fixed and request.tolerance is not None:
+        yield f"{request.method} takes steps of one length, no tolerance"

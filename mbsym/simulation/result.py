@@ -1,0 +1,138 @@
+"""What a simulation found: the trajectory, what it keeps, how wrong it is, and everything that was chosen for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mbsym.model.system import System
+from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
+from mbsym.numerics.conservation import Conservation
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.reduced import Reduced
+from mbsym.numerics.scenario import Scenario
+from mbsym.simulation.request import Request
+
+if TYPE_CHECKING:
+    from mbsym.numerics.simulate import Trajectory
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Everything settled before the first step; ``frequency`` is the greatest at the initial state, in rad per time.
+
+    ``resting`` are the coordinates that rest; where that is proved, ``method`` integrates the others only.
+    """
+
+    method: Method
+    why: str
+    measured: str
+    setting: Setting
+    times: Any
+    frequency: float
+    resting: Reduced | None = None
+
+    def completed(self, method: Method) -> Method:
+        """Another method that integrates the same coordinates."""
+        return method if self.resting is None or not self.resting.proved else self.resting.method(method)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A first integral along a run: its column, its values (m,), how far it is conserved, its unit if that is known."""
+
+    column: str
+    values: Any
+    conservation: Conservation
+    unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """The result of ``simulate``.
+
+    ``energy`` (T - U) and ``generalized_energy`` (T2 - T0 - U) are one quantity where nothing is prescribed;
+    ``conservation`` is that of the latter and ``energy_conservation`` that of the former.
+    """
+
+    scenario: Scenario
+    dynamics: Dynamics
+    request: Request
+    chosen: Chosen
+    trajectory: Trajectory
+    conservation: Conservation
+    energy_conservation: Conservation
+    invariants: tuple[Kept, ...]
+    error: ErrorEstimate | NoEstimate
+    no_invariants: str = ""
+
+    @property
+    def system(self) -> System:
+        """What was simulated."""
+        return self.scenario.system
+
+    @property
+    def times(self) -> Any:
+        """The times of the samples, shape (m,)."""
+        return self.trajectory.times
+
+    @property
+    def coordinates(self) -> Any:
+        """q(t), shape (n, m), in the order of ``system.coordinates``."""
+        return self.trajectory.states[: self.dynamics.size]
+
+    @property
+    def velocities(self) -> Any:
+        """q'(t), shape (n, m)."""
+        return self.trajectory.states[self.dynamics.size :]
+
+    @property
+    def energy(self) -> Any:
+        """T - U, shape (m,)."""
+        return self.trajectory.energy
+
+    @property
+    def generalized_energy(self) -> Any:
+        """T2 - T0 - U, shape (m,)."""
+        return self.trajectory.generalized_energy
+
+    @property
+    def method(self) -> str:
+        """The name of the method."""
+        return self.chosen.method.traits.name
+
+    @property
+    def why(self) -> str:
+        """Why this method."""
+        return self.chosen.why
+
+    @property
+    def arithmetic(self) -> str:
+        """float64, float32 or extended."""
+        return self.request.arithmetic
+
+    @property
+    def whole(self) -> bool:
+        """Whether it reached the time asked for."""
+        return self.trajectory.whole
+
+    @property
+    def ended(self) -> Breakdown | None:
+        """Why it ended early."""
+        return self.trajectory.breakdown
+
+    def __getitem__(self, name: str) -> Any:
+        """The samples of a coordinate, a velocity (``theta_dot``), a first integral's column, or ``t``; shape (m,).
+
+        Raises KeyError for any other name.
+        """
+        if name == "t":
+            return self.times
+        rows = (*self.system.coordinates, *self.system.velocities)
+        if name in rows:
+            return self.trajectory.states[rows.index(name)]
+        for kept in self.invariants:
+            if kept.column == name:
+                return kept.values
+        raise KeyError(name)

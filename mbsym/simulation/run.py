@@ -1,0 +1,86 @@
+"""A simulation from a description to a result: method, times and error estimate are settled here.
+
+    x' = rhs(t, x),   x = (q, q'),   from the initial state at t = 0 to ``time``
+
+``simulate`` chooses what was not asked for (method, samples), leaves out of the integration what provably rests,
+integrates, says of every energy and first integral how far it is known to be constant and how far the run keeps it, and
+estimates the error of the run by a better one.  Nothing is printed or written; what is said about a result is said
+where it is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
+from typing import Any
+
+from mbsym.analysis import Analysis, Unavailable
+from mbsym.numerics import simulate as integration
+from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
+from mbsym.numerics.conservation import Standing
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.reduced import reduced
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.sizes import kinetic_between
+from mbsym.simulation.choosing import chosen_for
+from mbsym.simulation.kept import energies, kept_integrals
+from mbsym.simulation.request import Request, wrong_with
+from mbsym.simulation.result import Simulation
+
+#: The error of a run shorter than this many seconds is estimated without being asked for.
+SOON_DONE = 2.0
+
+#: What ``simulate`` is doing, for whoever watches.
+COMPILING, INTEGRATING, ESTIMATING = "compiling", "integrating", "estimating"
+
+#: Is told what is being done, for as long as it takes.
+Stage = Callable[[str], AbstractContextManager[object]]
+
+
+def simulate(
+    scenario: Scenario,
+    request: Request,
+    watch: Callable[[float], None] = lambda t: None,
+    stage: Stage = lambda what: nullcontext(),
+) -> Simulation:
+    """Integrates a scenario.
+
+    What ends a run early (a blow-up, a singular mass matrix, a step limit, Ctrl-C) is part of the result.  Raises
+    ValueError for a request that cannot be met, Unusable where the method asked for does not apply, Failure where there
+    is no program for the equations, or a division by zero in them at these values.
+    """
+    wrong = list(wrong_with(request))
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    with stage(COMPILING):
+        analysis = Analysis(scenario.system, (7,)) if request.invariants else None
+        integrals, missing = _integrals(analysis)
+        dynamics = Dynamics(scenario, analysis.ring) if analysis is not None and not missing else Dynamics(scenario)
+        resting = reduced(dynamics)
+        chosen = chosen_for(dynamics, request, None if request.whole else resting)
+    with stage(INTEGRATING):
+        found = integration.simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
+    found = replace(found, between=kinetic_between(dynamics, found, chosen.completed))
+    error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
+    with stage(ESTIMATING):
+        held = resting.names if resting is not None and resting.proved else ()
+        both = energies(dynamics, found, held)
+        kept = kept_integrals(dynamics, found, integrals, held)
+        if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
+            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed)
+    if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
+        error = NoEstimate(Lacking.CONTRADICTED)
+    return Simulation(scenario, dynamics, request, chosen, found, *both, kept, error, missing)
+
+
+def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:
+    """The first integrals of problem 7 but for the energy, and why there are none."""
+    if analysis is None:
+        return (), ""
+    from mbsym.problems.integrals import ENERGY
+
+    try:
+        return tuple(item for item in analysis.integrals if item.kind != ENERGY), ""
+    except Unavailable as reason:
+        return (), str(reason)

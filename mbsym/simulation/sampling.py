@@ -1,0 +1,33 @@
+"""At which times a trajectory is shown."""
+
+from __future__ import annotations
+
+from math import ceil, pi
+from typing import Any
+
+import numpy as np
+
+from mbsym.model.system import System
+from mbsym.numerics.columns import most_rows
+from mbsym.simulation.request import Request
+
+#: Rows unless asked for otherwise (more of them where the motion is fast), and rows a period of the fastest motion.
+SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
+
+
+def sample_times(request: Request, frequency: float, system: System) -> Any:
+    """Times from 0 to the end, the end included: a hundred a period of the fastest oscillation, within bounds."""
+    if request.every is not None:
+        times = np.arange(ceil(request.time / request.every * (1 - 1e-12)) + 1) * request.every
+        times[-1] = request.time
+        return times
+    if request.samples is not None:
+        return np.linspace(0.0, request.time, request.samples)
+    wanted = SAMPLES_A_PERIOD * frequency * request.time / (2 * pi)
+    fitting = min(max(SAMPLES, int(min(wanted, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
+    if request.step is None:
+        return np.linspace(0.0, request.time, fitting)
+    # A method of fixed step knows nothing between its steps: rows stand at whole numbers of them, and at the end.
+    steps = max(1, ceil(request.time / request.step * (1 - 1e-12)))
+    apart = max(1, ceil(steps / (fitting - 1)))
+    return np.append(np.arange(0, steps, apart) * request.step, request.time)
