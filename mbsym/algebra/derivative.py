@@ -11,7 +11,7 @@ reach the outputs, takes no operation, and hash-consing shares what the sweeps h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from mbsym.algebra.program import Node, Program
@@ -36,6 +36,13 @@ def jacobian(program: Program, outputs: Sequence[Node], inputs: Sequence[Node]) 
         return tuple(sweeps.backwards(place) for place in range(len(outputs)))
     columns = [sweeps.forwards(place) for place in range(len(inputs))]
     return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
+
+
+def directional(
+    program: Program, outputs: Sequence[Node], inputs: Sequence[Node], direction: Sequence[Node]
+) -> tuple[Node, ...]:
+    """(sum_x d output / d x v_x for output in outputs): the derivatives along ``direction``, by one sweep forwards."""
+    return _Sweeps(program, outputs, inputs).along(direction)
 
 
 class _Sweeps:
@@ -109,14 +116,21 @@ class _Sweeps:
 
     def forwards(self, place: int) -> tuple[Node, ...]:
         """The derivatives of all outputs by one input."""
+        return self._tangents({self.inputs[place].number: self.program.one}, 1 << place)
+
+    def along(self, direction: Sequence[Node]) -> tuple[Node, ...]:
+        """The derivatives of all outputs along a direction, which has a node for each input."""
+        seeds = {node.number: value for node, value in zip(self.inputs, direction, strict=True)}
+        return self._tangents(seeds, (1 << len(self.inputs)) - 1)
+
+    def _tangents(self, seeds: Mapping[int, Node], bits: int) -> tuple[Node, ...]:
         program = self.program
         tangents: dict[int, Node] = {}
-        bit = 1 << place
         for number in self.live:
-            if not self.needs[number] & bit:
+            if not self.needs[number] & bits:
                 continue
             if number in self.seeds:
-                tangents[number] = program.one
+                tangents[number] = seeds[number]
                 continue
             total = program.zero
             operands = program.instructions[number].operands

@@ -97,7 +97,7 @@ def scenario(
     _parameters(system, overrides, numbers, assumed)
     parameters = numbers.known
     missing = [name for name in system.parameter_names if name not in parameters and name not in numbers.refused]
-    given = _initial(system, overrides)
+    given = initial_values(system, overrides)
     positions, velocities = [], []
     for name in system.coordinates:
         entry = given[name]
@@ -209,7 +209,8 @@ def _evaluated(expression: Expression, known: Mapping[str, Fraction]) -> Fractio
         return None
 
 
-def _initial(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:
+def initial_values(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:
+    """What the description and the overrides say of every coordinate at t = 0."""
     given = {entry.coordinate: entry for entry in system.initial}
     for name in system.coordinates:
         entry = given.get(name, InitialValue(name))

@@ -1,0 +1,115 @@
+"""The codes of a scenario in which some parameters stay inputs: one program for all values of them.
+
+    x' = rhs(t, x, p),    x(0) = start(p)
+
+What follows from a free parameter through relations, what is prescribed through it and an initial state that is made of
+it move with it.  All codes take (t, q, q', p).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.expressions.tree import Expression, names
+from mbsym.model.system import System, velocity_name
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import Scenario, initial_values
+from mbsym.numerics.specialise import Specialised, bound
+
+
+class Parametrised(Dynamics):
+    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q').
+
+    ``overrides`` are those of which the scenario was made: an initial state may be an expression in free parameters.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        free: Sequence[str],
+        overrides: Mapping[str, Expression] | None = None,
+        ring: Ring | None = None,
+    ) -> None:
+        super().__init__(scenario, ring)
+        self.free = tuple(free)
+        self.overrides = dict(overrides or {})
+        self.inputs = (*self.inputs, *self.free)
+
+    @cached_property
+    def _specialised(self) -> Specialised:
+        return released(self.scenario, self.free)
+
+    @cached_property
+    def start(self) -> Code:
+        """(p, x) -> (q, q') at t = 0; names of x that the overrides or the description give by p follow p.
+
+        ``x`` are the coordinates and velocities: an initial value that is no expression in ``p`` is that input.
+        """
+        fresh = released(self.scenario, self.free)
+        lowering = Lowering(fresh, Names(fresh))
+        moving = {*self.free, *dependent(self.system, self.free)}
+        outputs: dict[str, Node] = {}
+        for name, entry in initial_values(self.system, self.overrides).items():
+            for place, given in ((name, entry.position), (velocity_name(name), entry.velocity)):
+                follows = given is not None and bool(names(given) & moving)
+                outputs[place] = lowering(given) if given is not None and follows else fresh.input(place)
+        order = (*self.system.coordinates, *self.system.velocities)
+        return Code(fresh, (*self.free, *order), tuple(outputs[name] for name in order))
+
+    @cached_property
+    def parameters(self) -> Code:
+        """(p) -> all parameters that move with p, themselves first, then those of ``dependent``."""
+        fresh = released(self.scenario, self.free)
+        moving = (*self.free, *dependent(self.system, self.free))
+        return Code(fresh, self.free, tuple(fresh.input(name) for name in moving))
+
+
+class Names(dict[str, Node]):
+    """What names stand for in a program, which knows which of them are bound."""
+
+    def __init__(self, program: Program) -> None:
+        super().__init__()
+        self.program = program
+
+    def __missing__(self, name: str) -> Node:
+        return self.program.input(name)
+
+
+def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:
+    """The parameters that follow from some others through relations, in an order in which they can be computed."""
+    moving, found = set(free), []
+    for _ in system.relations:
+        for relation in system.relations:
+            if relation.name not in moving and names(relation.value) & moving:
+                moving.add(relation.name)
+    values = {relation.name: relation.value for relation in system.relations if relation.name in moving}
+    waiting = [name for name in values if name not in set(free)]
+    while waiting:
+        ready = [name for name in waiting if not names(values[name]) & set(waiting)]
+        found += ready or waiting
+        waiting = [name for name in waiting if name not in found]
+    return tuple(found)
+
+
+def released(scenario: Scenario, free: Sequence[str]) -> Specialised:
+    """An empty program in which all parameters but the free ones, and what follows from them, are numbers."""
+    fresh, system = bound(scenario), scenario.system
+    for name in free:
+        del fresh.bound[name]
+    values = {relation.name: relation.value for relation in system.relations}
+    lowering = Lowering(fresh, Names(fresh))
+    moving = set(free)
+    for name in dependent(system, free):
+        fresh.bound[name] = lowering(values[name])
+        moving.add(name)
+    for item in system.prescribed:
+        given = [item.rate] if item.initial is None else [item.rate, item.initial]
+        if any(names(expression) & moving for expression in given):
+            initial = fresh.zero if item.initial is None else lowering(item.initial)
+            fresh.bound[item.name] = initial + fresh.product(lowering(item.rate), fresh.input("t"))
+    return fresh
