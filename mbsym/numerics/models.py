@@ -1,0 +1,101 @@
+"""The models of one scene: how much of its mechanics is in the equations.
+
+gravity   the order of Newtonian fields: 2, 3, 4 or exact
+linear    the equations linearised about the unperturbed motion
+without   parameters taken as zero: a mass, a stiffness, a damping that this motion does not feel
+
+``described`` is the model as it was given, ``faithful`` the one that leaves nothing out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from mbsym.expressions.tree import names
+from mbsym.mechanics.variables import expressions
+from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, System
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ledger.described import relative_size
+from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.scenario import Scenario, changed
+
+
+@dataclass(frozen=True)
+class Model:
+    """What is in the equations; ``gravity`` None: no Newtonian field, or the order that the description gives."""
+
+    gravity: int | str | None = None
+    linear: bool = False
+    without: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """``gravity of order 2, linearised, without c``."""
+        parts = []
+        if self.gravity is not None:
+            parts.append("exact gravity" if self.gravity == EXACT else f"gravity of order {self.gravity}")
+        if self.linear:
+            parts.append("linearised")
+        if self.without:
+            parts.append(f"without {', '.join(self.without)}")
+        return ", ".join(parts) or "as described"
+
+
+def scenario_of(scenario: Scenario, model: Model) -> Scenario:
+    """The scenario with the field of a model's order and zero for the parameters that it leaves out."""
+    found = changed(scenario, **dict.fromkeys(model.without, Fraction(0))) if model.without else scenario
+    if model.gravity is None:
+        return found
+    order = model.gravity
+    loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in scenario.system.loads)
+    return replace(found, system=replace(scenario.system, loads=loads, claims=()))
+
+
+def modelled(scenario: Scenario, model: Model) -> Dynamics:
+    """The equations of a model.  Raises Failure where there is no program for them, as ``Dynamics`` does."""
+    found = scenario if model == Model() else scenario_of(scenario, model)
+    return LinearisedDynamics(found) if model.linear else Dynamics(found)
+
+
+def described(scenario: Scenario) -> Model:
+    """The model that the description gives: the least order of its Newtonian fields, nothing else left out."""
+    orders = [load.order for load in _fields(scenario.system)]
+    return Model(min(orders, key=GRAVITY_ORDERS.index)) if orders else Model()
+
+
+def faithful(scenario: Scenario) -> Model:
+    """The model that leaves nothing out of what the description has."""
+    return Model(EXACT) if _fields(scenario.system) else Model()
+
+
+def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
+    """The orders of gravity that make sense here, the lowest first; (None,) without a Newtonian field.
+
+    An expansion in size/R is offered where the bodies are nearer to O1 than O1 to the centre, or where the description
+    itself expands.
+    """
+    found = _fields(scenario.system)
+    if not found:
+        return (None,)
+    sizes = [relative_size(scenario, load) for load in found if load.order == EXACT]
+    expandable = all(size is not None and size < 1 for size in sizes)
+    return GRAVITY_ORDERS if expandable else (EXACT,)
+
+
+def droppable(system: System) -> tuple[str, ...]:
+    """Parameters that may be taken as zero each by itself.
+
+    Nothing else follows from them: no relation, no prescribed motion, no unperturbed motion.
+    """
+    tied = {relation.name for relation in system.relations}
+    parts: tuple[Any, ...] = (system.relations, system.prescribed, system.motion, system.initial)
+    for x in expressions(parts):
+        tied |= names(x)
+    used = {name for x in expressions((system.bodies, system.loads)) for name in names(x)}
+    return tuple(name for name in system.parameter_names if name in used and name not in tied)
+
+
+def _fields(system: System) -> list[NewtonianGravity]:
+    return [load for load in system.loads if isinstance(load, NewtonianGravity)]
