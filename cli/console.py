@@ -20,6 +20,7 @@ from mbsym.expressions.safe import safe as escaped
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.status import Status
     from rich.text import Text
 
     from mbsym.model.system import System
@@ -101,7 +102,27 @@ def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
     from rich.text import Text
 
     with console(stderr=True).status(Text(escaped(text))) as spinner:
-        yield lambda text: spinner.update(Text(escaped(text)))
+        _TURNING.append(spinner)
+        try:
+            yield lambda text: spinner.update(Text(escaped(text)))
+        finally:
+            _TURNING.remove(spinner)
+
+
+#: The spinners that turn, each with a thread of its own.
+_TURNING: list[Status] = []
+
+
+@contextmanager
+def paused() -> Iterator[None]:
+    """No spinner turns meanwhile: what copies the process wants it with one thread."""
+    for spinner in _TURNING:
+        spinner.stop()
+    try:
+        yield
+    finally:
+        for spinner in _TURNING:
+            spinner.start()
 
 
 def read_description(path: Path) -> System | None:

@@ -78,11 +78,13 @@ class LazyGroup(click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """In a process of its own the command is also safe from what its streams do."""
+        from mbsym_cli.beside import Beside
         from mbsym_cli.console import FAILED, INTERRUPTED, OK
         from mbsym_cli.streams import Streams, own_process, stoppable
 
         if not own_process():
             return super().main(*args, **extra)
+        Beside.allowed = True
         streams = Streams()
         with stoppable() as signals:
             try:

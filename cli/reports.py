@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.report.whole_run import derive_all, lost, rendered_all
+from mbsym_cli.beside import beside
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
@@ -76,6 +77,7 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
     from mbsym.formulas.tree import angles_as
+    from mbsym.report.compact import prepared
     from mbsym.report.html_motion import animated
 
     started = time.perf_counter()
@@ -84,9 +86,17 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
     found = None
     with status(request.quiet) as say:
-        derive_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}"))
+
+        def doing(text: str) -> None:
+            say(f"{path.name}: {text}")
+
+        def meanwhile() -> None:
+            with angles_as(request.angles):
+                prepared(analysis, request.formats)
+
+        derive_all(analysis, request.formats, doing, beside, meanwhile)
         with angles_as(request.angles), animated(request.animate):
-            files = list(rendered_all(analysis, request.formats, lambda text: say(f"{path.name}: {text}")))
+            files = rendered_all(analysis, request.formats, doing, beside)
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:
             say(f"{path.name}: ledger")

@@ -232,6 +232,11 @@ class Analysis(Stages):
             self._checks[name] = stage.value
         return self._checks[name]
 
+    def take(self, found: Iterable[Check]) -> None:
+        """Checks that were carried out on this analysis, or on a copy of it."""
+        for check in found:
+            self._checks.setdefault(check.name, check)
+
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.judgeable
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)

@@ -26,10 +26,21 @@ def checks(analysis: Analysis) -> tuple[Check, ...]:
     """Every check on which the asked-for problems stand, as far as their results allow it, and those of the program."""
     for number in analysis.problems:
         analysis.stage(number)
+    return tuple(found for name in _wanted(analysis) if (found := analysis.check(name)) is not None)
+
+
+def carried_out(analysis: Analysis) -> list[Check]:
+    """Those of the same that what is derived so far allows; nothing else is derived."""
+    with analysis.unvouched():
+        return [found for name in _wanted(analysis) if (found := analysis.check(name)) is not None]
+
+
+def _wanted(analysis: Analysis) -> list[str]:
+    """The names of these checks, in the order in which they are told."""
     names = {name for problem in analysis.asked for name in problem.stands_on}
     if 3 in analysis.problems or "programs" in analysis.derived:
         names |= {"straight-line program", "mass matrix"}
-    return tuple(found for name in SECOND_ROUTES if name in names and (found := analysis.check(name)) is not None)
+    return [name for name in SECOND_ROUTES if name in names]
 
 
 def check(analysis: Analysis, name: str) -> Check | None:

@@ -148,6 +148,15 @@ class Stages(GuessesNames):
         finally:
             self._depth, self._strict = depth, strict
 
+    @contextmanager
+    def unvouched(self) -> Iterator[None]:
+        """What is asked for here is derived but not yet vouched for, as within a stage; nothing may be said of it."""
+        self._depth += 1
+        try:
+            yield
+        finally:
+            self._depth -= 1
+
     def vouch(self, name: str, stands_on: Sequence[str]) -> None:
         """Raises Unavailable if a check has failed on which the stage of that name stands."""
         if name not in self._withdrawn:

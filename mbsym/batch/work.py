@@ -60,7 +60,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     analysis = Analysis(system, problems, asked.terms)
     derive_all(analysis, asked.formats, _silent)
     with angles_as(cast("Angles | None", asked.angles)), detailed(asked.detail):
-        rendered = list(rendered_all(analysis, asked.formats, _silent))
+        rendered = rendered_all(analysis, asked.formats, _silent)
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)
     outcome = _outcome(analysis, defects)

@@ -1,0 +1,124 @@
+"""Work beside the process: the same value whatever becomes of the copy, and nothing is left behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from mbsym_cli import beside as module
+from mbsym_cli.beside import Beside, beside, helped
+from mbsym_cli.console import DEFECTS
+from mbsym_cli.main import main
+
+ROOT = Path(__file__).parents[2]
+PENDULUM = ROOT / "systems" / "double-pendulum.yaml"
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux only")
+
+
+@pytest.fixture(autouse=True)
+def _help(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(module, "helped", lambda: True)
+    yield
+    with pytest.raises(ChildProcessError):  # every copy has been waited for
+        os.waitpid(-1, os.WNOHANG)
+
+
+def always(_: Any) -> bool:
+    return True
+
+
+def test_a_large_value_of_another_process() -> None:
+    with beside(lambda: (os.getpid(), "x" * 10**6), always) as value:
+        process, text = value()
+    assert process != os.getpid()
+    assert text == "x" * 10**6
+
+
+def fails() -> int:
+    raise ValueError("lost")
+
+
+def is_killed() -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return 0
+
+
+def meets_a_defect() -> int:
+    DEFECTS.errors.append(ValueError("contained"))
+    return os.getpid()
+
+
+@pytest.mark.parametrize("spoilt", [fails, is_killed, meets_a_defect, lambda: (os.getpid(), lambda: 0)])
+def test_what_the_copy_cannot_do_is_done_here(spoilt: Any) -> None:
+    """It raises, is killed, meets a defect that has to be told here, has a value that cannot be sent."""
+    here = os.getpid()
+    with beside(lambda: "here" if os.getpid() == here else spoilt(), always) as value:
+        assert value() == "here"
+
+
+def test_an_unsound_value_is_not_taken() -> None:
+    here = os.getpid()
+    with beside(os.getpid, lambda process: process == here) as value:
+        assert value() == here
+
+
+def test_an_answer_cut_short_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    here, write = os.getpid(), os.write
+
+    def half(handle: int, data: Any) -> int:
+        write(handle, bytes(data)[: len(data) // 2])
+        os._exit(0)
+
+    monkeypatch.setattr(module.os, "write", half)
+    with beside(os.getpid, always) as value:
+        assert value() == here
+
+
+def test_no_copy_without_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "helped", helped)
+    monkeypatch.setattr(Beside, "allowed", False)
+    with beside(os.getpid, always) as value:
+        assert value() == os.getpid()
+
+
+def test_no_copy_of_a_process_with_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lock that another thread holds would be held for ever in the copy."""
+    monkeypatch.setattr(Beside, "allowed", True)
+    done = threading.Event()
+    other = threading.Thread(target=done.wait)
+    other.start()
+    try:
+        assert not helped()
+    finally:
+        done.set()
+        other.join()
+
+
+def test_leaving_early_ends_the_copy() -> None:
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), beside(lambda: time.sleep(60), always):
+        raise KeyboardInterrupt
+    assert time.monotonic() - started < 30
+
+
+def test_a_run_with_help_writes_the_same_bytes(tmp_path: Path) -> None:
+    """As a process of its own, which has help where there are two cores, and within this one, which has none."""
+    alone, helped_ = tmp_path / "alone", tmp_path / "helped"
+    done = CliRunner().invoke(main, ["run", str(PENDULUM), "--quiet", "--out", str(alone)])
+    assert (done.exit_code, done.stderr) == (0, "")
+    subprocess.run([sys.executable, "-m", "mbsym_cli", "run", PENDULUM, "--quiet", "--out", helped_], check=True)
+    files = sorted(path.relative_to(alone) for path in alone.rglob("*") if path.is_file())
+    assert len(files) >= 20
+    assert files == sorted(path.relative_to(helped_) for path in helped_.rglob("*") if path.is_file())
+    assert all((alone / file).read_bytes() == (helped_ / file).read_bytes() for file in files)
