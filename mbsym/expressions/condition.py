@@ -1,0 +1,106 @@
+"""Conditions on a motion as text: ``theta = 0``, ``r < 1/10``, ``t = 0 mod 2*pi/Omega``, ``top: v = 0 falling``.
+
+    condition = [title ":"] expression ("=" | "<" | ">") expression ["mod" expression] ["rising" | "falling"]
+
+``a = b`` happens where a - b passes zero, ``a < b`` where it becomes negative, ``a > b`` where it becomes positive;
+``rising`` and ``falling`` keep one direction of ``=``.  With ``mod p`` it happens where a - b passes any multiple of p:
+an angle that goes round is not taken modulo 2*pi unless that is said.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from mbsym.expressions.parser import SpanOf, names_apart, parse_expression
+from mbsym.expressions.place import Complaints
+from mbsym.expressions.safe import quoted
+from mbsym.expressions.tree import CONSTANTS, Expression, Name, subtract, walk
+
+#: A condition has at most so many characters, its title so many.
+MAX_LENGTH, MAX_TITLE = 2_000, 64
+
+RISING, FALLING, BOTH = "rising", "falling", "both"
+
+_RELATION = re.compile(r"<=|>=|==|[=<>]")
+_WORD = re.compile(r"\b(mod|rising|falling)\b")
+_TITLE = re.compile(r"\s*[^\W\d][\w -]*\Z")
+_EXAMPLE = 'write for example "theta = 0", "r < 1/10", "theta = pi/2 mod 2*pi rising"'
+
+
+@dataclass(frozen=True)
+class Condition:
+    """``difference`` = left - right passes zero (or, with a ``period``, any multiple of it) in a ``direction``.
+
+    ``text`` is what was written; ``side`` is -1 for ``<``, 1 for ``>``, 0 for ``=``.
+    """
+
+    title: str
+    text: str
+    difference: Expression
+    side: int = 0
+    direction: str = BOTH
+    period: Expression | None = None
+
+
+def parse_condition(text: str, known: Collection[str], complaints: Complaints, span_of: SpanOf) -> Condition | None:
+    """The condition that a text is, or None with at least one complaint; names are looked up among ``known``."""
+    before = complaints.error_count
+    if len(text) > MAX_LENGTH:
+        complaints.error("too-long", f"a condition has at most {MAX_LENGTH} characters", span_of(0, 1))
+        return None
+    title, colon, _ = text.partition(":")
+    begin = len(title) + 1 if colon else 0
+    if colon and (not _TITLE.match(title) or len(title.strip()) > MAX_TITLE):
+        message = f"{quoted(title.strip())} is no title: letters, digits, _, - and blanks, {MAX_TITLE} at most"
+        complaints.error("bad-title", message, span_of(0, max(1, len(title))))
+    relations = list(_RELATION.finditer(text, begin))
+    if len(relations) != 1:
+        where = span_of(*relations[1].span()) if relations else span_of(begin, max(begin + 1, len(text)))
+        message = "more than one of = < >" if relations else "a condition has one of = < >"
+        complaints.error("bad-condition", message, where, _EXAMPLE)
+        return None
+    relation = relations[0]
+    words = list(_WORD.finditer(text, relation.end()))
+    end = words[0].start() if words else len(text)
+    left = _expression(text, begin, relation.start(), known, complaints, span_of)
+    right = _expression(text, relation.end(), end, known, complaints, span_of)
+    side = {"<": -1, ">": 1}.get(relation.group()[0], 0)
+    period, direction = None, {-1: FALLING, 0: BOTH, 1: RISING}[side]
+    for place, word in enumerate(words):
+        after = words[place + 1].start() if place + 1 < len(words) else len(text)
+        if word.group() == "mod" and place == 0:
+            period = _expression(text, word.end(), after, known, complaints, span_of)
+        elif word.group() == "mod" or text[word.end() : after].strip() or place + 1 < len(words):
+            complaints.error("bad-condition", f"{word.group()} does not stand here", span_of(*word.span()), _EXAMPLE)
+        elif side:
+            message = f"{relation.group()} says already that it is {direction}"
+            complaints.error("bad-condition", message, span_of(*word.span()), "rising and falling go with =")
+        else:
+            direction = word.group()
+    if complaints.error_count > before or left is None or right is None:
+        return None
+    written = text[begin:].strip()
+    return Condition(title.strip() if colon else written, written, subtract(left, right), side, direction, period)
+
+
+def _expression(
+    text: str, start: int, end: int, known: Collection[str], complaints: Complaints, span_of: SpanOf
+) -> Expression | None:
+    """One side, every name in it looked up."""
+
+    def place(first: int, last: int):  # type: ignore[no-untyped-def]
+        return span_of(start + first, start + last)
+
+    before = complaints.error_count
+    piece = text[start:end]
+    found = parse_expression(piece, complaints, place)
+    for node in walk(found) if found is not None else names_apart(piece, place, complaints.items):
+        if isinstance(node, Name) and node.name not in (*known, *CONSTANTS) and node.span is not None:
+            close = get_close_matches(node.name[:MAX_TITLE], sorted(known)[:200], n=1)
+            listed = ", ".join(sorted(known)[:20])
+            hint = f"did you mean '{close[0]}'?" if close else f"there are {listed}"
+            complaints.error("unknown-name", f"unknown name {quoted(node.name)}", node.span, hint)
+    return found if complaints.error_count == before else None
