@@ -10,7 +10,7 @@ Energy, pivots of the mass matrix and states at a breakdown are those of the who
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +19,9 @@ import numpy as np
 from mbsym.algebra.failures import Failure
 from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
+from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.runge_kutta import exact_number
+from mbsym.numerics.methods.stages import exact_number
 from mbsym.numerics.reduction import PROVED, Reduction, resting
 
 #: A coordinate that is accelerated by more than this part of the greatest acceleration is pushed.
@@ -112,10 +112,32 @@ class _Completing:
         self.traits = inner.traits
         self._inner, self._taken = inner, taken
 
-    def start(self, dynamics: Dynamics, setting: Setting, scalar: str = "float64") -> Run:
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
+    ) -> Run:
+        """Raises ValueError where ``initial`` moves what rests."""
         if dynamics is not self._taken.whole:
             raise ValueError("this method was made for the dynamics of another scenario")
-        return _Whole(self._inner.start(self._taken.dynamics, setting, scalar), self._taken)
+        inner = self._inner.start(self._taken.dynamics, setting, scalar)
+        found = _Whole(inner, self._taken)
+        if initial is not None or at:
+            found.restart(at, found.state if initial is None else initial)
+        return found
+
+
+@dataclass(frozen=True)
+class _Completion:
+    """Whole states (q, q'): the free ones at ``places``, the others as at the ``start``."""
+
+    places: tuple[int, ...]
+    start: Any
+
+    def __call__(self, free: Any) -> Any:
+        """One state, or states in columns."""
+        found = np.empty((len(self.start), *np.shape(free)[1:]), self.start.dtype)
+        found[...] = self.start.reshape(-1, *[1] * (found.ndim - 1))
+        found[list(self.places)] = free
+        return found
 
 
 class _Whole:
@@ -125,23 +147,42 @@ class _Whole:
         self._inner = inner
         self.work = inner.work
         places, start = taken.reduction.expanded(taken.whole.scenario)
-        self._places = list(places)
         dtype = np.asarray(inner.state).dtype
-        self._start = np.array([exact_number(x, dtype.type) for x in start], dtype)
-        self.time = inner.time
-        self.state = self._completed(inner.state)
+        self._completed = _Completion(places, np.array([exact_number(x, dtype.type) for x in start], dtype))
+        self._show()
+
+    def _show(self) -> None:
+        self.time, self.state = self._inner.time, self._completed(self._inner.state)
 
     def advance(self, until: float) -> Any:
-        try:
-            self.state = self._completed(self._inner.advance(until))
-        except Breakdown as found:
-            state = self._completed(found.state).astype(float)
-            raise Breakdown(found.kind, found.message, found.time, state) from None
-        self.time = self._inner.time
+        self._guarded(lambda: self._inner.advance(until))
+        self._show()
         return self.state
 
-    def _completed(self, free: Any) -> Any:
-        """(q, q') of the whole system from that of the free coordinates."""
-        state = self._start.copy()
-        state[self._places] = free
-        return state
+    def step(self, until: float | None = None) -> Piece:
+        piece: Piece = self._guarded(lambda: self._inner.step(until))
+        self._show()
+        curve, completed = piece.curve, self._completed
+        return Piece(piece.start, piece.end, lambda times: completed(curve(times)))
+
+    def fill(self, times: Any) -> Any:
+        found = self._guarded(lambda: self._inner.fill(times))
+        self._show()
+        return self._completed(found)
+
+    def restart(self, time: float, state: Any) -> None:
+        """Raises ValueError where a state moves what rests."""
+        given, places = np.asarray(state), list(self._completed.places)
+        if not np.array_equal(self._completed(given[places]), given.astype(self.state.dtype)):
+            raise ValueError("a state that moves what was taken out of the integration because it rests")
+        self._inner.restart(time, given[places])
+        self._show()
+
+    def _guarded(self, action: Callable[[], Any]) -> Any:
+        """Breakdowns show whole states."""
+        try:
+            return action()
+        except Breakdown as found:
+            state = self._completed(found.state).astype(float)
+            filled = None if found.filled is None else self._completed(found.filled)
+            raise Breakdown(found.kind, found.message, found.time, state, filled) from None

@@ -18,7 +18,7 @@ _WIDTH = {"float": 32, "double": 64, "x86_fp80": 80}
 _FLOAT = {"+": "fadd contract", "-": "fsub contract", "*": "fmul contract", "/": "fdiv contract"}
 _WHOLE = {"+": "add", "-": "sub", "*": "mul"}
 #: Comparisons that are false where an operand is not a number.
-_ORDERED = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge"}
+_ORDERED = {"<": "olt", "<=": "ole", ">": "ogt", ">=": "oge", "==": "oeq"}
 _SIGNED = {"<": "slt", "<=": "sle", ">": "sgt", ">=": "sge", "==": "eq", "!=": "ne"}
 
 #: Loops of so few rounds are written out.

@@ -6,6 +6,7 @@ The stiff ones get the exact Jacobian, by differentiating the program.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.stepping import Stepping
 
 #: SciPy warns below this relative tolerance and takes it instead.
 LEAST_TOLERANCE = 2.3e-14
@@ -32,16 +34,14 @@ LEAST_TOLERANCE = 2.3e-14
 FIRST_STEP = 1e-6
 
 
-class LibraryRun:
+class LibraryRun(Stepping):
     """Steps of an ``OdeSolver``; times between steps come from its dense output."""
 
-    def __init__(self, method: Library, dynamics: Dynamics, setting: Setting) -> None:
+    def __init__(self, method: Library, dynamics: Dynamics, setting: Setting, initial: Any, at: float) -> None:
         self._rhs_kernel = compiled_kernel(dynamics, "right_hand_side")
         self._limit = setting.step_limit
         self._n = 2 * dynamics.size
         self.work = Work()
-        self.time = 0.0
-        self.state = np.array([float(x) for x in dynamics.scenario.state])
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE), "atol": tolerance}
         if setting.longest is not None:
@@ -49,12 +49,34 @@ class LibraryRun:
         if method.traits.implicit:
             self._jacobian_kernel = compiled_kernel(dynamics, "jacobian")
             self._options["jac"] = self._jacobian
-        if method.traits.name == "lsoda" and not np.any(self._rhs_kernel(np.concatenate(([0.0], self.state)))):
-            # Where everything rests at first, ODEPACK takes the whole time, here without end, for its first step.
-            self._options["first_step"] = FIRST_STEP
-        self._make = method.solver
+        self._method = method
+        self.restart(at, initial)
+
+    def restart(self, time: float, state: Any) -> None:
+        """Go on from another state; the solver is made anew when it is first needed."""
+        self.time, self.state = float(time), np.array(state, dtype=float)
+        self._first = self.time, self.state
         self._solver: Any = None
         self._dense: Any = None
+
+    @property
+    def reached(self) -> float:
+        """Where the solver is."""
+        return self._first[0] if self._solver is None else float(self._solver.t)
+
+    @property
+    def end(self) -> Any:
+        """Its state."""
+        return self._first[1] if self._solver is None else self._solver.y
+
+    def _made(self) -> Any:
+        """The solver, which looks at the right-hand side as soon as it is made."""
+        time, state = self._first
+        options = dict(self._options)
+        if self._method.traits.name == "lsoda" and not np.any(self._rhs_kernel(np.concatenate(([time], state)))):
+            # Where everything rests at first, ODEPACK takes the whole time, here without end, for its first step.
+            options["first_step"] = FIRST_STEP
+        return self._guarded(lambda: self._method.solver(self._rhs, time, state, np.inf, **options))
 
     def _rhs(self, t: float, x: Any) -> Any:
         self.work.evaluations += 1
@@ -64,23 +86,36 @@ class LibraryRun:
         self.work.jacobians += 1
         return self._jacobian_kernel(np.concatenate(([t], x))).reshape(self._n, self._n)
 
-    def advance(self, until: float) -> Any:
+    def curve(self) -> Callable[[Any], Any]:
+        """The solver's dense output of its last step; the state alone where there was none."""
+        if self._solver is None or self._solver.t_old is None:
+            state = self._first[1]
+            return lambda times: np.repeat(state[:, None], len(times), axis=1)
+        if self._dense is None:
+            with np.errstate(all="ignore"):
+                self._dense = self._solver.dense_output()
+        found: Callable[[Any], Any] = self._dense
+        return found
+
+    def one(self, until: float | None = None) -> None:
+        """One step of the solver."""
+        if self.work.steps >= self._limit:
+            raise self._fail(STEP_LIMIT, f"{self.work.steps} steps")
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if self._solver is None:
-                self._solver = self._guarded(lambda: self._make(self._rhs, 0.0, self.state, np.inf, **self._options))
-            solver = self._solver
-            while solver.t < until:
-                self._step(solver)
-            if self._dense is None and self.work.steps:
-                self._dense = solver.dense_output()
-        self.time = until
-        self.state = np.array(solver.y) if until == solver.t or self._dense is None else self._dense(until)
-        return self.state
+                self._solver = self._made()
+            self._bounded(np.inf if until is None else float(until))
+            self._step(self._solver)
+
+    def _bounded(self, until: float) -> None:
+        """The solver's steps end at ``until`` at the latest."""
+        solver = self._solver
+        solver.t_bound, solver.status = until, "running"
+        if self._method.traits.name == "lsoda":
+            solver._lsoda_solver._integrator.rwork[0] = until  # ODEPACK's tcrit
 
     def _step(self, solver: Any) -> None:
-        if self.work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, f"{self.work.steps} steps")
         time, state = solver.t, np.array(solver.y)
         message = self._guarded(solver.step)
         self.work.steps += 1
@@ -100,7 +135,7 @@ class LibraryRun:
 
     def _fail(self, kind: str, message: str) -> Breakdown:
         if self._solver is None:
-            return Breakdown(kind, message, self.time, self.state)
+            return Breakdown(kind, message, *self._first)
         return Breakdown(kind, message, float(self._solver.t), np.array(self._solver.y, dtype=float))
 
 
@@ -119,11 +154,14 @@ class Library:
 
         return getattr(integrate, self._solver)
 
-    def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> LibraryRun:
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
+    ) -> LibraryRun:
         """A run in float64.  Raises Unusable for another arithmetic."""
         if scalar != FLOAT64:
             raise Unusable(f"{self.traits.name} runs in float64 only")
-        return LibraryRun(self, dynamics, setting)
+        state = [float(x) for x in dynamics.scenario.state] if initial is None else initial
+        return LibraryRun(self, dynamics, setting, state, at)
 
 
 METHODS = (

@@ -23,23 +23,22 @@ from __future__ import annotations
 
 import ctypes
 import re
-from collections.abc import Sequence
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, isfinite
+from math import isfinite
 from typing import Any
 
 import numpy as np
 from flint import arb, ctx
 
-from mbsym.algebra.derivative import jacobian
-from mbsym.algebra.program import Node
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
-from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
-from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.kernels.llvm import SCALARS, Library, available, compiled
+from mbsym.numerics.kernels.writer import clock_kind
 from mbsym.numerics.methods.interface import (
     BLOW_UP,
     STEP_LIMIT,
@@ -51,282 +50,262 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel, once
-from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME, add_compensated, address, initial_state
+from mbsym.numerics.methods.midpoint_code import (
+    ITERATIONS,
+    JACOBIANS,
+    MOST_ITERATIONS,
+    NOT_FINITE,
+    NUMBER,
+    START,
+    STEP,
+    TROUBLE,
+    codes,
+    midpoint_text,
+    record_text,
+)
+from mbsym.numerics.methods.nested import Nested, hermite
+from mbsym.numerics.methods.runge_kutta import MISSED, OPERATIONS_AT_A_TIME
+from mbsym.numerics.methods.stages import address, clock_dtype, initial_state
+from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.scenario import PRECISION, rounded
-from mbsym.numerics.specialise import Specialised, substituted
-
-#: Newton's method needs four or five iterations; more than this and the step is too long.
-MOST_ITERATIONS = 40
-
-START, STEP, LARGEST_RATE = range(3)
-ITERATIONS, JACOBIANS, TROUBLE = range(3)
-NO_SOLUTION, NOT_FINITE = 1, 2
 
 
-@dataclass(frozen=True)
-class Codes:
-    """``newton``: residual and its Jacobian by v; ``residual`` alone; ``force``: L_q.  Inputs (t, h, q0, v, p0)."""
+class MidpointRun(Stepping):
+    """Steps of one length in (q, p); states between them by the polynomial that fits q, q' and q'' at both ends."""
 
-    newton: Code
-    residual: Code
-    force: Code
-
-
-def codes(dynamics: Dynamics) -> Codes:
-    """The midpoint rule's equation as straight-line code."""
-    names = dynamics.system.coordinates
-    fresh = Specialised()
-    time, step = fresh.input("time"), fresh.input("step")
-    positions = [fresh.input(f"q {i}") for i in range(len(names))]
-    rates = [fresh.input(f"v {i}") for i in range(len(names))]
-    momenta = [fresh.input(f"p {i}") for i in range(len(names))]
-    half = fresh.number(Fraction(1, 2))
-    middle = half * step
-    with ctx.workprec(PRECISION):
-        bound: dict[str, Node] = {"pi": fresh.number(rounded(arb.pi())), "t": time + middle}
-    for name, velocity, q, v in zip(names, dynamics.system.velocities, positions, rates, strict=True):
-        bound[name], bound[velocity] = q + middle * v, v
-    fresh.bound = bound
-    program = dynamics.momenta.program
-    outputs = [*dynamics.momenta.outputs, *dynamics.momentum_rates.outputs]
-    found = substituted(program, outputs, fresh)
-    impulses, forces = found[: len(names)], found[len(names) :]
-    residual = [a - middle * b - p for a, b, p in zip(impulses, forces, momenta, strict=True)]
-    rows = jacobian(fresh, residual, rates)
-    inputs = ("time", "step", *(f"{letter} {i}" for letter in "qvp" for i in range(len(names))))
-    return Codes(
-        newton=Code(fresh, inputs, (*residual, *(entry for row in rows for entry in row))),
-        residual=Code(fresh, inputs, tuple(residual)),
-        force=Code(fresh, inputs, tuple(forces)),
-    )
-
-
-def midpoint_text(size: int, fractions: Sequence[Fraction], scalar: Scalar) -> str:
-    """``i64 @midpoint(x, carry, guess, clock, count, first, last)``: steps of an interval; how many were made.
-
-    ``x`` holds (q, p), ``guess`` the last two midpoint rates (v, then the one before).
-    """
-    names = ("x", "carry", "guess", "clock", "count")
-    f = Function("midpoint", [(name, POINTER) for name in names] + [("first", INTEGER), ("last", INTEGER)])
-    clock = clock_kind(scalar)
-    start, step = f.load(clock, f["clock"], START), f.load(clock, f["clock"], STEP)
-    with f.repeat(f["last"], f["first"]) as number:
-        base = start + number.converted(clock) * step
-        past = Fraction(0)
-        for place, share in enumerate(fractions):
-            # Midpoints lie (g_i + g_i-1) h / 2 apart; v is continued linearly where that is no wild extrapolation.
-            previous, earlier = (fractions[(place - back) % len(fractions)] for back in (1, 2))
-            ahead, behind = (share + previous) / 2, (previous + earlier) / 2
-            slope = ahead / behind if behind and abs(ahead) <= 2 * abs(behind) else Fraction(0)
-            times = (base + step * past, step * share, f.number(slope, clock))
-            past += share
-            trouble = f.call("substep", INTEGER, *(f[name] for name in names), *times)
-            good, bad = f.label(), f.label()
-            f.branch(trouble.compare("==", 0), good, bad)
-            f.place(bad)
-            f.store(trouble, INTEGER, f["count"], TROUBLE)
-            f.leave(number - f["first"])
-            f.place(good)
-    f.leave(f["last"] - f["first"])
-    return _substep_text(size, scalar) + f.text()
-
-
-def _substep_text(size: int, scalar: Scalar) -> str:
-    """``i64 @substep(x, carry, guess, clock, count, time, h, slope)``: one midpoint step; 0, or what went wrong."""
-    kind, clock = scalar.type, clock_kind(scalar)
-    names = ("x", "carry", "guess", "clock", "count")
-    f = Function("substep", [(name, POINTER) for name in names] + [(name, clock) for name in ("time", "h", "slope")])
-    x, guess, count, h = f["x"], f["guess"], f["count"], f["h"]
-    argument = f.slot(kind, 2 + 3 * size)
-    result = f.slot(kind, size + size * size)
-    change, largest, before, total = f.slot(kind), f.slot(kind), f.slot(kind), f.slot(kind)
-    rounds = f.slot(INTEGER)
-    rates = f.at(kind, argument, 2 + size)
-    matrix = f.at(kind, result, size)
-    eps = Fraction(float(np.finfo(scalar.dtype).eps))
-
-    f.store(f["time"].converted(kind), kind, argument, 0)
-    f.store(h.converted(kind), kind, argument, 1)
-    slope = f["slope"].converted(kind)
-    with f.repeat(size) as i:
-        f.store(f.load(kind, x, i), kind, argument, i + 2)
-        f.store(f.load(kind, x, i + size), kind, argument, i + (2 + 2 * size))
-        latest = f.load(kind, guess, i)
-        f.store(latest + (latest - f.load(kind, guess, i + size)) * slope, kind, rates, i)
-    f.do("newton", argument, result)
-    f.store(f.load(INTEGER, count, JACOBIANS) + 1, INTEGER, count, JACOBIANS)
-    _factorise(f, kind, matrix, size)
-    f.store(0, INTEGER, rounds)
-    f.store(Fraction(10) ** 30, kind, before)
-    again, done, more, failed, next_one = (f.label() for _ in range(5))
-    f.jump(again)
-
-    f.place(again)
-    _solve(f, kind, matrix, result, size)
-    f.store(0, kind, change)
-    f.store(f.load(clock, f["clock"], LARGEST_RATE).converted(kind), kind, largest)
-    with f.repeat(size) as i:
-        correction = f.load(kind, result, i)
-        v = f.load(kind, rates, i) - correction
-        f.store(v, kind, rates, i)
-        _raise_to(f, kind, change, correction.absolute())
-        _raise_to(f, kind, largest, v.absolute())
-    f.store(f.load(kind, largest).converted(clock), clock, f["clock"], LARGEST_RATE)
-    moved, scale = f.load(kind, change), f.load(kind, largest)
-    f.store(f.load(INTEGER, rounds) + 1, INTEGER, rounds)
-    f.store(f.load(INTEGER, count, ITERATIONS) + 1, INTEGER, count, ITERATIONS)
-    # As small as can be, or small and no longer decreasing: roundoff has been reached.
-    small = moved.compare("<=", scale * (eps / 4))
-    still = moved.compare("<=", scale * (eps * 4096)) & moved.compare(">=", f.load(kind, before) * Fraction(1, 4))
-    f.store(moved, kind, before)
-    f.branch(small | still, done, more)
-    f.place(more)
-    f.branch(f.load(INTEGER, rounds).compare(">=", MOST_ITERATIONS), failed, next_one)
-    f.place(next_one)
-    f.do("residual", argument, result)
-    f.jump(again)
-    f.place(failed)
-    f.leave(NO_SOLUTION)
-
-    f.place(done)
-    f.do("force", argument, result)
-    width = h.converted(kind)
-    f.store(0, kind, total)
-    with f.repeat(size) as i:
-        v = f.load(kind, rates, i)
-        f.store(f.load(kind, guess, i), kind, guess, i + size)
-        f.store(v, kind, guess, i)
-        q = add_compensated(f, kind, x, f["carry"], i, width * v)
-        p = add_compensated(f, kind, x, f["carry"], i + size, width * f.load(kind, result, i))
-        f.store(f.load(kind, total) + ((q - q) + (p - p)), kind, total)
-    finite = f.load(kind, total).compare("<=", 0)
-    f.leave(finite.choose(f.number(0, INTEGER), f.number(NOT_FINITE, INTEGER)))
-    return f.text()
-
-
-def _raise_to(f: Function, kind: str, place: Value, value: Value) -> None:
-    """place <- max(place, value)."""
-    now = f.load(kind, place)
-    f.store(value.compare(">", now).choose(value, now), kind, place)
-
-
-def _factorise(f: Function, kind: str, matrix: Value, size: int) -> None:
-    """matrix <- its L U factors.
-
-    No pivots are exchanged: the symmetric part of the matrix is M - O(h^2), which is positive definite for every step
-    that is not far too long.
-    """
-    with f.repeat(size) as k:
-        inverse = 1 / f.load(kind, matrix, k * (size + 1))
-        with f.repeat(size, k + 1) as i:
-            factor = f.load(kind, matrix, i * size + k) * inverse
-            f.store(factor, kind, matrix, i * size + k)
-            with f.repeat(size, k + 1) as j:
-                entry = f.load(kind, matrix, i * size + j) - factor * f.load(kind, matrix, k * size + j)
-                f.store(entry, kind, matrix, i * size + j)
-
-
-def _solve(f: Function, kind: str, matrix: Value, vector: Value, size: int) -> None:
-    """vector <- (L U)^-1 vector."""
-    with f.repeat(size) as i, f.repeat(i) as j:
-        entry = f.load(kind, vector, i) - f.load(kind, matrix, i * size + j) * f.load(kind, vector, j)
-        f.store(entry, kind, vector, i)
-    with f.repeat(size) as back:
-        i = (size - 1) - back
-        with f.repeat(size, i + 1) as j:
-            entry = f.load(kind, vector, i) - f.load(kind, matrix, i * size + j) * f.load(kind, vector, j)
-            f.store(entry, kind, vector, i)
-        f.store(f.load(kind, vector, i) / f.load(kind, matrix, i * (size + 1)), kind, vector, i)
-
-
-class MidpointRun:
-    """Steps of one length, shortened so that they end at the times asked for."""
-
-    def __init__(self, dynamics: Dynamics, method: Symplectic, setting: Setting, scalar: str) -> None:
+    def __init__(
+        self, dynamics: Dynamics, method: Symplectic, setting: Setting, scalar: str, initial: Any, at: float
+    ) -> None:
         if setting.step is None or not (isfinite(setting.step) and setting.step > 0):
             raise Unusable(f"{method.name} needs a step (--step)")
-        self.dynamics, self.step, self.limit, self.scalar = dynamics, setting.step, setting.step_limit, scalar
+        self.limit = setting.step_limit
         n = self.n = dynamics.size
         chosen = SCALARS[scalar]
-        self.dtype = chosen.dtype
+        self.dtype, self._clock_type = chosen.dtype, clock_dtype(clock_kind(chosen))
         self._library = library = _driver(dynamics, method, scalar)
         pointer, whole = ctypes.c_void_p, ctypes.c_int64
         self._midpoint = library.function("midpoint", *[pointer] * 5, whole, whole, result=whole)
-        self.state = initial_state(dynamics, self.dtype)
-        self.time = 0.0
+        self._record = library.function("record", *[pointer] * 7, whole, whole, result=whole)
+        self._kernels = {
+            name: compiled_kernel(dynamics, name, scalar) for name in ("momenta", "mass_matrix", "right_hand_side")
+        }
+        self.step_length = self._clock_type(setting.step)
         self.work = Work()
-        self._momenta = compiled_kernel(dynamics, "momenta", scalar)
-        self._mass = compiled_kernel(dynamics, "mass_matrix", scalar)
-        momenta = self._momenta(np.concatenate(([self.dtype(0)], self.state)))
-        self.x = np.concatenate((self.state[:n], momenta))
-        self.carry = np.zeros(2 * n, self.dtype)
-        self.guess = np.concatenate((self.state[n:], self.state[n:]))
-        self._clock_type: Any = np.longdouble if clock_kind(chosen) == "x86_fp80" else np.float64
+        self.x, self.carry, self.guess = (np.zeros(2 * n, self.dtype) for _ in range(3))
         self.clock = np.zeros(3, self._clock_type)
-        self.count = np.zeros(3, np.int64)
+        self.count = np.zeros(4, np.int64)
         arrays = (self.x, self.carry, self.guess, self.clock, self.count)
         self._pointers = tuple(address(array) for array in arrays)
-        code = dynamics.right_hand_side
-        self._stages = len(method.fractions)
-        self._at_once = max(1, OPERATIONS_AT_A_TIME // (self._stages * (10 * code.operations + n**3 + 100)))
+        operations = 10 * dynamics.right_hand_side.operations + n**3 + 100
+        self._at_once = max(1, OPERATIONS_AT_A_TIME // (len(method.fractions) * operations))
+        self.restart(at, initial)
+
+    def restart(self, time: float, state: Any) -> None:
+        """Go on from another state."""
+        n = self.n
+        given = np.array(state, self.dtype)
+        self._rebased(time, self.step_length)
+        self.x[:n], self.x[n:] = given[:n], self._kernels["momenta"](np.concatenate(([self.dtype(time)], given)))
+        self.carry[:] = 0
+        self.guess[:n] = self.guess[n:] = given[n:]
+        self._before: tuple[Any, Any] | None = None
+        self.time, self.state = self.reached, given
+
+    def _rebased(self, time: Any, length: Any) -> None:
+        """Steps of a length are counted from here."""
+        self.clock[START], self.clock[STEP], self.count[NUMBER] = time, length, 0
+
+    @property
+    def reached(self) -> Any:
+        """The end of the last step."""
+        found = self.clock[START] + self._clock_type(self.count[NUMBER]) * self.clock[STEP]
+        return found if self._clock_type is np.longdouble else float(found)
+
+    @property
+    def end(self) -> Any:
+        """The state there; as it was given, before the first step."""
+        if self._before is None:
+            return self.state
+        return self._shown(np.array([self.reached]), self.x[:, None])[:, 0]
+
+    def curve(self) -> Callable[[Any], Any]:
+        """The polynomial of the last step."""
+        if self._before is None:
+            state = np.array(self.state)
+            return lambda times: np.repeat(state[:, None], len(times), axis=1)
+        (start, kept), end = self._before, self.reached
+        times = np.array([start, end])
+        return self._between(times, np.column_stack((kept, np.concatenate((self.x, self.carry)))), [0], [1])
+
+    def _between(self, times: Any, kept: Any, begin: Any, end: Any) -> Nested:
+        """Dense output between pairs of ``times`` at which (x, carry) is ``kept``."""
+        n = self.n
+        shown = self._shown(times, kept[: 2 * n])
+        with np.errstate(all="ignore"):
+            rates = self._kernels["right_hand_side"](np.vstack([times.astype(self.dtype), shown]))
+            length = (times[end] - times[begin]).astype(self.dtype)
+            change = shown[:, end] - shown[:, begin]
+            change[:n] -= kept[2 * n : 3 * n, end] - kept[2 * n : 3 * n, begin]
+            terms = hermite(length, change, rates[:, begin], rates[:, end])
+        return Nested(times[begin], times[end] - times[begin], times[end], shown[:, begin], shown[:, end], terms)
+
+    def one(self, until: float | None = None) -> None:
+        """A step of the length asked for; a shorter one where it would lead beyond ``until``."""
+        now = self.reached
+        room = np.inf if until is None else until - now
+        kept = now, np.concatenate((self.x, self.carry))
+        if room > self.clock[STEP] * (1 + MISSED):
+            self._march(int(self.count[NUMBER]) + 1)
+        else:
+            self._rebased(now, room)
+            try:
+                self._march(1)
+                self._rebased(until, self.step_length)
+            except Breakdown:
+                self._rebased(now, self.step_length)
+                raise
+        self._before = kept
+
+    def _number(self, times: Any) -> Any:
+        """The steps at whose ends, or in which, times lie."""
+        passed = (np.asarray(times) - self.clock[START]) / self.clock[STEP]
+        return np.maximum(np.ceil(passed - MISSED), 0).astype(np.int64)
+
+    def far(self, until: float) -> None:
+        """Steps until ``until`` is reached or passed; the last one keeps its ends."""
+        goal = int(self._number(until))
+        if goal > self.count[NUMBER]:
+            self._march(goal - 1)
+            self.one()
+
+    def _march(self, goal: int) -> None:
+        """Steps up to a number."""
+        while self.count[NUMBER] < goal:
+            first, now = int(self.count[NUMBER]), float(self.reached)
+            if self.work.steps >= self.limit:
+                raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", now, np.array(self.end, dtype=float))
+            before = self.x.copy()
+            last = min(goal, first + min(self._at_once, self.limit - self.work.steps))
+            self._counted(first, self._midpoint(*self._pointers, first, last))
+            if self.count[NUMBER] < last:
+                self._fail(before)
+
+    def _counted(self, first: int, made: int) -> None:
+        self.count[NUMBER] = first + made
+        self.work.steps += made
+        self.work.evaluations, self.work.jacobians = int(self.count[ITERATIONS]), int(self.count[JACOBIANS])
 
     def advance(self, until: float) -> Any:
-        length = until - self.time
-        if length <= 0:
-            return self.state
-        count = max(1, ceil(length / self.step * (1 - 1e-9)))
-        step: Any = self._clock_type(length) / count
-        self.clock[START], self.clock[STEP] = self.time, step
-        done = 0
-        while done < count:
-            now = self.time + done * float(step)
-            if self.work.steps >= self.limit:
-                raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", now, self._state(now))
-            before = self.x.copy()
-            last = min(count, done + min(self._at_once, self.limit - self.work.steps))
-            made = self._midpoint(*self._pointers, done, last)
-            self.work.steps += made
-            self.work.evaluations, self.work.jacobians = int(self.count[0]), int(self.count[1])
-            if made < last - done:
-                now += made * float(step)
-                self._fail(now, float(step), before)
-            done = last
-        self.time = until
-        self.state = self._state(until)
-        return self.state
+        """The state at ``until``: a row."""
+        return self.fill(np.array([until]))[:, 0]
 
-    def _fail(self, now: float, step: float, before: Any) -> None:
+    def fill(self, times: Any) -> Any:
+        """The states (2n, m) at m increasing times: steps in machine code, what is shown of them all at once."""
+        at = np.asarray(times, dtype=self._clock_type)
+        if not len(at):
+            return np.empty((2 * self.n, 0), self.dtype)
+        number = self._number(at)
+        early = int(np.searchsorted(number, self.count[NUMBER], side="right"))  # rows of the step that is made already
+        head = self.states(at[:early]) if early else np.empty((2 * self.n, 0), self.dtype)
+        if early < len(at):
+            found = np.hstack((head, self._later(at[early:], number[early:], head)))
+        else:
+            found = head
+        self.time, self.state = times[-1], found[:, -1].copy()
+        return found
+
+    def _later(self, at: Any, number: Any, head: Any) -> Any:
+        """Rows that steps must be made for; raises Breakdown with ``head`` and those that there are."""
+        exact = self.clock[START] + number.astype(self._clock_type) * self.clock[STEP] == at
+        marks = np.unique(np.concatenate((number, number[~exact] - 1, number[-1:] - 1)))
+        kept = np.empty((len(marks), 4 * self.n), self.dtype)
+        moments = self.clock[START] + marks.astype(self._clock_type) * self.clock[STEP]
+        trouble = None
+        try:
+            self._marked(marks, kept)
+            self._before = moments[-2], kept[-2].copy()
+        except Breakdown as found:
+            trouble = found
+        whole = int(np.searchsorted(number, self.count[NUMBER], side="right"))
+        rows = self._rows(at[:whole], exact[:whole], number[:whole], marks, moments, kept.T)
+        if trouble is not None:
+            trouble.filled = np.hstack((head, rows))
+            raise trouble
+        return rows
+
+    def _marked(self, marks: Any, kept: Any) -> None:
+        """Steps to the numbers in ``marks``, at each of which (x, carry) is kept."""
+        pointers = (*self._pointers, address(marks), address(kept))
+        done = 0
+        while done < len(marks):
+            first = int(self.count[NUMBER])
+            near = first + min(self._at_once, self.limit - self.work.steps)
+            last = int(np.searchsorted(marks, near, side="right"))
+            if last <= done:
+                self._march(min(int(marks[done]), first + self._at_once))
+                continue
+            before = self.x.copy()
+            done = self._record(*pointers, done, last)
+            self._counted(first, int(self.count[NUMBER]) - first)
+            if done < last:
+                self._fail(before)
+
+    def _rows(self, at: Any, exact: Any, number: Any, marks: Any, moments: Any, kept: Any) -> Any:
+        """States at times of which ``number`` is the step that they lie in, or end."""
+        found = np.empty((2 * self.n, len(at)), self.dtype)
+        ends = np.searchsorted(marks, number)
+        found[:, exact] = self._shown(moments[ends[exact]], kept[: 2 * self.n, ends[exact]])
+        if not np.all(exact):
+            used = slice(0, int(ends[-1]) + 1)
+            begins, between = np.searchsorted(marks, number[~exact] - 1), ends[~exact]
+            found[:, ~exact] = self._between(moments[used], kept[:, used], begins, between)(at[~exact])
+        return found
+
+    def _fail(self, before: Any) -> None:
+        now = float(self.reached)
         finite = bool(np.all(np.isfinite(self.x)))
-        state = self._state(now) if finite else np.where(np.isfinite(before), before, 0.0)
+        known = self._shown(np.array([self.reached]), self.x[:, None])[:, 0] if finite else None
+        state = known if known is not None else np.where(np.isfinite(before), before, 0.0)
         if self.count[TROUBLE] == NOT_FINITE or not finite:
             raise Breakdown(BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
         message = (
-            f"the implicit equation has no solution within {MOST_ITERATIONS} iterations; h = {step:.3g} is too long"
+            f"the implicit equation has no solution within {MOST_ITERATIONS} iterations; "
+            f"h = {float(self.clock[STEP]):.3g} is too long"
         )
         raise Breakdown(STUCK, message, now, np.array(state, dtype=float))
 
-    def _state(self, time: float) -> Any:
-        """(q, q') with M q' = p - p at q' = 0."""
-        n = self.n
-        still = np.concatenate(([self.dtype(time)], self.x[:n], np.zeros(n, self.dtype)))
-        matrix = self._mass(still).reshape(n, n)
-        moments = self.x[n:] - self._momenta(still)
+    def _shown(self, times: Any, x: Any) -> Any:
+        """(q, q') in columns of (q, p) in columns: M q' = p - p at q' = 0."""
+        n, m = self.n, len(times)
+        still = np.vstack([times.astype(self.dtype), x[:n], np.zeros((n, m), self.dtype)])
         with np.errstate(all="ignore"):
-            try:
-                rates = np.linalg.solve(matrix.astype(float), moments.astype(float)).astype(self.dtype)
-                if self.dtype is np.longdouble:  # one step of refinement gives the digits that float64 lacks
-                    for _ in range(2):
-                        defect = (moments - matrix @ rates).astype(float)
-                        rates = rates + np.linalg.solve(matrix.astype(float), defect)
-            except np.linalg.LinAlgError:
-                rates = np.full(n, np.nan, self.dtype)
-        return np.concatenate((self.x[:n], rates))
+            matrices = np.ascontiguousarray(self._kernels["mass_matrix"](still).T).reshape(m, n, n)
+            moments = (x[n:] - self._kernels["momenta"](still)).T[:, :, None]
+            rates = _solved(matrices, moments).astype(self.dtype)
+            if self.dtype is np.longdouble:  # two steps of refinement give the digits that float64 lacks
+                for _ in range(2):
+                    rates = rates + _solved(matrices, moments - matrices @ rates)
+        return np.vstack([x[:n], rates[:, :, 0].T])
+
+
+def _solved(matrices: Any, vectors: Any) -> Any:
+    """M^-1 v for each of them, in float64; not a number where M is singular."""
+    matrices, vectors = matrices.astype(float), vectors.astype(float)
+    try:
+        return np.linalg.solve(matrices, vectors)
+    except np.linalg.LinAlgError:
+        found = np.full(vectors.shape, np.nan)
+        for place, (matrix, vector) in enumerate(zip(matrices, vectors, strict=True)):
+            with suppress(np.linalg.LinAlgError):
+                found[place] = np.linalg.solve(matrix, vector)
+        return found
 
 
 def _driver(dynamics: Dynamics, method: Symplectic, scalar: str) -> Library:
     def make() -> Library:
         found = once(dynamics, "midpoint codes", lambda: codes(dynamics))
-        text = midpoint_text(dynamics.size, method.fractions, SCALARS[scalar])
+        chosen = SCALARS[scalar]
+        text = midpoint_text(dynamics.size, method.fractions, chosen) + record_text(dynamics.size, chosen)
         named = {"newton": found.newton, "residual": found.residual, "force": found.force}
         return compiled(named, scalar, text, many=False)
 
@@ -364,7 +343,9 @@ class Symplectic:
             conservative=True,
         )
 
-    def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> MidpointRun:
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
+    ) -> MidpointRun:
         """A run in (q, p).  Raises Unusable where a load has no force function."""
         loads = without_potential(dynamics.system)
         if loads:
@@ -373,7 +354,8 @@ class Symplectic:
             )
         if not available(scalar) or scalar not in self.traits.scalars:
             raise Unusable(f"{self.name} does not run in {scalar} here")
-        return MidpointRun(dynamics, self, setting, scalar)
+        state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial
+        return MidpointRun(dynamics, self, setting, scalar, state, at)
 
 
 def _suzuki() -> tuple[Fraction, ...]:

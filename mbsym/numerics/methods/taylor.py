@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -31,7 +32,8 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import once
-from mbsym.numerics.methods.runge_kutta import exact_number, initial_state
+from mbsym.numerics.methods.stages import exact_number, initial_state
+from mbsym.numerics.methods.stepping import Stepping
 
 #: Beyond so many operations heyoka is told to compile loops instead of straight code, which is slower to run.
 STRAIGHT = 100
@@ -106,38 +108,76 @@ def _integrator(dynamics: Dynamics, tolerance: float, scalar: str) -> Any:
     return copy.deepcopy(once(dynamics, ("taylor", tolerance, scalar), make))
 
 
-class TaylorRun:
+@dataclass(frozen=True)
+class Series:
+    """sum_k c_k (t - start)^k, ``coefficients`` of shape (2n, order + 1); at ``reached`` it is ``arrived``."""
+
+    start: Any
+    reached: Any
+    arrived: Any
+    coefficients: Any
+
+    def __call__(self, times: Any) -> Any:
+        """The states (2n, m) at m times."""
+        at = np.asarray(times)
+        share = at - self.start
+        total = np.zeros((len(self.arrived), len(at)), self.coefficients.dtype)
+        for column in self.coefficients.T[::-1]:
+            total = total * share + column[:, None]
+        return np.where(at == self.reached, self.arrived[:, None], total)
+
+
+class TaylorRun(Stepping):
     """Steps of a ``taylor_adaptive``."""
 
-    def __init__(self, dynamics: Dynamics, setting: Setting, scalar: str) -> None:
+    def __init__(self, dynamics: Dynamics, setting: Setting, scalar: str, initial: Any, at: float) -> None:
         smallest = float(np.finfo(SCALARS[scalar].dtype).eps)
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._heyoka = _heyoka()
         self._taylor = _integrator(dynamics, min(max(tolerance, smallest), 1e-2), scalar)
         outcomes = self._heyoka.taylor_outcome
         self._success, self._pauses = outcomes.success, (outcomes.success, outcomes.step_limit, outcomes.time_limit)
+        self._bounded = outcomes.time_limit
         self._least = smallest
         self._dtype = SCALARS[scalar].dtype
         self._limit = setting.step_limit
         self.order: int = self._taylor.order
         self.work = Work()
-        self.time = 0.0
-        self.state = np.array(self._taylor.state)
+        self.restart(at, self._taylor.state if initial is None else initial)
 
-    def advance(self, until: float) -> Any:
+    def restart(self, time: float, state: Any) -> None:
+        """Go on from another state."""
+        self._taylor.time = self._dtype(time)
+        self._taylor.state[:] = state
+        self._start: Any = None
+        self.time, self.state = self.reached, np.array(self._taylor.state)
+
+    @property
+    def reached(self) -> Any:
+        """Where heyoka is."""
+        return self._taylor.time
+
+    @property
+    def end(self) -> Any:
+        """Its state."""
+        return self._taylor.state
+
+    def curve(self) -> Callable[[Any], Any]:
+        """The series of the last step."""
+        arrived = np.array(self._taylor.state)
+        if self._start is None:
+            return Series(self.reached, self.reached, arrived, arrived[:, None])
+        return Series(self._start, self.reached, arrived, np.array(self._taylor.tc))
+
+    def far(self, until: float) -> None:
+        """Steps until ``until`` is reached or passed; the last one keeps its series."""
         taylor = self._taylor
-        if taylor.time < until and not self.work.steps:
-            self._one()
+        if taylor.time < until and self._start is None:
+            self.one()
         if taylor.time < until:
             self._far(until)
         while taylor.time < until:
-            self._one()
-        self.time = until
-        if taylor.time == until or not self.work.steps:
-            self.state = np.array(taylor.state)
-        else:
-            self.state = np.array(taylor.update_d_output(self._dtype(until)))
-        return self.state
+            self.one()
 
     def _far(self, until: float) -> None:
         """Most of a long way in heyoka's own loop, which is quicker than ours but shortens its last step."""
@@ -156,16 +196,21 @@ class TaylorRun:
             work.steps += int(made)
             work.evaluations += self.order * int(made)
 
-    def _one(self) -> None:
+    def one(self, until: float | None = None) -> None:
         """One step that keeps its series."""
         taylor, work = self._taylor, self.work
         if work.steps >= self._limit:
             raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
         now, before = taylor.time, np.array(taylor.state)
-        outcome, step = taylor.step(write_tc=True)
+        room = None if until is None else self._dtype(until) - now
+        outcome, step = taylor.step(write_tc=True) if room is None else taylor.step(room, write_tc=True)
         work.steps += 1
         work.evaluations += self.order
-        self._judge(outcome != self._success, step, now, before)
+        if outcome == self._bounded:
+            taylor.time = self._dtype(until)
+        else:
+            self._judge(outcome != self._success, step, now, before)
+        self._start = now
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:
@@ -193,9 +238,11 @@ class Taylor:
         extra="heyoka",
     )
 
-    def start(self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64) -> TaylorRun:
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
+    ) -> TaylorRun:
         """A run.  Raises Unusable where heyoka is not installed or lacks the arithmetic or a function."""
-        return TaylorRun(dynamics, setting, scalar)
+        return TaylorRun(dynamics, setting, scalar, initial, at)
 
 
 METHODS = (Taylor(),)

@@ -1,0 +1,267 @@
+"""Machine code that steps: ``march`` of a tableau, with steps of one length or with steps chosen by an error estimate.
+
+    i64 @march(x, carry, old, k, clock, count)
+
+makes steps until clock[UNTIL] is reached or passed; it returns REACHED, PAUSED (after count[LEFT] attempted steps) or
+STOPPED (the step has become too small, or a value is no longer finite).  ``old`` is the state before the last step,
+``k`` its stages, and then the slopes at its end, where they are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from math import log
+
+import numpy as np
+
+from mbsym.numerics.kernels.llvm import Scalar
+from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value
+from mbsym.numerics.methods.stages import (
+    ABSOLUTE,
+    BASE,
+    CAREFUL,
+    EVALUATIONS,
+    FRESH,
+    INFINITE,
+    LAST,
+    LEFT,
+    LONGEST,
+    NUMBER,
+    PAUSED,
+    PREVIOUS,
+    REACHED,
+    REJECTED,
+    RELATIVE,
+    START,
+    STEP,
+    STEPS,
+    STOPPED,
+    TIME,
+    TIME_CARRY,
+    UNTIL,
+    Stages,
+    add_compensated,
+    clock_dtype,
+)
+from mbsym.numerics.methods.tableaux import Tableau
+
+#: How much a step may grow or shrink at once, and the safety factor of the controller.  With 3/4 instead of the usual
+#: 0.9 hardly a step is rejected: over nine systems and tolerances from 1e-5 to 1e-11 dop853 needs 13 % fewer
+#: evaluations to equal error (3 to 21 % by the system), rk45 some 5 %.
+GROWTH, SHRINKAGE, SAFETY = 6.0, 0.2, 0.75
+
+#: The exponent of the integral part, by the order of the method.
+INTEGRAL = {5: Fraction(4, 100), 8: Fraction(3, 100)}
+
+ARGUMENTS = ("x", "carry", "old", "k", "clock", "count")
+
+
+def fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
+    """Steps of the length clock[STEP]: step number j begins at clock[BASE] + j h, so that no roundings add up.
+
+    The increments of a step are kept behind the slopes in ``k``.
+    """
+    f = Function("march", [(name, POINTER) for name in ARGUMENTS])
+    s = Stages(f, size, scalar)
+    x, k, clock, count, old = f["x"], f["k"], f["clock"], f["count"], f["old"]
+    stages = len(tableau.stages)
+    moved = s.slope(k, stages + 1)
+    total = f.slot(s.kind)
+    step, base = f.load(s.clock, clock, STEP), f.load(s.clock, clock, BASE)
+    h = step.converted(s.kind)
+    again = f.label()
+    f.jump(again)
+    f.place(again)
+    time = f.load(s.clock, clock, TIME)
+    _leave_when_due(f, s, time)
+    known, unknown, first = f.label(), f.label(), f.label()
+    f.branch(f.load(INTEGER, count, FRESH).compare("!=", 0), known, unknown)
+    f.place(known)
+    s.copy(s.slope(k, stages), s.slope(k, 0))
+    f.store(0, INTEGER, count, FRESH)
+    f.jump(first)
+    f.place(unknown)
+    s.state_argument(x)
+    s.evaluate(time, s.slope(k, 0))
+    f.store(f.load(INTEGER, count, EVALUATIONS) + 1, INTEGER, count, EVALUATIONS)
+    f.jump(first)
+    f.place(first)
+    for place, row in enumerate(tableau.stages[1:], 1):
+        s.stage(x, k, row, place, time, step)
+    f.store(f.load(INTEGER, count, EVALUATIONS) + (stages - 1), INTEGER, count, EVALUATIONS)
+    f.store(0, s.kind, total)
+    for i in f.each(size):
+        change = h * s.combination(k, tableau.weights, i)
+        f.store(change, s.kind, moved, i)
+        f.store(f.load(s.kind, x, i), s.kind, old, i)
+        new = add_compensated(f, s.kind, x, f["carry"], i, change)
+        f.store(f.load(s.kind, total) + (new - new), s.kind, total)
+    finite, over = f.label(), f.label()
+    f.branch(f.load(s.kind, total).compare("<=", 0), finite, over)
+    f.place(over)
+    f.leave(STOPPED)
+    f.place(finite)
+    number = f.load(INTEGER, count, NUMBER) + 1
+    f.store(number, INTEGER, count, NUMBER)
+    f.store(time, s.clock, clock, START)
+    f.store(step, s.clock, clock, LAST)
+    f.store(base + number.converted(s.clock) * step, s.clock, clock, TIME)
+    f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
+    f.jump(again)
+    return f.text()
+
+
+def _leave_when_due(f: Function, s: Stages, time: Value) -> None:
+    """Returns where the time has come, or as many steps as are allowed have been tried."""
+    with _leaving(f, time.compare(">=", f.load(s.clock, f["clock"], UNTIL)), REACHED):
+        pass
+    left = f.load(INTEGER, f["count"], LEFT)
+    with _leaving(f, left.compare("<=", 0), PAUSED):
+        pass
+    f.store(left - 1, INTEGER, f["count"], LEFT)
+
+
+def adaptive_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
+    """Steps by the error estimate, with the controller of Hairer, Norsett & Wanner."""
+    f = Function("march", [(name, POINTER) for name in ARGUMENTS])
+    s = Stages(f, size, scalar)
+    x, k, clock, count = f["x"], f["k"], f["clock"], f["count"]
+    stages = len(tableau.stages)
+    candidate, unchanged = f.slot(s.kind, size), f.slot(s.kind, size)
+    relative = f.load(s.clock, clock, RELATIVE).converted(s.kind)
+    absolute = f.load(s.clock, clock, ABSOLUTE).converted(s.kind)
+
+    again, some, step_now, large, tried, good, bad = (f.label() for _ in range(7))
+    f.jump(again)
+    f.place(again)
+    time = f.load(s.clock, clock, TIME)
+    _leave_when_due(f, s, time)
+    step = f.load(s.clock, clock, STEP)
+    least = time.absolute() * (4 * Fraction(float(np.finfo(clock_dtype(s.clock)).eps)))
+    f.branch(step.compare(">", least) & step.compare(">", Fraction(1, 10**200)), large, some)
+    f.place(some)
+    f.leave(STOPPED)
+    f.place(large)
+    # The last slope of an accepted step is the first of the next; it is copied late because dense output needs both.
+    with f.when(f.load(INTEGER, count, FRESH).compare("!=", 0)):
+        s.copy(s.slope(k, stages), s.slope(k, 0))
+        f.store(0, INTEGER, count, FRESH)
+    f.jump(step_now)
+    f.place(step_now)
+    for place, row in enumerate(tableau.stages[1:], 1):
+        s.stage(x, k, row, place, time, step)
+    h = step.converted(s.kind)
+    for i in f.each(size):
+        change = h * s.combination(k, tableau.weights, i)
+        f.store(change, s.kind, unchanged, i)
+        f.store(f.load(s.kind, x, i) + change, s.kind, candidate, i)
+    if tableau.first_same_as_last:
+        s.state_argument(candidate)
+        s.evaluate(time + step, s.slope(k, stages))
+    error = _error(f, s, tableau, x, candidate, k, step, relative, absolute)
+    evaluations = stages - 1 + tableau.first_same_as_last
+    f.store(f.load(INTEGER, count, EVALUATIONS) + evaluations, INTEGER, count, EVALUATIONS)
+    f.jump(tried)
+    f.place(tried)
+    f.branch(error.compare("<=", 1), good, bad)
+
+    f.place(bad)
+    usable = error.compare("<", Fraction(10) ** 30)
+    power = f.call("exp", "double", f.call("log", "double", error) * Fraction(-1, tableau.order)) * Fraction(SAFETY)
+    shrink = power.compare(">", Fraction(SHRINKAGE)).choose(power, f.number(Fraction(SHRINKAGE), "double"))
+    shrink = usable.choose(shrink, f.number(Fraction(1, 10), "double"))
+    f.store(step * shrink.converted(s.clock), s.clock, clock, STEP)
+    f.store(f.load(INTEGER, count, REJECTED) + 1, INTEGER, count, REJECTED)
+    f.store(usable.choose(f.number(0, INTEGER), f.number(1, INTEGER)), INTEGER, count, INFINITE)
+    f.store(1, INTEGER, count, CAREFUL)
+    f.jump(again)
+
+    f.place(good)
+    for i in f.each(size):
+        f.store(f.load(s.kind, x, i), s.kind, f["old"], i)
+        add_compensated(f, s.kind, x, f["carry"], i, f.load(s.kind, unchanged, i))
+    f.store(time, s.clock, clock, START)
+    f.store(step, s.clock, clock, LAST)
+    add_compensated(f, s.clock, clock, f.at(s.clock, clock, TIME_CARRY), TIME, step)
+    if not tableau.first_same_as_last:
+        s.state_argument(x)
+        s.evaluate(f.load(s.clock, clock, TIME), s.slope(k, stages))
+        f.store(f.load(INTEGER, count, EVALUATIONS) + 1, INTEGER, count, EVALUATIONS)
+    f.store(1, INTEGER, count, FRESH)
+    f.store(0, INTEGER, count, INFINITE)
+    f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
+    _grow(f, s, tableau, error, step)
+    f.jump(again)
+    return f.text()
+
+
+@contextmanager
+def _leaving(f: Function, bit: Value, result: int) -> Iterator[None]:
+    """Returns ``result`` if the bit is set."""
+    yes, no = f.label(), f.label()
+    f.branch(bit, yes, no)
+    f.place(yes)
+    yield
+    f.leave(result)
+    f.place(no)
+
+
+def _error(
+    f: Function,
+    s: Stages,
+    tableau: Tableau,
+    x: Value,
+    new: Value,
+    k: Value,
+    step: Value,
+    relative: Value,
+    absolute: Value,
+) -> Value:
+    """The estimated error of a step, 1 where it is just tolerable.
+
+    One estimate e:  h |e|;  two, as in DOP853:  h e5^2 / sqrt(e5^2 + e3^2/100)  (root mean squares, scaled).
+    """
+    totals = [f.slot("double") for _ in tableau.errors]
+    for total in totals:
+        f.store(0, "double", total)
+    for i in f.each(size := s.size):
+        before, after = f.load(s.kind, x, i).absolute(), f.load(s.kind, new, i).absolute()
+        scale = absolute + relative * before.compare("<", after).choose(after, before)
+        inverse = 1 / scale
+        for total, row in zip(totals, tableau.errors, strict=True):
+            one = (s.combination(k, row, i) * inverse).converted("double")
+            f.store(f.load("double", total) + one * one, "double", total)
+    squares = [f.load("double", total) for total in totals]
+    h = step.converted("double").absolute()
+    if len(squares) == 1:
+        return h * f.call("sqrt", "double", squares[0] / size)
+    bottom = (squares[0] + squares[1] * Fraction(1, 100)) * size
+    nothing = bottom.compare("<=", 0)
+    root = f.call("sqrt", "double", nothing.choose(f.number(1, "double"), bottom))
+    return h * squares[0] / root
+
+
+def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -> None:
+    """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
+    clock, count = f["clock"], f["count"]
+    integral = INTEGRAL[tableau.order]
+    alpha = Fraction(1, tableau.order) - integral * Fraction(3, 4)
+    floor = f.number(Fraction(1, 10**10), "double")
+    seen = error.compare(">", floor).choose(error, floor)
+    size = f.call("log", "double", seen)
+    before = f.load(s.clock, clock, PREVIOUS).converted("double")
+    factor = f.call("exp", "double", before * integral - size * alpha) * Fraction(SAFETY)
+    most = f.load(INTEGER, count, CAREFUL).compare("!=", 0)
+    limit = most.choose(f.number(1, "double"), f.number(Fraction(GROWTH), "double"))
+    factor = factor.compare("<", limit).choose(factor, limit)
+    least = f.number(Fraction(SHRINKAGE), "double")
+    factor = factor.compare(">", least).choose(factor, least)
+    grown = step * factor.converted(s.clock)
+    longest = f.load(s.clock, clock, LONGEST)
+    f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, STEP)
+    lower = f.number(Fraction(log(1e-4)), "double")
+    kept = size.compare(">", lower).choose(size, lower)
+    f.store(kept.converted(s.clock), s.clock, clock, PREVIOUS)
+    f.store(0, INTEGER, count, CAREFUL)
