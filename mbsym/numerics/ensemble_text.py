@@ -1,0 +1,317 @@
+"""Runge-Kutta methods over several members of an ensemble side by side, as LLVM text.
+
+Every lane of a vector register is a member with a time, a step and an error estimate of its own, so that it takes the
+steps that it would take alone; what a lane must not do (a rejected step, a member that is done) is masked out.  The
+formulas are those of ``mbsym.numerics.methods.runge_kutta``, whose stages are used as they are.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import log
+
+import numpy as np
+
+from mbsym.numerics.kernels.lanes import DOUBLE, Lanes, wide_scalar
+from mbsym.numerics.kernels.writer import INTEGER, POINTER, Value
+from mbsym.numerics.methods.runge_kutta import GROWTH, INTEGRAL, SAFETY, SHRINKAGE, Stages, add_compensated
+from mbsym.numerics.methods.tableaux import Tableau
+
+#: Rows of ``clock``: a vector each.
+TIME, CARRY, START, LAST, STEP, PREVIOUS, NEXT, STEPS, REJECTED, FRESH, CAREFUL, INFINITE, DEAD = range(13)
+ROWS = 13
+
+#: Numbers that all members share.
+RELATIVE, ABSOLUTE, LONGEST = range(3)
+
+#: What a driver returns.
+DONE, PAUSED = 0, 1
+
+_LEAST = Fraction(4 * float(np.finfo(float).eps))
+
+
+class _Stages(Stages):
+    """Stages whose argument ends in the parameters that are inputs."""
+
+    def __init__(self, function: Lanes, size: int, parameters: int) -> None:
+        super().__init__(function, size, wide_scalar(function.lanes))
+        self.argument = function.slot(self.kind, size + 1 + parameters)
+        for place in range(parameters):
+            value = function.load(self.kind, function["p"], place)
+            function.store(value, self.kind, self.argument, size + 1 + place)
+
+
+def rows_of(tableau: Tableau) -> int:
+    """How many slopes are kept: the stages, f at the new point, those of dense output."""
+    return len(tableau.stages) + 1 + len(tableau.extra)
+
+
+def fixed_text(tableau: Tableau, size: int, parameters: int, lanes: int) -> str:
+    """``i64 @fixed(x, carry, p, shared, count)``: ``count`` steps of all lanes; shared: the first time and the step."""
+    names = [(name, POINTER) for name in ("x", "carry", "p", "shared")] + [("count", INTEGER)]
+    f = Lanes("fixed", names, lanes)
+    s = _Stages(f, size, parameters)
+    k = f.slot(s.kind, len(tableau.stages) * size)
+    start, step = (f.splatted(f.load(DOUBLE, f["shared"], place)) for place in range(2))
+    with f.repeat(f["count"]) as number:
+        time = start + f.splatted(number.converted(DOUBLE)) * step
+        s.state_argument(f["x"])
+        s.evaluate(time, s.slope(k, 0))
+        for place, row in enumerate(tableau.stages[1:], 1):
+            s.stage(f["x"], k, row, place, time, step)
+        for i in f.each(size):
+            add_compensated(f, s.kind, f["x"], f["carry"], i, step * s.combination(k, tableau.weights, i))
+    f.leave(DONE)
+    return f.text()
+
+
+def adaptive_text(tableau: Tableau, size: int, parameters: int, lanes: int) -> str:
+    """``i64 @adaptive(x, carry, old, k, clock, index, p, shared, times, out, first, last, width, budget)``.
+
+    Fills ``out`` (rows from ``first`` to ``last`` - 1, 2n numbers each, ``width`` numbers apart) with the states at
+    ``times``, each lane's in its column; ``index`` says at which row each lane is.  DONE when all lanes are at ``last``
+    or dead, PAUSED after ``budget`` attempts.
+    """
+    pointers = ("x", "carry", "old", "k", "clock", "index", "p", "shared", "times", "out")
+    whole = ("first", "last", "width", "budget")
+    f = Lanes("adaptive", [(name, POINTER) for name in pointers] + [(name, INTEGER) for name in whole], lanes)
+    return _Adaptive(f, tableau, size, parameters).text()
+
+
+class _Adaptive:
+    """The parts of the adaptive driver, in the order in which they run."""
+
+    def __init__(self, f: Lanes, tableau: Tableau, size: int, parameters: int) -> None:
+        self.f, self.tableau, self.size = f, tableau, size
+        self.s = _Stages(f, size, parameters)
+        self.kind = f.kind
+        self.stages = len(tableau.stages)
+        self.terms = f.slot(self.kind, (3 + len(tableau.dense)) * size)
+        self.shown = f.slot(self.kind, size)
+        self.fresh = f.slot(self.kind, size)
+        self.candidate, self.change = f.slot(self.kind, size), f.slot(self.kind, size)
+        self.relative, self.absolute, self.longest = (
+            f.splatted(f.load(DOUBLE, f["shared"], place)) for place in (RELATIVE, ABSOLUTE, LONGEST)
+        )
+
+    def row(self, place: int) -> Value:
+        return self.f.load(self.kind, self.f["clock"], place)
+
+    def set(self, place: int, value: Value | int) -> None:
+        self.f.store(value, self.kind, self.f["clock"], place)
+
+    def text(self) -> str:
+        f = self.f
+        left = f.slot(INTEGER)
+        f.store(f["budget"], INTEGER, left)
+        again, step, tired, going, done = (f.label() for _ in range(5))
+        for lane in range(f.lanes):
+            self._aim(lane)
+        f.jump(again)
+        f.place(again)
+        self._emit()
+        active = f.below(self.row(NEXT), "<", f.infinity())
+        f.branch(f.anywhere(active), going, done)
+        f.place(done)
+        f.leave(DONE)
+        f.place(going)
+        f.branch(f.load(INTEGER, left).compare("<=", 0), tired, step)
+        f.place(tired)
+        f.leave(PAUSED)
+        f.place(step)
+        f.store(f.load(INTEGER, left) - 1, INTEGER, left)
+        self._bury(active, again)
+        self._try(active)
+        f.jump(again)
+        return f.text()
+
+    # --- rows ---
+
+    def _aim(self, lane: int) -> None:
+        """The next time at which a lane is shown; none where it is dead or done."""
+        f = self.f
+        f.store(f.infinity_of_one(), DOUBLE, f["clock"], NEXT * f.lanes + lane)
+        index = f.load(INTEGER, f["index"], lane)
+        with (
+            f.when(f.load(DOUBLE, f["clock"], DEAD * f.lanes + lane).compare("<=", 0)),
+            f.when(index.compare("<", f["last"])),
+        ):
+            f.store(f.load(DOUBLE, f["times"], index), DOUBLE, f["clock"], NEXT * f.lanes + lane)
+
+    def _emit(self) -> None:
+        """States at times that steps have reached, by dense output."""
+        f = self.f
+        due = f.below(self.row(NEXT), "<=", self.row(TIME))
+        with f.when(f.anywhere(due)):
+            self._prepare()
+            more, over = f.label(), f.label()
+            f.jump(more)
+            f.place(more)
+            due = f.below(self.row(NEXT), "<=", self.row(TIME))
+            self._between((self.row(NEXT) - self.row(START)) / self.row(LAST))
+            for lane in range(f.lanes):
+                with f.when(f.bit(due, lane)):
+                    self._write(lane)
+            f.branch(f.anywhere(f.below(self.row(NEXT), "<=", self.row(TIME))), more, over)
+            f.place(over)
+
+    def _prepare(self) -> None:
+        """The terms of dense output of the last step (``Tableau.dense``)."""
+        f, s, k, old = self.f, self.s, self.f["k"], self.f["old"]
+        h = self.row(LAST)
+        for place, row in enumerate(self.tableau.extra):
+            s.stage(old, k, row, self.stages + 1 + place, self.row(START), h)
+        for i in f.each(self.size):
+            change = f.load(self.kind, f["x"], i) - f.load(self.kind, old, i)
+            first, last = h * f.load(self.kind, k, i), h * f.load(self.kind, k, i + self.stages * self.size)
+            terms = [change, first - change, 2 * change - (first + last)]
+            terms += [h * s.combination(k, row, i) for row in self.tableau.dense]
+            for place, term in enumerate(terms):
+                f.store(term, self.kind, self.terms, i + place * self.size)
+
+    def _between(self, share: Value) -> None:
+        f = self.f
+        rest = 1 - share
+        for i in f.each(self.size):
+            total: Value | None = None
+            for place in reversed(range(len(self.tableau.dense) + 3)):
+                term = f.load(self.kind, self.terms, i + place * self.size)
+                total = term if total is None else term + total
+                total = total * (share if place % 2 == 0 else rest)
+            assert total is not None
+            f.store(f.load(self.kind, f["old"], i) + total, self.kind, self.shown, i)
+
+    def _write(self, lane: int) -> None:
+        f = self.f
+        index = f.load(INTEGER, f["index"], lane)
+        base = (index - f["first"]) * self.size
+        for i in f.each(self.size):
+            at = f.number(i, INTEGER) if isinstance(i, int) else i
+            value = f.load(DOUBLE, self.shown, at * f.lanes + lane)
+            f.store(value, DOUBLE, f["out"], (base + at) * f["width"] + lane)
+        f.store(index + 1, INTEGER, f["index"], lane)
+        self._aim(lane)
+
+    # --- steps ---
+
+    def _bury(self, active: Value, again: str) -> None:
+        """Lanes whose steps have become too small are dead."""
+        f = self.f
+        step, least = self.row(STEP), f.magnitude(self.row(TIME)) * _LEAST
+        low = f.select(f.below(least, ">", Fraction(1, 10**200)), least, Fraction(1, 10**200))
+        stuck = f.without(active, f.below(step, ">", low))
+        with f.when(f.anywhere(stuck)):
+            self.set(DEAD, f.select(stuck, 1, self.row(DEAD)))
+            self.set(NEXT, f.select(stuck, f.infinity(), self.row(NEXT)))
+            f.jump(again)
+            f.place(f.label())  # what follows is never reached
+
+    def _try(self, active: Value) -> None:
+        f, s, k, tableau = self.f, self.s, self.f["k"], self.tableau
+        x, time = f["x"], self.row(TIME)
+        step = f.select(active, self.row(STEP), 0)
+        # The last slope of an accepted step is the first of the next; it is copied late: dense output needs both.
+        fresh = f.below(self.row(FRESH), ">", 0)
+        for i in f.each(self.size):
+            last, first = f.load(self.kind, k, i + self.stages * self.size), f.load(self.kind, k, i)
+            f.store(f.select(fresh, last, first), self.kind, k, i)
+        self.set(FRESH, 0)
+        for place, row in enumerate(tableau.stages[1:], 1):
+            s.stage(x, k, row, place, time, step)
+        for i in f.each(self.size):
+            change = step * s.combination(k, tableau.weights, i)
+            f.store(change, self.kind, self.change, i)
+            f.store(f.load(self.kind, x, i) + change, self.kind, self.candidate, i)
+        if tableau.first_same_as_last:
+            s.state_argument(self.candidate)
+            s.evaluate(time + step, self.fresh)
+            self._kept_slope(active)
+        error = self._error(step)
+        good = f.value(f.mask, f"and {f.mask} {active.text}, {f.below(error, '<=', 1).text}")
+        bad = f.without(active, good)
+        with f.when(f.anywhere(bad)):
+            self._reject(bad, error, step)
+        with f.when(f.anywhere(good)):
+            self._accept(good, error, step, time)
+
+    def _kept_slope(self, mask: Value) -> None:
+        """f at the new point becomes the last slope of the lanes in the mask."""
+        f = self.f
+        for i in f.each(self.size):
+            place = i + self.stages * self.size
+            before = f.load(self.kind, f["k"], place)
+            f.store(f.select(mask, f.load(self.kind, self.fresh, i), before), self.kind, f["k"], place)
+
+    def _error(self, step: Value) -> Value:
+        """The estimated error of a step, 1 where it is just tolerable (``runge_kutta._error``)."""
+        f, s, tableau = self.f, self.s, self.tableau
+        totals = [f.slot(self.kind) for _ in tableau.errors]
+        for total in totals:
+            f.store(0, self.kind, total)
+        for i in f.each(self.size):
+            before = f.magnitude(f.load(self.kind, f["x"], i))
+            after = f.magnitude(f.load(self.kind, self.candidate, i))
+            scale = self.absolute + self.relative * f.select(f.below(before, "<", after), after, before)
+            inverse = 1 / scale
+            for total, row in zip(totals, tableau.errors, strict=True):
+                one = s.combination(f["k"], row, i) * inverse
+                f.store(f.load(self.kind, total) + one * one, self.kind, total)
+        squares = [f.load(self.kind, total) for total in totals]
+        h = f.magnitude(step)
+        if len(squares) == 1:
+            return h * f.root(squares[0] / self.size)
+        bottom = (squares[0] + squares[1] * Fraction(1, 100)) * self.size
+        return h * squares[0] / f.root(f.select(f.below(bottom, "<=", 0), 1, bottom))
+
+    def _reject(self, bad: Value, error: Value, step: Value) -> None:
+        f = self.f
+        usable = f.below(error, "<", Fraction(10) ** 30)
+        power = f.lanewise("exp", f.lanewise("log", error) * Fraction(-1, self.tableau.order)) * Fraction(SAFETY)
+        shrink = f.select(f.below(power, ">", Fraction(SHRINKAGE)), power, Fraction(SHRINKAGE))
+        shrink = f.select(usable, shrink, Fraction(1, 10))
+        self.set(STEP, f.select(bad, step * shrink, self.row(STEP)))
+        self.set(REJECTED, self.row(REJECTED) + f.select(bad, 1, 0))
+        self.set(INFINITE, f.select(bad, f.select(usable, 0, 1), self.row(INFINITE)))
+        self.set(CAREFUL, f.select(bad, 1, self.row(CAREFUL)))
+
+    def _accept(self, good: Value, error: Value, step: Value, time: Value) -> None:
+        f, s, x = self.f, self.s, self.f["x"]
+        for i in f.each(self.size):
+            before, carried = f.load(self.kind, x, i), f.load(self.kind, f["carry"], i)
+            f.store(f.select(good, before, f.load(self.kind, f["old"], i)), self.kind, f["old"], i)
+            new = add_compensated(f, self.kind, x, f["carry"], i, f.load(self.kind, self.change, i))
+            f.store(f.select(good, new, before), self.kind, x, i)
+            f.store(f.select(good, f.load(self.kind, f["carry"], i), carried), self.kind, f["carry"], i)
+        self.set(START, f.select(good, time, self.row(START)))
+        self.set(LAST, f.select(good, step, self.row(LAST)))
+        carried = self.row(CARRY)
+        new = add_compensated(f, self.kind, f["clock"], f.at(self.kind, f["clock"], CARRY), TIME, step)
+        self.set(TIME, f.select(good, new, time))
+        self.set(CARRY, f.select(good, self.row(CARRY), carried))
+        if not self.tableau.first_same_as_last:
+            s.state_argument(x)
+            s.evaluate(self.row(TIME), self.fresh)
+            self._kept_slope(good)
+        self.set(FRESH, f.select(good, 1, 0))
+        self.set(INFINITE, f.select(good, 0, self.row(INFINITE)))
+        self.set(STEPS, self.row(STEPS) + f.select(good, 1, 0))
+        self._grow(good, error, step)
+
+    def _grow(self, good: Value, error: Value, step: Value) -> None:
+        """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
+        f = self.f
+        integral = INTEGRAL[self.tableau.order]
+        alpha = Fraction(1, self.tableau.order) - integral * Fraction(3, 4)
+        floor = Fraction(1, 10**10)
+        size = f.lanewise("log", f.select(f.below(error, ">", floor), error, floor))
+        factor = f.lanewise("exp", self.row(PREVIOUS) * integral - size * alpha) * Fraction(SAFETY)
+        limit = f.select(f.below(self.row(CAREFUL), "!=", 0), 1, Fraction(GROWTH))
+        factor = f.select(f.below(factor, "<", limit), factor, limit)
+        factor = f.select(f.below(factor, ">", Fraction(SHRINKAGE)), factor, Fraction(SHRINKAGE))
+        grown = step * factor
+        grown = f.select(f.below(grown, "<", self.longest), grown, self.longest)
+        self.set(STEP, f.select(good, grown, self.row(STEP)))
+        lower = Fraction(log(1e-4))
+        kept = f.select(f.below(size, ">", lower), size, lower)
+        self.set(PREVIOUS, f.select(good, kept, self.row(PREVIOUS)))
+        self.set(CAREFUL, f.select(good, 0, self.row(CAREFUL)))
