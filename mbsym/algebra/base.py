@@ -55,7 +55,7 @@ class Algebra:
         raise NotImplementedError
 
     def function(self, name: str, x: Scalar) -> Scalar:
-        """exp, log, atan, sinh, cosh or tanh."""
+        """exp, log, atan, sinh, cosh, tanh, abs or sign, the last two with their values at 0."""
         raise NotImplementedError
 
     def times(self, a: Scalar, b: Scalar) -> Scalar:
@@ -240,9 +240,18 @@ class Lowering:
             case Call("tan", argument):
                 sine, cosine = self.angle(argument)
                 return algebra.times(sine, algebra.reciprocal(cosine))
+            case Call("step", argument):
+                return self._step(self(argument))
+            case Call("pulse", argument, more=(start, end)):
+                return self._step(self(argument) - self(start)) - self._step(self(argument) - self(end))
             case Call(function, argument):
                 return algebra.function(function, self(argument))
         raise TypeError(f"not an expression: {expression!r}")
+
+    def _step(self, x: Scalar) -> Scalar:
+        """(1 + sign x)/2."""
+        half = self.algebra.number(Fraction(1, 2))
+        return half + self.algebra.times(half, self.algebra.function("sign", x))
 
     def _named(self, name: str) -> Scalar:
         try:

@@ -5,8 +5,9 @@ For every operation y = f(a, b) the local partial derivatives are known; the cha
     forwards    dy/dx = df/da da/dx + df/db db/dx            one sweep for each input x,
     backwards   dz/da += dz/dy df/da                         one sweep for each output z
 
-(Griewank & Walther, Evaluating Derivatives, 2nd ed. 2008, chapter 3).  What does not depend on the inputs, or does not
-reach the outputs, takes no operation, and hash-consing shares what the sweeps have in common.
+(Griewank & Walther, Evaluating Derivatives, 2nd ed. 2008, chapter 3).  What does not depend on the
+inputs, or does not reach the outputs, takes no operation, and hash-consing shares what the sweeps have in common.  The
+derivative of a sign is 0, off its jump.
 """
 
 from __future__ import annotations
@@ -189,4 +190,8 @@ class _Sweeps:
                 return ((program.function("sinh", a), False),)
             case "tanh", _:
                 return ((program.one - value * value, False),)
+            case "abs", [a]:
+                return ((program.function("sign", a), False),)
+            case "sign", _:
+                return ((program.zero, False),)  # off the jump, where states are
         raise ValueError(f"no derivative is known for {operation}")

@@ -11,7 +11,8 @@ differences, not derivatives:
     exp a        2 exp(a + da/2) sinh(da/2)        likewise sinh and cosh;  tanh a: sinh(da)/(cosh(a) cosh(a + da))
 
 Near an equilibrium the energy changes by the square of the deviation, so a deviation of 1e-8 is below the rounding of
-float64 in h(x + d) - h(x), and has all its digits here.  Logarithms and arcus tangents are subtracted as they are.
+float64 in h(x + d) - h(x), and has all its digits here.  Logarithms, arcus tangents, signs and
+|a| are subtracted as they are.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Algebra
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Expression
@@ -184,6 +185,8 @@ class Jets(Algebra):
             if name == "tanh":
                 return self.reduce(self.times(sinh, self.reciprocal(cosh)))
             return sinh if name == "sinh" else cosh
+        if name in ("abs", "sign"):
+            return self._off_the_kink(name, x)
         value = ring.function(name, x.value)
         if name == "exp":
             return self._series(x, value, value, value * half)
@@ -192,6 +195,22 @@ class Jets(Algebra):
             return self._series(x, value, inverse, -half * ring.times(inverse, inverse))
         inverse = ring.reciprocal(ring.one + ring.times(x.value, x.value))
         return self._series(x, value, inverse, -ring.times(x.value, ring.times(inverse, inverse)))
+
+    def _off_the_kink(self, name: str, x: Jet) -> Jet:
+        """|a + u| = |a| + sign(a) u and sign(a + u) = sign(a) for small u, where a is not 0.
+
+        Raises NoClosedForm where a is 0, or is not known to be another number: there is no expansion.
+        """
+        ring = self.ring
+        if not x.first and not x.second:
+            return Jet(ring.function(name, x.value))
+        if ring.is_zero(x.value) is not False:
+            what = "kink" if name == "abs" else "jump"
+            raise NoClosedForm(f"{name} has a {what} at the motion that is expanded about")
+        sign = ring.function("sign", x.value)
+        if name == "sign":
+            return Jet(sign)
+        return self._series(x, ring.function("abs", x.value), sign, ring.zero)
 
 
 def _small(x: Jet) -> Jet:

@@ -66,6 +66,8 @@ class Rationals(Algebra):
         return fmpq(top, bottom)
 
     def function(self, name: str, x: Scalar) -> Scalar:
+        if name in ("abs", "sign"):
+            return abs(x) if name == "abs" else fmpq((x > 0) - (x < 0))
         raise NotRational(f"{name} of a rational number")
 
 
@@ -116,7 +118,13 @@ class Balls(Algebra):
         return x.sqrt()
 
     def function(self, name: str, x: Scalar) -> Scalar:
-        return getattr(x, name)()
+        return enclosed(name, x)
+
+
+def enclosed(name: str, x: arb) -> arb:
+    """A ball that holds f(x) for every x of a ball; [-1, 1] for the sign of what may be 0."""
+    found: arb = getattr(x, {"abs": "__abs__", "sign": "sgn"}.get(name, name))()
+    return found
 
 
 class BallsAtRationals(Balls):

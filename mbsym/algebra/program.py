@@ -213,6 +213,9 @@ class Program(Algebra):
         return self._node("sqrt", (x.number,))
 
     def function(self, name: str, x: Node) -> Node:
+        value = self._constant(x)
+        if value is not None and name in ("abs", "sign"):
+            return self.number(abs(value) if name == "abs" else (value > 0) - (value < 0))
         return self._node(name, (x.number,))
 
     def sin_cos(self, angle: LinearForm) -> tuple[Node, Node]:

@@ -32,6 +32,7 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
 
 Polynomial = Any
@@ -143,6 +144,7 @@ class Ring(Algebra):
             self._index["parameter", name] for name in nonnegative if ("parameter", name) in self._index
         }
         self._independent: set[int] = set()  # nested roots whose normal forms are unique
+        self._jumps: dict[int, set[str]] = {}  # signs, and what they move with: they have no derivatives
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
         self._derivatives: dict[str, dict[int, Polynomial]] = {}
         self.angles = dict(angles)
@@ -621,6 +623,8 @@ class Ring(Algebra):
             half = fmpq(1, 2)
             sinh, cosh = (up - down) * half, (up + down) * half
             return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(self.times(sinh, self.reciprocal(cosh)))
+        if name in ("abs", "sign"):
+            return self._absolute(x) if name == "abs" else self._sign(x)
         if x.is_zero() and name in ("exp", "atan"):
             return self.one if name == "exp" else self.zero
         if x.is_one() and name == "log":
@@ -640,6 +644,49 @@ class Ring(Algebra):
                 self._chain(index, outer, x)
         return self._gens[index]
 
+    def _sign(self, x: Polynomial) -> Polynomial:
+        """sign(x), adjoined where x may have either sign; it has no derivative, for nobody says where x vanishes.
+
+        Nothing is said about sign(0), which formulas meet at rest only: dry friction holds with any force there up to a
+        bound.  There is no relation s^2 = 1 either, which is wrong at the jump.  Raises NoClosedForm for x = 0.
+        """
+        x, constant = self.reduce(x), self.constant_value(x)
+        if x.is_zero():
+            raise NoClosedForm("a sign at its jump: the sign of 0")
+        if self.is_positive(x) or (constant is not None and constant > 0):
+            return self.one
+        if self.is_positive(-x) or (constant is not None and constant < 0):
+            return -self.one
+        if x.leading_coefficient() < 0:
+            return -self._sign(-x)
+        index = self._adjoined("function", x, "sign")
+        if index is None:
+            index = self._adjoin("function", x, "sign")
+            self._jumps[index] = {name for name in self._derivatives if not self.derivative(x, name).is_zero()}
+        return self._gens[index]
+
+    def _absolute(self, x: Polynomial) -> Polynomial:
+        """|x| with |x|^2 = x^2 and d|x| = sign(x) dx."""
+        x = self.reduce(x)
+        if x.is_zero():
+            return x
+        if x.leading_coefficient() < 0:
+            x = -x
+        constant = self.constant_value(x)
+        if self.is_positive(x) or (constant is not None and constant > 0):
+            return x
+        if constant is not None and constant < 0:
+            return -x
+        index = self._adjoined("function", x, "abs")
+        if index is None:
+            moving = any(not self.derivative(x, name).is_zero() for name in self._derivatives)
+            outer = self._sign(x) if moving else self.zero
+            index = self._adjoin("function", x, "abs")
+            self._relate(((index, 2),), self._gens[index] ** 2 - self.times(x, x))
+            if moving:
+                self._chain(index, outer, x)
+        return self._gens[index]
+
     def is_positive(self, x: Polynomial) -> bool:
         """Whether x is a sum of terms that are not negative, one of them positive: sufficient, never wrong."""
         nonnegative = self._nonnegative | self._positive
@@ -651,9 +698,14 @@ class Ring(Algebra):
     # --- derivation --------------------------------------------------------------------------------------------------
 
     def derivative(self, x: Polynomial, name: str) -> Polynomial:
-        """Partial derivative with respect to a coordinate, a prescribed quantity or t, chain rule included."""
+        """Partial derivative with respect to a coordinate, a prescribed quantity or t, chain rule included.
+
+        Raises NoClosedForm for what jumps there.
+        """
         total = self.zero
         degrees = x.degrees()
+        if any(degrees[index] > 0 and name in moving for index, moving in self._jumps.items()):
+            raise NoClosedForm("the derivative of a function with a jump")
         for index, inner in self._derivatives[name].items():
             if degrees[index] > 0:
                 total = total + self.times(x.derivative(index), inner)
@@ -661,7 +713,7 @@ class Ring(Algebra):
 
     def velocity_derivative(self, x: Polynomial, name: str) -> Polynomial:
         """Partial derivative with respect to the velocity of a coordinate."""
-        if len(self._derivatives[name + "_dot"]) > 1:
+        if len(self._derivatives[name + "_dot"]) > 1 or self._jumps:
             return self.derivative(x, name + "_dot")
         return x.derivative(self._index["velocity", name])
 
@@ -674,7 +726,12 @@ class Ring(Algebra):
         if x.is_constant():
             return ()
         degrees = x.degrees()
-        return tuple(name for name in names if any(degrees[index] > 0 for index in self._derivatives[name]))
+        jumping = [moving for index, moving in self._jumps.items() if degrees[index] > 0]
+        return tuple(
+            name
+            for name in names
+            if any(degrees[index] > 0 for index in self._derivatives[name]) or any(name in moving for moving in jumping)
+        )
 
     # --- substitution ------------------------------------------------------------------------------------------------
 
@@ -814,9 +871,14 @@ class Ring(Algebra):
     def _nonzero_at_random(self, x: Polynomial) -> bool:
         """Whether a ball at some random point excludes zero."""
         source = random.Random(20240229)
+        free = {g.name for k, g in enumerate(self.generators) if k not in self._nonnegative}
         with ctx.workprec(400):
-            for _ in range(4):
-                value = self.evaluate(x, {name: fmpq(source.randint(1, 99), 64) for name in self.names()})
+            for attempt in range(8 if any(g.name in ("abs", "sign") for g in self.generators[: self.spare]) else 4):
+                values = {name: fmpq(source.randint(1, 99), 64) for name in self.names()}
+                if attempt > 3:  # beyond kinks formulas are others
+                    signs = {name: source.choice((1, -1)) for name in values if name in free}
+                    values |= {name: sign * values[name] for name, sign in signs.items()}
+                value = self.evaluate(x, values)
                 if not value.contains(0) and value.is_finite():
                     return True
         return False
@@ -855,6 +917,7 @@ class ParameterRing(Ring):
         self._positive = {self.indices.index(k) for k in whole._positive if k in self.indices}
         self._nonnegative = {self.indices.index(k) for k in whole._nonnegative if k in self.indices}
         self._relations, self._derivatives, self.angles, self._independent = [], {}, {}, set()
+        self._jumps = {}
         self.typed = frozenset()
 
     def project(self, x: Polynomial) -> Polynomial:
@@ -901,7 +964,7 @@ class _Evaluation:
             case "root":
                 return self(g.argument).sqrt()
             case "function":
-                return getattr(self(g.argument), g.name)()
+                return enclosed(g.name, self(g.argument))
             case "velocity":
                 return arb(self.values[g.name + "_dot"])
             case "acceleration":

@@ -4,7 +4,7 @@
     product  = signed (("*" | "/") signed)*
     signed   = ("-" | "+") signed | power
     power    = atom ["**" signed]            (the exponent must come out as one rational number)
-    atom     = number | name | function "(" sum ")" | "(" sum ")"
+    atom     = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
 
 Numbers are exact: ``0.1`` is 1/10 and ``1e-3`` is 1/1000.  What is too long, too deep or too big is complained about
 before any work is spent on it, so that ``9**9**9**9`` costs nothing; whatever evaluates the tree later can rely on the
@@ -24,7 +24,7 @@ from math import ceil
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted
-from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import FUNCTIONS, SIGNATURES, Call, Expression, Name, Negative, Number, Operation
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
 MAX_LENGTH = 20_000
@@ -103,6 +103,11 @@ _FOREIGN_FUNCTIONS = {
     "sh": "sinh",
     "ch": "cosh",
     "th": "tanh",
+    "sgn": "sign",
+    "signum": "sign",
+    "heaviside": "step",
+    "Heaviside": "step",
+    "fabs": "abs",
     "cot": "1/tan(...)",
     "ctg": "1/tan(...)",
     "asin": _ARCSINE,
@@ -114,7 +119,7 @@ _FOREIGN_FUNCTIONS = {
 }
 
 #: Names of functions elsewhere, so short that they could be taken for factors.
-_NO_FACTORS = ("abs", "exp", "max", "min", "pow", "sec", "csc", "sgn")
+_NO_FACTORS = ("max", "min", "pow", "sec", "csc")
 
 _DEGREES = ("deg", "degs", "degree", "degrees")
 _RADIANS = ("rad", "rads", "radian", "radians")
@@ -368,7 +373,7 @@ class _Parser:
         if token.kind == "name":
             return self.name(token)
         if token.text == "(":
-            return self.inside(token)
+            return self.inside(token)[0]
         if token.kind == "end":
             raise self.refusal("bad-expression", "the expression ends too early", token)
         if token.text == "^":
@@ -390,21 +395,31 @@ class _Parser:
                 token.end,
                 _function_hint(token.text),
             )
-        argument = self.inside(self.advance())
-        return self.grown(Call(token.text, argument, self.span_of(token.start, self.last_end)), argument)
+        usage = SIGNATURES.get(token.text, "")
+        argument, *more = self.inside(self.advance(), usage.count(",") + 1, usage)
+        span = self.span_of(token.start, self.last_end)
+        return self.grown(Call(token.text, argument, span, tuple(more)), argument, *more)
 
-    def inside(self, opening: _Token) -> Expression:
-        """What stands between an opening parenthesis, already read, and its closing one."""
+    def inside(self, opening: _Token, wanted: int = 1, usage: str = "") -> list[Expression]:
+        """What stands between an opening parenthesis, already read, and its closing one: so many arguments."""
         self.nest(opening)
-        tree = self.sum(0)
+        found = [self.sum(0)]
+        while self.next.text == "," and len(found) < wanted:
+            self.advance()
+            found.append(self.sum(0))
         self.nesting -= 1
+        if self.next.text == ")" and len(found) < wanted:
+            raise self.refusal("bad-expression", f"{wanted} arguments are wanted", self.next, f"write {usage}")
         if self.next.text == ")":
             self.advance()
-            return tree
+            return found
         if self.next.text == ",":
-            raise self.refusal("bad-expression", "one argument only", self.next, decimal_comma(self.text))
+            message = "one argument only" if wanted == 1 else f"{wanted} arguments only"
+            hint = decimal_comma(self.text) or (f"write {usage}" if usage else None)
+            raise self.refusal("bad-expression", message, self.next, hint)
         if self.next.kind == "end":
-            raise self.refusal("bad-expression", "this parenthesis is never closed", opening)
+            hint = "within {...} or [...] quote what holds commas" if wanted > len(found) else None
+            raise self.refusal("bad-expression", "this parenthesis is never closed", opening, hint)
         raise self.trailing(self.next)
 
     def nest(self, token: _Token) -> None:

@@ -13,8 +13,21 @@ from fractions import Fraction
 
 from mbsym.expressions.place import Span
 
-#: Functions of one argument that a description may call, in the spelling of Python's ``math``.
-FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
+#: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
+SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
+
+#: Functions with a jump, in their value or in their first derivative:
+#:
+#:     sign(x) = -1, 0, 1   for x < 0, x = 0, x > 0        abs(x) = x sign(x)
+#:     step(x) = (1 + sign(x))/2: 1/2 at the jump          pulse(x, a, b) = step(x - a) - step(x - b)
+JUMPS = ("sign", "step", "pulse")
+KINKED = ("abs", *JUMPS)
+
+#: All that a description may call.
+FUNCTIONS = (*SMOOTH, *KINKED)
+
+#: The arguments of a function that has more than one, as messages name them.
+SIGNATURES = {"pulse": "pulse(x, start, end)"}
 
 #: ``pi`` is a number, never a parameter.
 CONSTANTS = ("pi",)
@@ -56,11 +69,12 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``function(argument)`` with a function of :data:`FUNCTIONS`."""
+    """``function(argument, *more)`` with a function of :data:`FUNCTIONS`; most have one argument."""
 
     function: str
     argument: Expression
     span: Span | None = field(default=None, compare=False, repr=False)
+    more: tuple[Expression, ...] = ()
 
 
 Expression = Number | Name | Negative | Operation | Call
@@ -80,8 +94,8 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (operand,)
         case Operation(_, left, right):
             return (left, right)
-        case Call(_, argument):
-            return (argument,)
+        case Call(_, argument, more=more):
+            return (argument, *more)
     return ()
 
 
@@ -173,8 +187,8 @@ class Derivation:
         D(u + v) = Du + Dv,  D(u v) = Du v + u Dv,  D(u**n) = n u**(n-1) Du,  D f(u) = f'(u) Du
 
     Exponents are constants.  A tree shared by many parents is differentiated once, by identity, also from call to call,
-    so the trees must outlive it; the result is simplified only by dropping zeros and ones.  Raises TypeError for what
-    is not an expression, ValueError for a function without a known derivative.
+    so the trees must outlive it; the result is simplified only by dropping zeros and ones.  d|u| = sign(u) du holds off
+    u = 0.  Raises TypeError for what is not an expression, ValueError for a function without a derivative: it jumps.
     """
 
     def __init__(self, rates: Mapping[str, Expression]) -> None:
@@ -212,6 +226,10 @@ class Derivation:
                 if isinstance(exponent, Number):
                     lowered = Number(exponent.value - 1)
                 return multiply(multiply(exponent, power(base, lowered)), inner)
+            case Call(function, argument) if function in JUMPS:
+                if all(is_number(self(one), 0) for one in children(expression)):
+                    return ZERO
+                raise ValueError(f"{function} has a jump, and no derivative")
             case Call(function, argument):
                 inner = self(argument)
                 return ZERO if is_number(inner, 0) else multiply(_derivative_of_function(function, argument), inner)
@@ -240,6 +258,8 @@ def _derivative_of_function(function: str, argument: Expression) -> Expression:
             return Call("sinh", argument)
         case "tanh":
             return subtract(ONE, power(Call("tanh", argument), number(2)))
+        case "abs":
+            return Call("sign", argument)
     raise ValueError(f"no derivative is known for {function}")
 
 
@@ -252,8 +272,9 @@ def substitute(expression: Expression, replacements: Mapping[str, Expression]) -
             return negative(substitute(operand, replacements))
         case Operation(operator, left, right):
             return Operation(operator, substitute(left, replacements), substitute(right, replacements))
-        case Call(function, argument):
-            return Call(function, substitute(argument, replacements))
+        case Call(function, argument, more=more):
+            others = tuple(substitute(one, replacements) for one in more)
+            return Call(function, substitute(argument, replacements), more=others)
     return expression
 
 
@@ -275,8 +296,8 @@ def _text(expression: Expression, outer: int) -> str:
                 own = 1
         case Name(name):
             written, own = name, 5
-        case Call(function, argument):
-            written, own = f"{function}({_text(argument, 0)})", 5
+        case Call(function):
+            written, own = f"{function}({', '.join(_text(one, 0) for one in children(expression))})", 5
         case Negative(operand):
             written, own = "-" + _text(operand, 3), 3
         case Operation("**", base, exponent):

@@ -55,5 +55,5 @@ class _Translation:
             case "root":
                 return sympy.sqrt(argument)
             case "function":
-                return getattr(sympy, g.name)(argument)
+                return getattr(sympy, {"abs": "Abs"}.get(g.name, g.name))(argument)
         return sympy.pi if g.name == "pi" else sympy.Symbol(declared_name(g))

@@ -35,7 +35,7 @@ _COMMANDS = {"sine": r"\sin", "cosine": r"\cos"}
 UNBROKEN = 18
 #: The penalty for a break in a longer bracket of parameters only.
 LAST_RESORT = 5000
-_NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan"}
+_NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan", "sign": r"\operatorname{sign}"}
 
 
 def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
@@ -284,6 +284,8 @@ class LatexPrinter:
             return _COMMANDS[g.kind], self._angle(g)
         if g.kind == "root":
             return f"\\sqrt{{{self._quiet(g.argument)}}}", ""
+        if g.kind == "function" and g.name == "abs":
+            return f"\\lvert {self._quiet(g.argument)} \\rvert", ""
         if g.kind == "function":
             return _NAMED[g.name], f"({self._quiet(g.argument)})"
         if g.name == "pi":
@@ -329,7 +331,7 @@ def _joined(factors: Sequence[str]) -> str:
 
 #: Names of several letters, which must not run into their neighbours.
 _WORDS = (r"\mathit", r"\mathtt")
-_FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan")
+_FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{sign}")
 
 
 def latex_matrix(rows: Sequence[Sequence[str]]) -> str:

@@ -31,7 +31,7 @@ _LETTERS = {
 _BRACKETS = ("()", "[]", "{}")
 _DOTS = {"velocity": "˙", "acceleration": "¨"}
 _TRIGONOMETRIC = {"sine": "sin", "cosine": "cos"}
-_NAMED = {"exp": "exp", "log": "ln", "atan": "arctan"}
+_NAMED = {"exp": "exp", "log": "ln", "atan": "arctan", "sign": "sign"}
 
 TIMES = "<mo>\u2062</mo>"
 #: Around functions and words, which would run into their neighbours.
@@ -330,6 +330,8 @@ class MathPrinter:
             return f"<mrow>{name}{APPLY}{self._angle(g)}</mrow>"
         if g.kind == "root":
             return Symbol(f"<msqrt>{self._inner(g.argument)}</msqrt>").raised(exponent)
+        if g.kind == "function" and g.name == "abs":
+            return Symbol(f"<mrow>{mo('|')}{self._inner(g.argument)}{mo('|')}</mrow>").raised(exponent)
         if g.kind == "function":
             name = Symbol(mi(_NAMED[g.name])).raised(exponent)
             return f"<mrow>{name}{APPLY}{bracketed(self._inner(g.argument))}</mrow>"

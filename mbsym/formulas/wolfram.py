@@ -11,7 +11,7 @@ from fractions import Fraction
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
 from mbsym.formulas.shape import present
@@ -123,8 +123,14 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
             return names[name]
         case Negative(operand):
             return f"-{_operand(operand, names)}"
-        case Call(function, argument):
-            return wolfram_call(function, wolfram_expression(argument, names))
+        case Call(function):
+            arguments = [wolfram_expression(one, names) for one in children(expression)]
+            if function == "step":
+                return f"((1 + Sign[{arguments[0]}])/2)"
+            if function == "pulse":
+                x, start, end = arguments
+                return f"((Sign[{x} - ({start})] - Sign[{x} - ({end})])/2)"
+            return wolfram_call(function, arguments[0])
         case Operation(operator, left, right):
             sign = "^" if operator == "**" else operator
             return f"{_operand(left, names)}{sign}{_operand(right, names)}"

@@ -120,6 +120,11 @@ class TaylorSeries(Algebra):
             half = self.number(Fraction(1, 2))
             sinh, cosh = half * (up - down), half * (up + down)
             return {"sinh": sinh, "cosh": cosh}.get(name) or sinh * self.reciprocal(cosh)
+        if name in ("abs", "sign"):  # off the kink
+            sign, nothing = self.numbers.function("sign", x.a), self.numbers.zero
+            if name == "sign":
+                return self._compose(x, sign, nothing, nothing)
+            return self._compose(x, x.a * sign, sign, nothing)
         value = self.numbers.function(name, x.a)
         half_number = self.numbers.number(Fraction(1, 2))
         if name == "exp":

@@ -76,8 +76,15 @@ def number(value: Fraction) -> str:
     return f"{value.numerator}.0/{value.denominator}.0"
 
 
+def call(function: str, argument: str) -> str:
+    """A function of C's library, or what stands for it."""
+    if function == "sign":
+        return f"(({argument}) > 0.0 ? 1.0 : ({argument}) < 0.0 ? -1.0 : 0.0)"
+    return f"{'fabs' if function == 'abs' else function}({argument})"
+
+
 DIALECT = Dialect(
-    call=lambda function, argument: f"{function}({argument})",
+    call=call,
     local=lambda count: f"s{count}",
     number=number,
     angle=lambda function, name: f"{function}_{name}",

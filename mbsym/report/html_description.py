@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from markupsafe import Markup, escape
 
-from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.mathml import (
     APPLY,
     TIMES,
@@ -66,8 +66,10 @@ def _expression(value: Expression, names: MathNames) -> tuple[str, int]:
             return sign("\u2212") + _bracketed(operand, 2, names), 1
         case Call("sqrt", argument):
             return f"<msqrt>{expression(argument, names)}</msqrt>", 4
-        case Call(function, argument):
-            inner = bracketed(expression(argument, names))
+        case Call("abs", argument):
+            return f"<mrow>{mo('|')}{expression(argument, names)}{mo('|')}</mrow>", 4
+        case Call(function):
+            inner = bracketed(mo(",").join(expression(one, names) for one in children(value)))
             return f"<mrow>{mi(_FUNCTIONS.get(function, function))}{APPLY}{inner}</mrow>", 4
         case Operation("/", left, right):
             return fraction(expression(left, names), expression(right, names)), 4

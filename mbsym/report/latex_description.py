@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import (
     EXACT,
@@ -36,6 +36,10 @@ def call(function: str, argument: str) -> str:
     """A function of one argument, known by Python's name."""
     if function == "sqrt":
         return f"\\sqrt{{{argument}}}"
+    if function == "abs":
+        return f"\\lvert {argument} \\rvert"
+    if function in KINKED:
+        return f"\\operatorname{{{function}}}({argument})"
     return f"\\{_FUNCTIONS.get(function, function)}({argument})"
 
 
@@ -58,8 +62,8 @@ def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
             return str(names[name]), 4
         case Negative(operand):
             return "-" + _bracketed(operand, 2, names), 1
-        case Call(function, argument):
-            return call(function, expression(argument, names)), 4
+        case Call(function):
+            return call(function, ", ".join(expression(one, names) for one in children(value))), 4
         case Operation("/", left, right):
             return f"\\frac{{{expression(left, names)}}}{{{expression(right, names)}}}", 4
         case Operation("**", base, exponent):

@@ -17,7 +17,7 @@ _MODELICA = re.compile(rf"//[^\n]*|{_STRING}|(?P<open>\")|[()\[\]{{}}]")
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 _NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
-_FUNCTIONS = frozenset({"sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh"})
+_FUNCTIONS = frozenset({"sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh", "abs", "sign"})
 _OCTAVE_WORDS = _FUNCTIONS | frozenset(
     """
     function end for if names numel zeros NaN strcmp isfield fieldnames error any isnan strjoin struct given values

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, walk
+from mbsym.expressions.tree import KINKED, Call, Expression, Name, Negative, Number, Operation, names, walk
 
 _PRIME = 2**127 - 1
 _POINTS = 2
@@ -226,7 +226,7 @@ class _FloatPoint:
                 return self.value(left) * self.value(right)
             case Operation("/", left, right):
                 return self.value(left) / self.value(right)
-            case Call(function, argument):
+            case Call(function, argument) if function not in KINKED:  # |x| - x vanishes at some points only
                 return float(getattr(math, function)(self.value(argument)))
         raise ValueError
 

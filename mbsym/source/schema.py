@@ -104,7 +104,8 @@ def _definitions() -> dict[str, Schema]:
     return {
         "expression": {
             "type": ["string", "number"],
-            "description": "numbers, names, + - * / **, parentheses, sin cos tan sqrt exp log atan sinh cosh tanh",
+            "description": "numbers, names, + - * / **, parentheses, sin cos tan sqrt exp log atan sinh cosh tanh; "
+            "in loads abs sign step pulse",
         },
         "vector": {"type": "array", "items": _reference("expression"), "minItems": 3, "maxItems": 3},
         "parameter": {"anyOf": [{"enum": list(SIGNS)}, _reference("expression"), _parameter_record()]},

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, Expression, Name, walk
+from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, JUMPS, KINKED, Call, Expression, Name, walk
 from mbsym.model.system import acceleration_name, velocity_name
 
 MAX_NAME = 64
@@ -45,19 +45,24 @@ _PLURALS = {
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """What may stand in one sort of place: ``what`` names the place in messages."""
+    """What may stand in one sort of place: ``what`` names the place in messages.
+
+    ``kinked`` are the functions with a kink or a jump that may stand there: a force may jump, a potential may not, for
+    its derivative is the force; the place of a body may not even have a kink, for its acceleration counts.
+    """
 
     what: str
     kinds: tuple[str, ...] = ("parameter",)
+    kinked: tuple[str, ...] = ()
 
 
-NUMBER = Allowed("a numerical value", ())
+NUMBER = Allowed("a numerical value", (), KINKED)
 ANGLE = Allowed("a rotation angle", ("coordinate", "prescribed", "parameter"))
 RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter"))
 VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter"))
-POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"))
-DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"))
-FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time"))
+POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"), ("abs",))
+DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"), ("abs",))
+FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time"), KINKED)
 ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 
 
@@ -114,8 +119,20 @@ class Scope:
     def check(self, expression: Expression, allowed: Allowed) -> None:
         """Complain about every name in an expression that its place does not allow."""
         for node in walk(expression):
+            if isinstance(node, Call) and node.function in KINKED and node.function not in allowed.kinked:
+                self._refuse_kinked(node, allowed)
             if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
                 self.check_name(node.name, node.span, allowed)
+
+    def _refuse_kinked(self, node: Call, allowed: Allowed) -> None:
+        """A function with a kink or a jump where its derivatives would be wanted."""
+        hint = "forces and torques may jump: 'generalized force', 'force', 'torque'"
+        if allowed.kinked:
+            message = f"{node.function} jumps, and the derivative of {allowed.what} is a force"
+        else:
+            kind = "jump" if node.function in JUMPS else "kink"
+            message = f"{allowed.what} may not hold {node.function}, which has a {kind}"
+        self.complaints.error("not-smooth", message, node.span, hint)
 
     def check_key(self, key: Span, name: str, keys: Iterable[str], allowed: Allowed) -> bool:
         """The same for a key beside others, none of which is what it was meant to be."""

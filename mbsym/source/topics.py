@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from textwrap import wrap
 
-from mbsym.expressions.tree import FUNCTIONS
+from mbsym.expressions.tree import SMOOTH
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
 from mbsym.source.keys import (
     BODY,
@@ -52,7 +52,7 @@ def loads() -> str:
 
 def expressions() -> str:
     """What a formula in a description is made of."""
-    return _EXPRESSIONS.format(functions=", ".join(sorted(FUNCTIONS)))
+    return _EXPRESSIONS.format(functions=", ".join(sorted(SMOOTH)), kinked=_KINKED)
 
 
 def claim_kinds() -> str:
@@ -84,6 +84,12 @@ def _listed(table: Mapping[str, str]) -> str:
 
 _SEE = "Kinds of load: mbsym explain loads.  Formulas: mbsym explain expressions.  Claims: mbsym explain claims."
 
+_KINKED = """\
+sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 + sign(x))/2, 1/2 at 0;
+                  pulse(x, a, b) = step(x - a) - step(x - b), 1 between a and b.  All in forces and torques, abs in
+                  potentials and dissipation functions as well, whose derivatives are forces.  A simulation stops at
+                  each jump and kink and goes on from there"""
+
 _EXPRESSIONS = """\
 Formulas in a description
 
@@ -91,6 +97,7 @@ Formulas in a description
     names         letters, digits and _ ; upper and lower case differ; pi is the number
     operations    + - * / and ** with a rational exponent; parentheses
     functions     {functions}
+    in loads      {kinked}
     velocities    x_dot of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
     accelerations x_ddot: in claims of equations of motion and of values
     time          t: in loads and claims

@@ -21,7 +21,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.tree import FUNCTIONS
+from mbsym.expressions.tree import SMOOTH
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import momenta, momentum_rates
 from mbsym.mechanics.states import rational_states
@@ -61,6 +61,9 @@ class Duals(Algebra):
             up, down = x.exp(), (-x).exp()
             sinh, cosh = (up - down) / 2, (up + down) / 2
             return {"sinh": sinh, "cosh": cosh}.get(name) or sinh / cosh
+        if name in ("abs", "sign"):  # the sign of what is not 0 is constant nearby
+            sign = arb_series([x[0].sgn()], 2)
+            return sign * x if name == "abs" else sign
         return getattr(x, name)()
 
 
@@ -88,7 +91,7 @@ OPERATIONS: dict[str, Made] = {
     "angle": lambda p, a, b: p.sin_cos(LinearForm((("a", Fraction(-2)), ("b", Fraction(1))), Fraction(1, 3)))[0],
     **{
         name: lambda p, a, b, name=name: p.function(name, a * b)
-        for name in FUNCTIONS
+        for name in (*SMOOTH, "abs", "sign")
         if name not in ("sin", "cos", "tan", "sqrt")
     },
 }

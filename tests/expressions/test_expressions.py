@@ -10,7 +10,18 @@ from hypothesis import strategies as st
 
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation, differentiate, text
+from mbsym.expressions.tree import (
+    FUNCTIONS,
+    SMOOTH,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    differentiate,
+    text,
+)
 
 
 def parse(written: str) -> tuple[Expression | None, Complaints]:
@@ -75,7 +86,8 @@ def _grow(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]
         inner.map(Negative),
         st.builds(Operation, st.sampled_from("+-*/"), inner, inner),
         st.builds(Operation, st.just("**"), inner, exponents),
-        st.builds(Call, st.sampled_from(FUNCTIONS), inner),
+        st.builds(Call, st.sampled_from([*SMOOTH, "abs", "sign", "step"]), inner),
+        st.builds(Call, st.just("pulse"), inner, st.none(), st.tuples(inner, inner)),
     )
 
 
@@ -135,7 +147,11 @@ def test_hostile_texts_are_refused_at_once(written: str, code: str) -> None:
         ("Sine(x)", "did you mean 'sin'?"),
         ("coshyp(x)", "did you mean 'cosh'?"),
         ("arcsin(x)", "write atan(x/sqrt(1 - x**2)) for asin(x)"),
-        ("abs(x)", "the functions are " + ", ".join(FUNCTIONS)),
+        ("cbrt(x)", "the functions are " + ", ".join(FUNCTIONS)),
+        ("sgn(x)", "write sign"),
+        ("Heaviside(x)", "write step"),
+        ("pulse(x, 1)", "write pulse(x, start, end)"),
+        ("pulse(x, 1, 2, 3)", "write pulse(x, start, end)"),
         ("0,5", "numbers have a decimal point: write 0.5"),
         ("1_000", "digits stand together: write 1000"),
         ("1.2.3", "a number has one decimal point"),

@@ -56,6 +56,21 @@ loads:
 motion: {phi: 0, u: 0}
 initial: {phi: {position: pi/6, velocity: 1/3}, u: {position: end/2}}
 """
+#: Functions with kinks and jumps, of the time, of places and of velocities.
+KINKED = """
+mbsym: 1
+name: Kinks and jumps
+parameters: {m: positive, k: positive, F: positive, a: positive, b: positive}
+bodies:
+  - {name: block, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+  - {name: arm, attached to: block, rotation: {axes: [3], angles: [q]}, mass centre: [a, 0, 0], mass: m}
+loads:
+  - potential: k*abs(x - a*sin(q)) + abs(q)**3/3
+  - rayleigh: b*abs(x_dot + q_dot)
+  - generalized force:
+      x: F*pulse(t, a, b) - F*sign(x_dot - b)*abs(x) + step(x - a/3)*F
+      q: -F*step(1 - 2*t) + tanh(x)*abs(q_dot)*q_dot
+"""
 #: Name -> description; how many states.
 SYSTEMS = {
     "double-pendulum": 2,
@@ -64,14 +79,15 @@ SYSTEMS = {
     "clebsch": 1,
     "nasty": 1,
     "functions": 2,
+    "kinked": 3,
 }
-SMALL = ("double-pendulum", "functions")
+SMALL = ("double-pendulum", "functions", "kinked")
 COMPILER = shutil.which("cc")
 
 
 @cache
 def analysis_of(name: str) -> Analysis:
-    own = {"nasty": NASTY, "functions": FUNCTIONS}
+    own = {"nasty": NASTY, "functions": FUNCTIONS, "kinked": KINKED}
     return mbsym.loads(own[name]) if name in own else mbsym.load(SHIPPED / f"{name}.yaml")
 
 
@@ -172,6 +188,7 @@ def translated(text: str) -> dict[str, Any]:
     """The functions of (t, x, p) of a module of Julia as functions of Python: what differs are indices and zeros."""
     names: dict[str, Any] = {"np": np, "zeros": lambda _, *shape: np.zeros(shape)}
     names |= {key: getattr(math, key) for key in ("sin", "cos", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")}
+    names |= {"abs": abs, "sign": np.sign}
     names |= dict.fromkeys(("promote_type", "typeof", "eltype"), lambda *_: None) | {"Float64": None}
     for head, body in re.findall(r"^function (\w+\(t, x, p\))\n(.*?)^end\n", text, re.MULTILINE | re.DOTALL):
         indexed = re.sub(r"\[([\d, ]+)\]", lambda m: str([int(k) - 1 for k in m[1].split(",")]), body)

@@ -101,6 +101,8 @@ SCALARS = {
     EXTENDED: Scalar(EXTENDED, "x86_fp80", "l", np.longdouble),
 }
 
+#: Written without a call.
+_KINKED = ("abs", "sign")
 _ARITHMETIC = {"add": "fadd", "subtract": "fsub", "multiply": "fmul", "divide": "fdiv"}
 
 
@@ -362,6 +364,8 @@ class _Form:
                 yield f"  {local} = load {kind}, ptr %p{number}{self._align}"
             case [a] if operation == "negative":
                 yield f"  {local} = fneg {kind} {a}"
+            case [a] if operation in _KINKED:
+                yield from self._kinked(operation, local, a)
             case [a] if operation == "sqrt" and self.lanes > 1:
                 yield f"  {local} = call {kind} @llvm.sqrt.{suffix(self.scalar, self.lanes)}({kind} {a})"
             case [a]:
@@ -369,6 +373,22 @@ class _Form:
             case [a, b]:
                 yield f"  {local} = {_ARITHMETIC[operation]} {kind} {a}, {b}"
         self.values[number] = local
+
+    def _kinked(self, operation: str, local: str, a: str) -> Iterator[str]:
+        """sign: 1, -1, or what it is given, 0 or no number; abs: 0 - a up to 0, which has no sign there."""
+        kind, bit = self.kind, vector(self.lanes, "i1")
+        zero, one, minus = (
+            splat(self.lanes, self.scalar.type, self.scalar.constant(Fraction(value))) for value in (0, 1, -1)
+        )
+        if operation == "abs":
+            yield f"  {local}.m = fsub {kind} {zero}, {a}"
+            yield f"  {local}.c = fcmp ole {kind} {a}, {zero}"
+            yield f"  {local} = select {bit} {local}.c, {kind} {local}.m, {kind} {a}"
+            return
+        yield f"  {local}.l = fcmp olt {kind} {a}, {zero}"
+        yield f"  {local}.s = select {bit} {local}.l, {kind} {minus}, {kind} {a}"
+        yield f"  {local}.g = fcmp ogt {kind} {a}, {zero}"
+        yield f"  {local} = select {bit} {local}.g, {kind} {one}, {kind} {local}.s"
 
     def _sum(self, step: Fused) -> Iterator[str]:
         kind, local = self.kind, f"%v{step.number}"
@@ -523,7 +543,7 @@ def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
         live = code.program.live(code.outputs)
         for number in live:
             instruction = code.program.instructions[number]
-            if len(instruction.operands) == 1 and instruction.operation != "negative":
+            if len(instruction.operands) == 1 and instruction.operation not in ("negative", *_KINKED):
                 called.add(instruction.operation)
         for step in _steps(code, live, scalar):
             if isinstance(step, tuple):

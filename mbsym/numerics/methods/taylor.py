@@ -74,6 +74,12 @@ def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
                 found = a * b
             case "divide", [a, b]:
                 found = a / b
+            case "sign", [a]:  # runs are cut where a changes its sign
+                zero, one = (heyoka.expression(exact_number(Fraction(value), dtype)) for value in (0, 1))
+                found = heyoka.select(heyoka.gt(a, zero), one, heyoka.select(heyoka.lt(a, zero), -one, zero))
+            case "abs", [a]:
+                zero = heyoka.expression(exact_number(Fraction(0), dtype))
+                found = heyoka.select(heyoka.lt(a, zero), -a, a)
             case function, [a]:
                 known: Callable[[Any], Any] | None = getattr(heyoka, function, None)
                 if known is None:

@@ -17,6 +17,7 @@ _WORDS = """
     abstract baremodule begin break catch const continue do else elseif end export false finally for function global if
     import in isa let local macro module mutable outer primitive public quote return struct true try type using var
     where while as
+    abs sign
     sin cos tan sqrt exp log atan sinh cosh tanh zeros promote_type eltype typeof float pi im e NaN Inf nothing missing
     Main Base Core ans eval include vcat Float64
     NAME COORDINATES PARAMETERS BODIES INTEGRALS n

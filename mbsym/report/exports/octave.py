@@ -21,6 +21,7 @@ _WORDS = """
     switch try while do until unwind_protect unwind_protect_cleanup end_try_catch end_unwind_protect endfor endfunction
     endif endswitch endwhile endclassdef endenumeration endevents endmethods endproperties endparfor end_unwind
     enumeration events methods properties arguments import __FILE__ __LINE__
+    abs sign
     sin cos tan sqrt exp log atan sinh cosh tanh zeros struct isfield fieldnames strjoin error numel any all ismember
     isnan NaN nan Inf inf pi eps e i j I J ans eval feval nargin nargout varargin varargout true false
     model functions s k

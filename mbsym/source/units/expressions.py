@@ -62,6 +62,15 @@ class Dimensions:
             case Call("sqrt", argument):
                 inner = self.of(argument)
                 return None if inner is None else inner.to_the(Fraction(1, 2))
+            case Call("abs", argument):
+                return self.of(argument)
+            case Call("sign" | "step", argument):
+                self.of(argument)
+                return Form()
+            case Call("pulse", argument, more=(start, end)):
+                self._sum(Operation("-", argument, start, expression.span), argument, start)
+                self._sum(Operation("-", argument, end, expression.span), argument, end)
+                return Form()
             case Call(function, argument):
                 self._number(argument, f"{function} takes a pure number, such as an angle in radians")
                 return Form()
