@@ -6,7 +6,7 @@ A run that breaks down, or is interrupted, keeps what it has: the trajectory end
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from mbsym.numerics.methods.interface import (
     UNDEFINED,
     Breakdown,
     Method,
+    Run,
     Setting,
     Work,
 )
@@ -31,6 +32,10 @@ from mbsym.numerics.methods.kept import compiled_kernel
 
 #: No initial state is beyond this: the world measures 1e27 metres.
 LARGEST_START = 1e30
+
+#: Rows are filled in chunks of so many seconds, so that progress is seen and Ctrl-C keeps what there is; and not more
+#: of them at once.
+CHUNK, MOST_AT_ONCE = 0.2, 1 << 16
 
 #: A pivot of M that has become so much smaller than it was means that M is singular for practical purposes.
 SINGULAR_PIVOT = 1e-11
@@ -153,42 +158,74 @@ def integrated(
     watch: Callable[[float], None] = lambda t: None,
 ) -> Integrated:
     """The states alone; see ``simulate``."""
-    work = Work()
+    work, breakdown, interrupted = Work(), None, False
     initial = np.array([float(x) for x in dynamics.scenario.state])
-    breakdown, interrupted = _at_once(dynamics, initial), False
-    bound = _bound(initial)
-    # Room for all states is taken at once, and only touched as they come.
-    states = np.empty((len(times), len(initial)), dtype=np.longdouble if scalar == EXTENDED else float)
-    states[0], reached = initial, 1
+    # Room for all states is taken at once, and only touched as they come; one more for the state of a breakdown.
+    states = np.empty((len(initial), len(times) + 1), dtype=np.longdouble if scalar == EXTENDED else float)
+    states[:, 0], reached = initial, 1
     started = time.perf_counter()
     try:
-        if breakdown is None:
-            run = method.start(dynamics, setting, scalar)
-            work = run.work
-            started = time.perf_counter()
-            states[0] = run.state
-            for t in times[1:]:
-                state = run.advance(float(t))
-                if not np.all(np.abs(state) < bound):
-                    bad = "is not a number" if np.any(np.isnan(state)) else f"is beyond {bound:.0e}"
-                    message = f"a coordinate or velocity {bad}"
-                    raise Breakdown(BLOW_UP, message, float(t), np.array(state, dtype=float))
-                states[reached] = state
-                reached += 1
-                watch(float(t))
-    except Breakdown as found:
-        past = np.vstack([np.asarray(times[:reached], dtype=float), states[:reached].T.astype(float)])
-        breakdown = diagnosed(dynamics, found, past)
+        found = _at_once(dynamics, initial)
+        if found is not None:
+            raise found
+        run = method.start(dynamics, setting, scalar)
+        work = run.work
+        started = time.perf_counter()
+        states[:, 0] = run.state
+        for rows in chunks(run, np.asarray(times, dtype=float)[1:], _bound(initial)):
+            states[:, reached : reached + rows.shape[1]] = rows
+            reached += rows.shape[1]
+            watch(float(times[reached - 1]))
+    except Breakdown as trouble:
+        if trouble.filled is not None:
+            more = trouble.filled.shape[1]
+            states[:, reached : reached + more] = trouble.filled
+            reached += more
+        past = np.vstack([np.asarray(times[:reached], dtype=float), states[:, :reached].astype(float)])
+        breakdown = diagnosed(dynamics, trouble, past)
     except KeyboardInterrupt:
         interrupted = True
     seconds = time.perf_counter() - started
     kept = np.array(times[:reached], dtype=float)
     if breakdown is not None and breakdown.kind in (STEP_LIMIT, STUCK) and breakdown.time > kept[-1]:
         # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
-        states[reached], kept = breakdown.state, np.append(kept, breakdown.time)
+        states[:, reached], kept = breakdown.state, np.append(kept, breakdown.time)
         reached += 1
-    matrix = np.ascontiguousarray(states[:reached].T)
-    return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted)
+    return Integrated(kept, np.ascontiguousarray(states[:, :reached]), replace(work), seconds, breakdown, interrupted)
+
+
+def chunks(run: Run, times: Any, bound: float) -> Iterator[Any]:
+    """The states (2n, m) at ``times``, as many of them at once as take about ``CHUNK`` seconds.
+
+    Raises Breakdown, with the rows since the last chunk, where the run cannot go on or a row is beyond ``bound``.
+    """
+    done, count = 0, 1
+    while done < len(times):
+        at = times[done : done + count]
+        started = time.perf_counter()
+        try:
+            rows = run.fill(at)
+        except Breakdown as found:
+            _checked(found.filled, at, bound)
+            raise
+        _checked(rows, at, bound)
+        yield rows
+        done += len(at)
+        spent = time.perf_counter() - started
+        count = min(MOST_AT_ONCE, 4 * count) if spent < CHUNK / 4 else max(1, count // 2) if spent > CHUNK else count
+
+
+def _checked(rows: Any, times: Any, bound: float) -> None:
+    """Raises Breakdown at the first row that is beyond the bound, or no number."""
+    with np.errstate(all="ignore"):
+        fine = np.all(np.abs(rows) < bound, axis=0)
+    if np.all(fine):
+        return
+    first = int(np.argmin(fine))
+    state = rows[:, first]
+    bad = "is not a number" if np.any(np.isnan(state)) else f"is beyond {bound:.0e}"
+    message = f"a coordinate or velocity {bad}"
+    raise Breakdown(BLOW_UP, message, float(times[first]), np.array(state, dtype=float), rows[:, :first])
 
 
 def _cut(run: Integrated, first: int) -> Integrated:
