@@ -14,7 +14,8 @@ import numpy as np
 
 from mbsym.numerics.kernels.lanes import DOUBLE, Lanes, wide_scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Value
-from mbsym.numerics.methods.runge_kutta import GROWTH, INTEGRAL, SAFETY, SHRINKAGE, Stages, add_compensated
+from mbsym.numerics.methods.marching import GROWTH, INTEGRAL, SAFETY, SHRINKAGE
+from mbsym.numerics.methods.stages import Stages, add_compensated
 from mbsym.numerics.methods.tableaux import Tableau
 
 #: Rows of ``clock``: a vector each.
