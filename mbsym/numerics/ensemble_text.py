@@ -2,7 +2,7 @@
 
 Every lane of a vector register is a member with a time, a step and an error estimate of its own, so that it takes the
 steps that it would take alone; what a lane must not do (a rejected step, a member that is done) is masked out.  The
-formulas are those of ``mbsym.numerics.methods.runge_kutta``, whose stages are used as they are.
+formulas are those of ``mbsym.numerics.methods.marching``, whose stages are used as they are.
 """
 
 from __future__ import annotations
@@ -244,7 +244,7 @@ class _Adaptive:
             f.store(f.select(mask, f.load(self.kind, self.fresh, i), before), self.kind, f["k"], place)
 
     def _error(self, step: Value) -> Value:
-        """The estimated error of a step, 1 where it is just tolerable (``runge_kutta._error``)."""
+        """The estimated error of a step, 1 where it is just tolerable (``marching._error``)."""
         f, s, tableau = self.f, self.s, self.tableau
         totals = [f.slot(self.kind) for _ in tableau.errors]
         for total in totals:
