@@ -76,6 +76,8 @@ def simulate(
         ((2, 2001), (2001,))
         >>> run.conservation.standing.value, run.error.largest < 1e-8
         ('proved', True)
+        >>> run.at([0.1234, 7.5]).shape  # between the rows: (q, q') at any times, from the method's dense output
+        (4, 2)
 
     ``values`` replace those of the description: parameters, initial positions by the coordinates' names, initial
     velocities by ``<name>_dot``; numbers, or text such as ``"pi/6"``.  The rest is what ``mbsym simulate`` calls by the

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.methods.interface import SINGULAR, STEP_LIMIT, UNDEFINED, Unusable
 from mbsym.numerics.scenario import Incomplete
-from mbsym.simulation import SAMPLES, Request, sample_times
+from mbsym.simulation import SAMPLES, Request, dense, sample_times
 
 ROOT = Path(__file__).parents[1]
 DOUBLE = SHIPPED / "double-pendulum.yaml"
@@ -55,6 +55,52 @@ def test_a_result_has_times_coordinates_velocities_and_energies() -> None:
         run["y"]
     with pytest.raises(FrozenInstanceError):
         run.request = None  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {},
+        {"method": "rk4", "step": 0.01},
+        {"method": "midpoint6", "step": 0.02},
+        {"method": "lsoda"},
+        {"method": "radau"},
+        {"arithmetic": "extended"},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("most", [10**6, 3])
+def test_a_result_is_a_function_of_time(how: dict[str, object], most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """x = cos 2t anywhere, in any order, at the rows what they are; the same where steps are too many to be kept."""
+    monkeypatch.setattr(dense, "MOST_KEPT", most)
+    run = mbsym.simulate(
+        free("spring: {coordinate: x, stiffness: k}"), 3, values={"k": 4}, samples=7, estimate=False, **how
+    )  # type: ignore[arg-type]
+    times = np.array([2.9, 0.1234, 0.0, 3.0, 1.777, 1.777])
+    truth = np.array([np.cos(2 * times), -2 * np.sin(2 * times)])
+    assert np.abs(run(times) - truth).max() < 2e-7
+    assert run.at(0.5) == pytest.approx([np.cos(1), -2 * np.sin(1)], abs=2e-7)
+    assert run.at(run.times).dtype == run.trajectory.states.dtype
+    assert np.allclose(run.at(run.times), run.trajectory.states, rtol=0, atol=1e-13)
+    assert run.at(np.array([])).shape == (2, 0)
+    for beyond in (-1e-9, 3.0001, [1.0, float("nan")]):
+        with pytest.raises(ValueError, match="the run goes from t = 0 to 3"):
+            run.at(beyond)
+
+
+def test_a_reduced_run_and_one_that_ended_are_functions_of_time() -> None:
+    plane = dict.fromkeys(("psi", "phi", "sigma", "psi_dot", "phi_dot", "sigma_dot"), 0)
+    run = mbsym.simulate(SHIPPED / "satellite.yaml", 4, values=plane, samples=5)
+    whole = mbsym.simulate(SHIPPED / "satellite.yaml", 4, values=plane, samples=5, whole=True)
+    times = np.linspace(0, 4, 33)
+    assert run.chosen.resting is not None
+    assert run.chosen.resting.proved
+    assert np.allclose(run.at(times), whole.at(times), rtol=0, atol=1e-8)
+    ended = mbsym.simulate(DOUBLE, 60, step_limit=50)
+    assert not ended.whole
+    assert np.allclose(ended.at(ended.times), ended.trajectory.states, rtol=0, atol=1e-13)
+    with pytest.raises(ValueError, match="the run goes from"):
+        ended.at(60.0)
 
 
 def test_the_command_says_the_same(tmp_path: Path) -> None:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
+from mbsym.simulation.dense import Dense
 from mbsym.simulation.request import Request
 
 if TYPE_CHECKING:
@@ -121,6 +123,27 @@ class Simulation:
     def ended(self) -> Breakdown | None:
         """Why it ended early."""
         return self.trajectory.breakdown
+
+    @cached_property
+    def dense(self) -> Dense:
+        """The solution between the rows, as a function of time; see ``at``."""
+
+        def start() -> Run:
+            return self.chosen.method.start(self.dynamics, self.chosen.setting, self.arithmetic)
+
+        return Dense(start, float(self.times[0]), float(self.times[-1]))
+
+    def at(self, times: Any) -> Any:
+        """The states (q, q') at any times from 0 to where the run ended: shape (2n, m), or (2n,) at one time.
+
+        They come from the method's dense output, from a repetition of the run that is made when it is first asked for.
+        Raises ValueError for a time beyond the run.
+        """
+        return self.dense(times)
+
+    def __call__(self, times: Any) -> Any:
+        """The same as ``at``."""
+        return self.at(times)
 
     def __getitem__(self, name: str) -> Any:
         """The samples of a coordinate, a velocity (``theta_dot``), a first integral's column, or ``t``; shape (m,).
