@@ -44,7 +44,7 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
     from rich.console import Console
     from rich.text import Text
 
-    from mbsym.numerics.extremes import sentences
+    from mbsym.numerics.extremes_told import sentences
     from mbsym.report.extremes_tables import tables
 
     out = console()
@@ -56,7 +56,7 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
         for columns, rows in tables(found):
             # Where nobody's screen is the limit, every line is as long as it must be.
             (out if out.is_terminal else Console(width=WIDE, highlight=False)).print(_table(columns, rows))
-    for sentence in sentences(found):
+    for sentence in sentences(found, printable(file)):
         out.print(Text(f"- {sentence}"))
     for reason in found.left_out:
         out.print(Text(f"- left out: {reason}", style="yellow"))

@@ -176,7 +176,7 @@ def extremes(system: System, values: Mapping[str, Fraction | float | str], budge
     """See ``mbsym.extremes``."""
     from mbsym.mechanics.variables import ring_of
     from mbsym.numerics.extremes import extremes as measured
-    from mbsym.numerics.extremes import sentences
+    from mbsym.numerics.extremes_told import sentences
     from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation import read_values

@@ -1,10 +1,11 @@
 """Where a model is driven to its extremes: ladders of exact states and scenarios.
 
-singular angles   a coordinate approaches a value at which det M vanishes while it does not nearby (found, not assumed:
-                  0, pi/2, pi, -pi/2 of every coordinate, by balls)
-rates             all velocities together from 1e-8 to 1e8 of the usual
+singular          a coordinate approaches a value at which M is singular (found: ``mbsym.numerics.singular``)
+rates             all velocities together, 1e-8 to 1e8 times the usual
 equilibrium       the state approaches the unperturbed motion
 ratios            one positive parameter at a time, times 1e-12 to 1e12; towards 0 this is also the small parameter
+
+Distances and rates are in the units that the scene itself offers (``mbsym.numerics.scene_units``).
 """
 
 from __future__ import annotations
@@ -13,18 +14,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from flint import arb, arb_mat, ctx
-
 from mbsym.algebra.failures import SingularPoint
 from mbsym.expressions.tree import Expression, Number, names
-from mbsym.numerics.digits import Quantity, Truth
-from mbsym.numerics.scenario import PRECISION, Incomplete, Scenario, exact, rounded, scenario
+from mbsym.numerics.digits import Quantity
+from mbsym.numerics.scenario import Incomplete, Scenario, exact, scenario
+from mbsym.numerics.scene_units import SceneUnits, in_units
+from mbsym.numerics.singular import Singularities, SingularSet
 
-SINGULAR, RATES, EQUILIBRIUM, RATIO = "singular angle", "rates", "equilibrium", "ratio"
+SINGULAR, RATES, EQUILIBRIUM, RATIO = "singular", "rates", "equilibrium", "ratio"
 
 DISTANCES = tuple(10.0**-k for k in range(2, 15))
 SPEEDS = tuple(10.0**k for k in range(-8, 9, 2))
 FACTORS = (1e-12, 1e-6, 1e6, 1e12)
+
+#: Of one set so many places are approached.
+MOST_PLACES = 4
 
 
 @dataclass(frozen=True)
@@ -54,13 +58,17 @@ class Ladder:
 
 
 def ladders(
-    given: Scenario, overrides: dict[str, Expression], truth: Truth, found: Sequence[Quantity]
+    given: Scenario,
+    overrides: dict[str, Expression],
+    found: Sequence[Quantity],
+    singularities: Singularities,
+    units: SceneUnits,
 ) -> Iterator[Ladder]:
     """All ladders of states and parameters that apply to a system."""
-    yield from singular(given, truth)
-    yield Ladder(RATES, "rates", tuple(Probe(s, given, _faster(given, s)) for s in SPEEDS))
-    yield from near_equilibrium(given)
-    yield from ratios(given, overrides, found)
+    yield from singular(given, singularities, units)
+    yield Ladder(RATES, "rates", tuple(Probe(s, given, _faster(given, s, units)) for s in SPEEDS))
+    yield from near_equilibrium(given, units)
+    yield from ratios(given, overrides, found, units)
 
 
 def _decimal(size: float) -> Fraction:
@@ -68,52 +76,52 @@ def _decimal(size: float) -> Fraction:
     return Fraction(f"{size:e}")
 
 
-def _velocities(given: Scenario) -> tuple[Fraction, ...]:
+def _velocities(given: Scenario, units: SceneUnits) -> tuple[Fraction, ...]:
     """The initial velocities, or a plain choice where nothing moves."""
     if any(given.velocities):
         return given.velocities
-    return tuple(Fraction(k + 2, 10 * (k + 1)) for k in range(len(given.velocities)))
+    return tuple(Fraction(k + 2, 10 * (k + 1)) * unit for k, unit in enumerate(units.velocities))
 
 
-def _faster(given: Scenario, speed: float) -> tuple[Fraction, ...]:
-    """All velocities times one factor, so that the largest is ``speed``."""
-    usual = _velocities(given)
-    factor = _decimal(speed) / max(abs(v) for v in usual)
-    return (*given.positions, *(v * factor for v in usual))
+def _faster(given: Scenario, factor: float, units: SceneUnits) -> tuple[Fraction, ...]:
+    """All velocities times one factor."""
+    return (*given.positions, *(v * _decimal(factor) for v in _velocities(given, units)))
 
 
-# --- singular angles ---
+# --- singular configurations ---
 
 
-def singular(given: Scenario, truth: Truth) -> Iterator[Ladder]:
-    """One ladder for every coordinate and value at which M is singular while it is not nearby."""
-    if "mass matrix" not in truth.functions:
-        return
-    with ctx.workprec(PRECISION):
-        quarter = rounded(arb.pi() / 2)
-    targets = (("0", Fraction(0)), ("pi/2", quarter), ("-pi/2", -quarter), ("pi", 2 * quarter))
-    for place, name in enumerate(given.system.coordinates):
-        for label, value in targets:
-            if _vanishing(given, truth, place, value):
-                probes = []
-                for size in DISTANCES:
-                    state = [*given.positions, *_velocities(given)]
-                    state[place] = value - _decimal(size)
-                    probes.append(Probe(size, given, tuple(state)))
-                yield Ladder(SINGULAR, f"{name} -> {label}", tuple(probes))
+def singular(given: Scenario, found: Singularities, units: SceneUnits) -> Iterator[Ladder]:
+    """One ladder for every value of a coordinate at which M is singular, or point of a set in several coordinates.
+
+    One coordinate approaches it; the others are where the scenario has them, or where the set wants them.
+    """
+    for one in found.sets:
+        movable = [name for name in one.names if name in given.system.coordinates]
+        for number in range(min(len(one.places), MOST_PLACES)):
+            if movable:
+                yield _approach(given, one, number, movable[0], units)
 
 
-def _vanishing(given: Scenario, truth: Truth, place: int, value: Fraction) -> bool:
-    """Whether |det M| at ``value`` is below 1e-60 of what it is nearby, in balls of 512 bits."""
-    sizes = []
-    for offset in (Fraction(0), Fraction(1, 10)):
-        state = list(given.state)
-        state[place] = value - offset
-        with ctx.workprec(512):
-            entries = truth.functions["mass matrix"](truth.inputs(given, Fraction(0), state))
-            n = len(given.positions)
-            sizes.append(abs(arb_mat(n, n, entries).det()))
-    return bool(sizes[0] < sizes[1] * arb(10) ** -60)
+def _approach(given: Scenario, one: SingularSet, number: int, moving: str, units: SceneUnits) -> Ladder:
+    place, names_ = one.places[number], given.system.coordinates
+    start = [*(place.get(name, x) for name, x in zip(names_, given.positions, strict=True)), *_velocities(given, units)]
+    k = names_.index(moving)
+    probes = []
+    for size in DISTANCES:
+        state = list(start)
+        state[k] -= _decimal(size) * units.sizes[k]
+        probes.append(Probe(size, given, tuple(state)))
+    return Ladder(SINGULAR, subject(one, number, moving), tuple(probes))
+
+
+def subject(one: SingularSet, number: int, moving: str) -> str:
+    """``theta -> pi/2``, ``a -> 1.5708 at b = 3.14159``."""
+    if one.values:
+        return f"{moving} -> {one.values[number].label}"
+    place = {name: f"{float(x):.6g}" for name, x in one.places[number].items()}
+    others = ", ".join(f"{name} = {x}" for name, x in place.items() if name != moving)
+    return f"{moving} -> {place[moving]} at {others}"
 
 
 # --- the motion ---
@@ -134,12 +142,12 @@ def motion_state(given: Scenario) -> tuple[Fraction, ...] | None:
     return (*at, *rates)
 
 
-def near_equilibrium(given: Scenario) -> Iterator[Ladder]:
+def near_equilibrium(given: Scenario, units: SceneUnits) -> Iterator[Ladder]:
     """States that approach the unperturbed motion, if there is one."""
     start = motion_state(given)
     if start is None:
         return
-    pattern = [Fraction((-1) ** k * (k + 2), k + 3) for k in range(len(start))]
+    pattern = in_units(units, [Fraction((-1) ** k * (k + 2), k + 3) for k in range(len(start))])
     probes = []
     for size in DISTANCES[::2]:
         state = tuple(x + _decimal(size) * c for x, c in zip(start, pattern, strict=True))
@@ -181,7 +189,9 @@ def _assumed(given: Scenario, overrides: dict[str, Expression], name: str, facto
     return True
 
 
-def ratios(given: Scenario, overrides: dict[str, Expression], found: Sequence[Quantity]) -> Iterator[Ladder]:
+def ratios(
+    given: Scenario, overrides: dict[str, Expression], found: Sequence[Quantity], units: SceneUnits
+) -> Iterator[Ladder]:
     """One ladder for every free parameter that occurs in a quantity."""
     used = set()
     for q in found:
@@ -198,7 +208,7 @@ def ratios(given: Scenario, overrides: dict[str, Expression], found: Sequence[Qu
                     there = scaled(given, overrides, name, _decimal(factor), assumed=False)
                 except Incomplete:  # a value that contradicts another one
                     continue
-                state = (*given.positions, *_velocities(given))
+                state = (*given.positions, *_velocities(given, units))
                 probes.append(Probe(factor, there, state, _assumed(given, overrides, name, _decimal(factor))))
             if probes:
                 yield Ladder(RATIO, name, tuple(probes))

@@ -10,8 +10,10 @@ from math import isfinite
 from typing import Any
 
 from mbsym.numerics.digits import FULL
-from mbsym.numerics.extremes import Extremes, Row, sentences
+from mbsym.numerics.extremes import Extremes, Row
+from mbsym.numerics.extremes_told import sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.numerics.singular import Singularities
 from mbsym.report.schemas import version
 
 #: The version of ``schemas/extremes.json`` that it follows.
@@ -87,10 +89,37 @@ def extremes_json(found: Extremes) -> str:
         "system": found.system.name,
         "sentences": list(sentences(found)),
         "left_out": list(found.left_out),
+        "singular": _singular(found.singularities),
         "rows": rows,
         "stability": verdicts,
     }
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _singular(found: Singularities | None) -> dict[str, Any] | None:
+    """Where M is singular; None where that was not to be had."""
+    if found is None or not found.how:
+        return None
+    sets = [
+        {
+            "names": list(one.names),
+            "values": [value.label for value in one.values],
+            "equation": one.equation,
+            "places": [{name: float(x) for name, x in place.items()} for place in one.places],
+            "finite": one.finite,
+            "fails": one.kind,
+            "joint": one.joint,
+            "proved": one.proved,
+        }
+        for one in found.sets
+    ]
+    return {
+        "complete": found.complete,
+        "how": found.how,
+        "ranges": {name: float(bound) for name, bound in found.ranges.items()},
+        "undecided": list(found.undecided),
+        "sets": sets,
+    }
 
 
 def _rounded(digits: Any) -> dict[str, float]:
