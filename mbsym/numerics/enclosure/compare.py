@@ -1,0 +1,101 @@
+"""How far a computed trajectory is from the exact solution: proved, at every row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
+
+#: What a float bound is multiplied by, so that it stays one after its own rounding.
+LARGER = 1 + 1e-15
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """The exact solution of the equations of a run, enclosed: row k of component i is within ``radius[i, k]`` of
+    ``centre[i, k]`` (floats, as they are printed), and within ``error[i, k]`` of what the run has there.
+
+    ``scale`` is what each component is measured by; only the first ``rows`` rows are enclosed, up to ``reached``, and
+    ``ended`` says why they are not all ("": they are).
+    """
+
+    enclosure: Enclosure
+    centre: Any
+    radius: Any
+    error: Any
+    scale: Any
+    ended: str
+
+    @property
+    def whole(self) -> bool:
+        """Whether all rows are enclosed."""
+        return not self.ended
+
+    @property
+    def rows(self) -> int:
+        """How many rows are enclosed."""
+        return int(self.centre.shape[1])
+
+    @property
+    def width(self) -> float:
+        """The largest radius over rows and components, each as a part of its scale."""
+        return self._largest(self.radius)
+
+    @property
+    def largest_error(self) -> float:
+        """A proved bound of the run's error at the enclosed rows, each component as a part of its scale."""
+        return self._largest(self.error)
+
+    def _largest(self, values: Any) -> float:
+        return float(np.max(np.max(values, axis=1, initial=0.0) / self.scale, initial=0.0)) * LARGER
+
+
+def certified(
+    dynamics: Dynamics,
+    times: Any,
+    states: Any,
+    width: float,
+    seconds: float = inf,
+    watch: Callable[[float], None] = lambda t: None,
+) -> Certificate:
+    """The solution of the scenario's equations enclosed to ``width``, and the distance of ``states`` (n, m) from it.
+
+    A component is measured by its largest absolute value at the rows; one that is zero there by 1.  Raises NotAnalytic
+    where the equations have no power series.
+    """
+    sizes = np.max(np.abs(states), axis=1).astype(float)
+    scale = np.where(sizes > 0, sizes, 1.0)
+    end = float(times[-1])
+    state = dynamics.scenario.state
+    found = enclosed(
+        dynamics.right_hand_side, dynamics.jacobian, state, end, width, scale.tolist(), seconds, watch
+    )
+    rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
+    centre, radius, error = (np.zeros((len(states), rows)) for _ in range(3))
+    with ctx.workprec(found.bits + GUARD):
+        for k in range(rows):
+            for i, value in enumerate(found.at(float(times[k]))):
+                middle = float(value.mid())
+                centre[i, k] = middle
+                # What is printed of a float is within half a unit in its last place of it.
+                radius[i, k] = _above(value - arb(middle)) + 2.0**-52 * abs(middle)
+                error[i, k] = _above(value - _exact(states[i, k]))
+    return Certificate(found, centre, radius, error, scale, found.ended)
+
+
+def _above(value: arb) -> float:
+    """A float no smaller than |value|."""
+    return float(np.nextafter(float(value.abs_upper()), inf))
+
+
+def _exact(value: Any) -> arb:
+    """A float of any width as it is."""
+    numerator, denominator = value.as_integer_ratio()
+    return arb(fmpq(int(numerator), int(denominator)))

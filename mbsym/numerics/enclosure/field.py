@@ -1,0 +1,169 @@
+"""A right-hand side f(t, x) and its Jacobian over whatever has arithmetic: balls, series of balls, models on a disc.
+
+Balls enclose the values over all points that they contain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_series, ctx, fmpq
+
+from mbsym.numerics.enclosure.model import Model, model
+from mbsym.numerics.kernels.interface import Code
+
+_SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
+
+
+class NotAnalytic(Exception):
+    """A function in the equations without a power series; its name."""
+
+
+def _exponential(x: Any) -> tuple[Any, Any]:
+    return x.exp(), (-x).exp()
+
+
+def _sinh(x: Any) -> Any:
+    up, down = _exponential(x)
+    return (up - down) / 2
+
+
+def _cosh(x: Any) -> Any:
+    up, down = _exponential(x)
+    return (up + down) / 2
+
+
+def _tanh(x: Any) -> Any:
+    up, down = _exponential(x)
+    return (up - down) / (up + down)
+
+
+#: Functions of the language, from those that balls, series and models have themselves.
+FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+    "sin": lambda x: x.sin(),
+    "cos": lambda x: x.cos(),
+    "tan": lambda x: x.sin() / x.cos(),
+    "exp": lambda x: x.exp(),
+    "sqrt": lambda x: x.sqrt(),
+    "log": lambda x: x.log(),
+    "atan": lambda x: x.atan(),
+    "sinh": _sinh,
+    "cosh": _cosh,
+    "tanh": _tanh,
+}
+
+
+def function_of(code: Code, bits: int) -> Callable[[Sequence[Any]], list[Any]]:
+    """The code as a function of balls, series or models, in the order of its inputs.
+
+    Raises NotAnalytic where it has a function without a power series.
+    """
+    program = code.program
+    scope: dict[str, Any] = {}
+    slots = {name: place for place, name in enumerate(code.inputs)}
+    lines = ["def f(x):"]
+    values: dict[int, str] = {}
+    with ctx.workprec(bits):
+        for number in program.live(code.outputs):
+            instruction = program.instructions[number]
+            operands = [values[operand] for operand in instruction.operands]
+            local = values[number] = f"v{number}"
+            match instruction.operation, operands:
+                case "constant", _:
+                    assert isinstance(instruction.payload, Fraction)
+                    scope[local] = arb(fmpq(instruction.payload.numerator, instruction.payload.denominator))
+                    continue
+                case "input", _:
+                    text = f"x[{slots[str(instruction.payload)]}]"
+                case "negative", [a]:
+                    text = f"-{a}"
+                case operation, [a, b] if operation in _SIGNS:
+                    text = f"{a} {_SIGNS[operation]} {b}"
+                case name, [a]:
+                    if name not in FUNCTIONS:
+                        raise NotAnalytic(name)
+                    scope[f"call_{name}"] = FUNCTIONS[name]
+                    text = f"call_{name}({a})"
+                case operation, _:
+                    raise NotAnalytic(operation)
+            lines.append(f"    {local} = {text}")
+    lines.append("    return [" + ", ".join(values[node.number] for node in code.outputs) + "]")
+    exec(compile("\n".join(lines), "<straight-line program>", "exec"), scope)  # our own text, made of numbers only
+    found: Callable[[Sequence[Any]], list[Any]] = scope["f"]
+    return found
+
+
+def upper(value: arb) -> arb:
+    """An exact bound of |value|, rounded up; not finite where there is none."""
+    return value.abs_upper()
+
+
+def series(coefficients: Sequence[arb]) -> arb_series:
+    """sum_k coefficients_k s^k, cut off by the context."""
+    return arb_series(list(coefficients))
+
+
+def _coefficient(value: Any, k: int) -> arb:
+    if isinstance(value, arb_series):
+        return value[k]
+    return value if k == 0 else arb(0)
+
+
+class cap:
+    """Series are cut off after so many coefficients, as long as this lasts."""
+
+    def __init__(self, length: int) -> None:
+        self.length = length
+
+    def __enter__(self) -> None:
+        self.before, ctx.cap = ctx.cap, self.length
+
+    def __exit__(self, *_: object) -> None:
+        ctx.cap = self.before
+
+
+class Field:
+    """f: (t, x) -> x' (n numbers) and J = df/dx (n*n numbers, row by row), both at ``bits`` bits."""
+
+    def __init__(self, rates: Code, jacobian: Code, bits: int) -> None:
+        self.bits = bits
+        self.size = len(rates.outputs)
+        self._rates = function_of(rates, bits)
+        self._jacobian = function_of(jacobian, bits)
+
+    def rates(self, t: Any, x: Sequence[Any]) -> list[Any]:
+        """f at numbers of one kind."""
+        return self._rates([t, *x])
+
+    def jacobian(self, t: Any, x: Sequence[Any]) -> list[Any]:
+        """J at numbers of one kind."""
+        return self._jacobian([t, *x])
+
+    def solution(self, t: arb, x: Sequence[arb], order: int) -> list[list[arb]]:
+        """Taylor coefficients of the solutions through x (a point or a box): those of s^0 to s^order, n lists.
+
+        x_(k+1) = [f(t + s, x(s))]_k / (k + 1): each pass gives one coefficient more.
+        """
+        found = [[value] for value in x]
+        for k in range(order):
+            with cap(k + 1):
+                slopes = self.rates(series([t, arb(1)]), [series(item) for item in found])
+                for item, slope in zip(found, slopes, strict=True):
+                    item.append(_coefficient(slope, k) / (k + 1))
+        return found
+
+    def gradients(self, t: arb, solution: Sequence[Sequence[arb]], order: int) -> list[list[list[arb]]]:
+        """Taylor coefficients of J along solutions: ``found[i][j][k]`` of s^k, k < order."""
+        with cap(order):
+            rows = self.jacobian(series([t, arb(1)]), [series(item[:order]) for item in solution])
+            n = self.size
+            return [[[_coefficient(rows[n * i + j], k) for k in range(order)] for j in range(n)] for i in range(n)]
+
+    def jacobian_sizes(self, t: arb, solutions: Sequence[Model]) -> list[float]:
+        """|J_ij|_R of the models of solutions, row by row."""
+        ring = solutions[0].ring
+        with cap(ring.degree + 1):
+            found = self.jacobian(model(ring, [t, arb(1)]), solutions)
+            return [value.norm if isinstance(value, Model) else model(ring, [value]).norm for value in found]
