@@ -10,8 +10,10 @@ import click
 
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
+from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_many import Many, many_options, read_many
 from mbsym_cli.simulation_options import Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags, read_request
 from mbsym_cli.simulation_run import run
@@ -21,8 +23,9 @@ from mbsym_cli.simulation_run import run
 @click.argument("file", type=click.Path(path_type=Path))
 @span_options
 @way_options
+@many_options
 @output_options
-def command(file: Path, span: Span, way: Way, output: Output) -> None:
+def command(file: Path, span: Span, way: Way, many: Many, output: Output) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -39,6 +42,10 @@ def command(file: Path, span: Span, way: Way, output: Output) -> None:
     systems); taylor (very exact, needs heyoka); with a fixed step rk4 and, for conservative systems, midpoint,
     midpoint4, midpoint6 (whose energy does not drift).
 
+    --vary integrates many motions at once, on a grid or drawn at random; written are ensemble.csv (mean, standard
+    deviation, extremes and quantiles at every time), members.csv (values and final state of each), fan charts and
+    ensemble.json.  --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
+
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
     ...-partial.  Exit codes: 0 done, 1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
 
@@ -48,26 +55,34 @@ def command(file: Path, span: Span, way: Way, output: Output) -> None:
       mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
       mbsym simulate systems/double-pendulum.yaml --time 6 --animate --bodies --format csv,pdf
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4
+      mbsym simulate systems/double-pendulum.yaml --time 10 --vary "theta1=normal(1, 0.01)" --members 1000
+      mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
     """
     folder = folder_for(file, output.out)
     flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
-        sys.exit(_command(file, folder, span.settings, typed(span, way, output), flags))
+        sys.exit(_command(file, folder, span.settings, typed(span, way, output), flags, many))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
 
 
-def _command(file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], flags: Flags) -> int:
+def _command(
+    file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], flags: Flags, many: Many
+) -> int:
     """Reads everything, complains about everything, then simulates."""
     system = read_description(file)
     asked = Options()
-    given = None if system is None else given_numbers(file, system, settings, asked)[0]
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     wanted = read_request(system, texts, flags, asked)
+    varied, sensitive = read_many(many, given, wanted, asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)
     if reason:
         complain(file, f"the results cannot be written: {reason}")
         return FAILED
-    return run(file, folder, given, wanted, asked)
+    if varied is not None:
+        return spread(file, folder, given, overrides, varied, wanted, asked)
+    code = run(file, folder, given, wanted, asked)
+    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)

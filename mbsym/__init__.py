@@ -25,11 +25,23 @@ if TYPE_CHECKING:
 
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
+    from mbsym.numerics.ensemble import Ensemble
     from mbsym.simulation import Simulation
+    from mbsym.simulation.sensitivities import Sensitivities
     from mbsym.studies import EquilibriaStudy, ExtremesStudy, TradeoffStudy
 
 __version__ = "0.1.0"
-__all__ = ["DescriptionError", "equilibria", "extremes", "load", "loads", "simulate", "tradeoff"]
+__all__ = [
+    "DescriptionError",
+    "ensemble",
+    "equilibria",
+    "extremes",
+    "load",
+    "loads",
+    "sensitivities",
+    "simulate",
+    "tradeoff",
+]
 
 
 class DescriptionError(ValueError):
@@ -94,6 +106,77 @@ def simulate(
         time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole
     )
     return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
+
+
+def ensemble(
+    source: str | Path | Analysis,
+    time: float,
+    vary: Mapping[str, tuple[float | str, ...]],
+    *,
+    members: int | None = None,
+    seed: int = 1,
+    sampling: str = "random",
+    values: Mapping[str, Fraction | float | str] | None = None,
+    samples: int | None = None,
+    every: float | None = None,
+    method: str = "auto",
+    tolerance: float | None = None,
+    step: float | None = None,
+    threads: int | None = None,
+) -> Ensemble:
+    """Many motions at once, side by side in vector registers and on all cores, and how they are spread.
+
+        >>> import mbsym
+        >>> found = mbsym.ensemble("systems/double-pendulum.yaml", 5, {"theta1": (0.5, 1.0, 100)})
+        >>> found.count, found.statistics.mean.shape, found.final.shape
+        (100, (201, 4), (4, 100))
+
+    ``vary`` maps names of parameters, coordinates and velocities to (low, high, count), a grid, or to
+    ("normal", mean, deviation) or ("uniform", low, high), of which ``members`` are drawn.  Members that end early are
+    in ``found.fates``.  The rest is what ``mbsym simulate --vary`` calls by the same names.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.scenario import scenario
+    from mbsym.numerics.variation import variation
+    from mbsym.simulation.ensembles import Spread, simulate_many
+
+    system = _system(source)
+    read = simulation.read_values(system, values or {})
+    request = simulation.Request(time, samples, every, method, tolerance, step)
+    asked = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
+    return simulate_many(scenario(system, read), asked, read, threads)
+
+
+def sensitivities(
+    source: str | Path | Analysis,
+    time: float,
+    names: Iterable[str],
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    samples: int | None = None,
+    every: float | None = None,
+    method: str = "auto",
+    tolerance: float | None = None,
+) -> Sensitivities:
+    """How the motion answers to changes of parameters and of initial values: ``mbsym simulate --sensitivity``.
+
+        >>> import mbsym
+        >>> found = mbsym.sensitivities("systems/simple-pendulum.yaml", 2, ["theta", "l"])
+        >>> found["theta", "l"].shape
+        (2001,)
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation.sensitivities import sensitivities as derived
+
+    system = _system(source)
+    read = simulation.read_values(system, values or {})
+    request = simulation.Request(time, samples, every, method, tolerance)
+    return derived(scenario(system, read), request, tuple(names), read)
 
 
 def tradeoff(

@@ -67,6 +67,21 @@ class Draw:
 Variation = Grid | Draw
 
 
+def variation(name: str, given: Sequence[float | str]) -> Variation:
+    """(low, high, count), ("normal", mean, deviation) or ("uniform", low, high); else ValueError."""
+    first, *rest = given
+    if len(rest) != 2:
+        raise ValueError(f"{name}: (low, high, count), ('normal', mean, deviation) or ('uniform', low, high)")
+    if isinstance(first, str):
+        if first not in (NORMAL, UNIFORM):
+            raise ValueError(f"{name}: there is no distribution {first}: choose from {NORMAL}, {UNIFORM}")
+        return Draw(name, first, float(rest[0]), float(rest[1]))
+    count = int(rest[1])
+    if count < 2:
+        raise ValueError(f"{name}: a grid has 2 values at least, not {count}")
+    return Grid(name, float(first), float(rest[0]), count)
+
+
 class Unvaried(ValueError):
     """What cannot be varied; ``reasons`` are (name, sentence, hint), all of them."""
 

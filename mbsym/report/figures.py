@@ -78,7 +78,7 @@ def _title(system: System) -> str:
     return system.name if len(system.name) <= 70 else system.name[:67] + "..."
 
 
-def _labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
+def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
     """Coordinates and velocities as mathematical text in the user's names, ``between`` them and their units."""
     names = LatexNames(["t", *system.coordinates])
     # matplotlib knows no \mathtt{a\_b}; plain letters are as clear.
@@ -97,7 +97,7 @@ def _labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[st
 def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
     """q(t) on the left, q'(t) on the right, a row a coordinate."""
     system = found.system
-    positions, velocities = _labels(system, "\n")
+    positions, velocities = coordinate_labels(system, "\n")
     place = {name: i for i, name in enumerate(system.coordinates)}
     for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
         figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
@@ -132,7 +132,7 @@ def _span(axis: Any, times: Any) -> None:
 def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[str, Figure]]:
     """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
     system = found.system
-    positions, velocities = _labels(system)[0], _labels(system, "\n")[1]
+    positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
     place = {name: i for i, name in enumerate(system.coordinates)}
     turning = angle_denominators(system)
     for file, names, page in _pages("phase-planes", system.coordinates, PLANE_ROWS * PLANE_COLUMNS):

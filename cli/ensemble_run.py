@@ -1,0 +1,115 @@
+"""``mbsym simulate --vary`` and ``--sensitivity``: integrated, written, summed up."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, console, printable, status
+from mbsym_cli.files import deliver
+from mbsym_cli.options import Options
+from mbsym_cli.progress import progress
+
+if TYPE_CHECKING:
+    from mbsym.expressions.tree import Expression
+    from mbsym.numerics.scenario import Scenario
+    from mbsym_cli.simulation_many import Varied
+    from mbsym_cli.simulation_request import Asked
+
+
+def spread(
+    file: Path,
+    folder: Path,
+    given: Scenario,
+    overrides: Mapping[str, Expression],
+    varied: Varied,
+    wanted: Asked,
+    options: Options,
+) -> int:
+    """Many motions; the exit code."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.variation import Unvaried
+    from mbsym.report.ensemble_figure import fan_charts
+    from mbsym.report.ensemble_tables import ensemble_csv, ensemble_json, members_csv, sentences
+    from mbsym.simulation.ensembles import Spread, simulate_many
+
+    request = Spread(wanted.request, varied.variations, varied.members, varied.seed, varied.sampling)
+    try:
+        with progress(wanted.quiet, file.name, wanted.request.time) as watch:
+            found = simulate_many(given, request, overrides, watch=watch)
+        with status(wanted.quiet, "drawing"):
+            texts: dict[str, str | bytes] = {}
+            if "csv" in wanted.formats:
+                texts |= {"ensemble.csv": ensemble_csv(found), "members.csv": members_csv(found)}
+            kinds = [kind for kind in wanted.formats if kind != "csv"]
+            texts |= fan_charts(found, kinds) if kinds and len(found.times) > 1 else {}
+            files = list(texts)
+            texts["ensemble.json"] = ensemble_json(found, varied.variations, varied.seed, varied.sampling, files)
+            deliver(folder, texts, "ensemble")
+    except Unvaried as error:
+        for name, told, hint in error.reasons:
+            options.complain(f"--vary {name}", "bad-variation", told, hint or None)
+        options.refused(file)
+        return BAD_INPUT
+    except Failure as error:
+        complain(file, f"error[no-program]: there is no program for these equations: {error}")
+        return FAILED
+    except OSError as error:
+        complain(file, f"the results cannot be written: {error}")
+        return FAILED
+    except MemoryError:
+        complain(file, "out of memory; ask for fewer members")
+        return FAILED
+    if not wanted.quiet:
+        _print(file, given.system.name, sentences(found), folder, texts)
+    if found.interrupted:
+        complain(file, f"interrupted; kept up to t = {found.times[-1]:.9g}")
+        return INTERRUPTED
+    if found.fates:
+        print(f"{printable(file)}: {len(found.fates)} of {found.count} members ended early.", file=sys.stderr)
+        return BROKEN_DOWN
+    return OK
+
+
+def answers(
+    file: Path,
+    folder: Path,
+    given: Scenario,
+    overrides: Mapping[str, Expression],
+    names: tuple[str, ...],
+    wanted: Asked,
+) -> int:
+    """The motion's derivatives by initial values and parameters; the exit code."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.report.sensitivity_csv import sensitivity_csv, sentences
+    from mbsym.simulation.sensitivities import sensitivities
+
+    try:
+        with status(wanted.quiet, f"{file.name}: how it answers to changes"):
+            found = sensitivities(given, wanted.request, names, overrides)
+            deliver(folder, {"sensitivity.csv": sensitivity_csv(found)}, "sensitivity")
+    except Failure as error:
+        complain(file, f"error[no-program]: there is no program for the derivatives: {error}")
+        return FAILED
+    except OSError as error:
+        complain(file, f"the derivatives cannot be written: {error}")
+        return FAILED
+    if not wanted.quiet:
+        _print(file, f"{given.system.name}: derivatives", sentences(found), folder, ["sensitivity.csv"])
+    if found.ended is not None:
+        complain(file, f"the derivatives end early: {found.ended}")
+        return BROKEN_DOWN
+    return OK
+
+
+def _print(file: Path, title: str, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str]) -> None:
+    from rich.text import Text
+
+    out = console()
+    out.print(Text.assemble((title, "bold"), (f"  {printable(file)}", "dim")))
+    for name, text in lines:
+        style = "yellow" if name == "warning" else "bold cyan"
+        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
+    out.print(Text.assemble("  files in ", (printable(folder), "bold"), f": {', '.join(names)}"))

@@ -1,0 +1,124 @@
+"""``mbsym simulate --vary`` and ``--sensitivity`` as a user meets them."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from conftest import SHIPPED
+from jsonschema import Draft202012Validator
+
+import mbsym
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+PENDULUM = str(SHIPPED / "double-pendulum.yaml")
+AWAY = """
+mbsym: 1
+name: Away
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: x**3}
+initial: {x: 0.5}
+"""
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ["simulate", *arguments])
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_an_ensemble_is_written_and_summed_up(tmp_path: Path) -> None:
+    arguments = ["--time", "2", "--vary", "theta1=0:pi/2:9", "--vary", "m1=1:2:3", "--samples", "11"]
+    done = run(PENDULUM, *arguments, "--out", str(tmp_path))
+    assert done.exit_code == 0, done.output
+    assert "27, theta1, m1 varied" in done.output
+    content = json.loads((tmp_path / "ensemble.json").read_text())
+    Draft202012Validator(schema("ensemble")).validate(content)
+    assert content["members"] == 27
+    assert sorted(content["files"]) == ["ensemble.csv", "fan.png", "fan.svg", "members.csv"]
+    spread, members = rows(tmp_path / "ensemble.csv"), rows(tmp_path / "members.csv")
+    assert len(spread) == 11
+    assert len(members) == 27
+    # the mean of the members' final states is the mean at the end, and a member is a simulation of its own
+    last = np.array([float(row["theta2_final"]) for row in members])
+    assert float(spread[-1]["theta2_mean"]) == pytest.approx(last.mean(), abs=1e-14)
+    own = mbsym.simulate(PENDULUM, 2, values={"theta1": float(members[13]["theta1"]), "m1": float(members[13]["m1"])})
+    assert last[13] == pytest.approx(own["theta2"][-1], abs=1e-9)
+
+
+def test_members_that_end_early_are_told_everywhere(tmp_path: Path) -> None:
+    path = tmp_path / "away.yaml"
+    path.write_text(AWAY)
+    done = run(str(path), "--time", "3", "--vary", "x=0:1:11", "--out", str(tmp_path / "out"), "--format", "csv")
+    assert done.exit_code == 3
+    assert "member 10 (x = 1): blow-up" in done.output
+    assert "members ended early" in done.output
+    members = rows(tmp_path / "out" / "members.csv")
+    # x'' = x^3 from rest at a: gone after 1.854/a (a complete elliptic integral of the first kind)
+    gone = [row["member"] for row in members if row["ended"]]
+    assert gone == [str(k) for k in range(11) if k and 1.8540746773013719 / (k / 10) < 3]
+    assert all(row["x_final"] == "" for row in members if row["ended"])
+    assert rows(tmp_path / "out" / "ensemble.csv")[-1]["alive"] == str(11 - len(gone))
+
+
+def test_the_same_seed_draws_the_same_members(tmp_path: Path) -> None:
+    for name, seed in (("a", "1"), ("b", "1"), ("c", "2")):
+        arguments = ["--time", "1", "--vary", "theta1=normal(0.3, 0.01)", "--members", "20", "--seed", seed]
+        assert run(PENDULUM, *arguments, "--out", str(tmp_path / name), "--format", "csv", "-q").exit_code == 0
+    first, second, third = ((tmp_path / name / "members.csv").read_text() for name in "abc")
+    assert first == second
+    assert first != third
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--vary", "theta1"], "this says no range"),
+        (["--vary", "theta1=0:1"], "this is no range"),
+        (["--vary", "theta1=normal(0, z)", "--members", "5"], "unknown name z"),
+        (["--vary", "thta1=0:1:5"], "did you mean 'theta1'"),
+        (["--vary", "theta1=normal(0, 1)"], "how many members to draw"),
+        (["--vary", "theta1=0:1:5", "--vary", "m1=uniform(1, 2)"], "do not go together"),
+        (["--vary", "theta1=0:1:5000000"], "too many"),
+        (["--vary", "theta1=0:1:5", "--method", "radau"], "side by side"),
+        (["--vary", "theta1=0:1:5", "--invariants"], "--invariants does not go"),
+        (["--members", "5"], "--members goes with --vary"),
+        (["--vary", "m1=-1:1:5"], "declared positive"),
+        (["--sensitivity", "m9"], "nothing called 'm9'"),
+        (["--sensitivity", "m1", "--vary", "m1=1:2:3"], "exclude each other"),
+    ],
+)
+def test_what_is_wrong_is_said_and_nothing_written(arguments: list[str], told: str, tmp_path: Path) -> None:
+    done = run(PENDULUM, "--time", "1", *arguments, "--out", str(tmp_path / "out"))
+    assert done.exit_code == 2, done.output
+    assert told in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_derivatives_are_written(tmp_path: Path) -> None:
+    done = run(PENDULUM, "--time", "1", "--sensitivity", "theta1,m1", "--out", str(tmp_path), "--format", "csv")
+    assert done.exit_code == 0, done.output
+    found = rows(tmp_path / "sensitivity.csv")
+    assert float(found[0]["d theta1/d theta1(0)"]) == 1
+    h = 1e-5
+    ends = [mbsym.simulate(PENDULUM, 1, values={"m1": 1 + sign * h}, tolerance=1e-13)["theta2"][-1] for sign in (1, -1)]
+    assert float(found[-1]["d theta2/d m1"]) == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
+
+
+def test_python_returns_arrays() -> None:
+    found = mbsym.ensemble(PENDULUM, 1, {"theta1": ("uniform", 0, 1), "g": ("normal", 9.81, 0.01)}, members=50)
+    assert found.statistics.quantiles.shape == (5, 201, 4)
+    answers = mbsym.sensitivities(PENDULUM, 1, ["theta1", "l1"])
+    assert answers["theta1", "theta1"][0] == 1
+    with pytest.raises(ValueError, match="no distribution"):
+        mbsym.ensemble(PENDULUM, 1, {"theta1": ("gamma", 0, 1)}, members=50)
