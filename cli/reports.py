@@ -77,7 +77,6 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
     from mbsym.formulas.tree import angles_as
-    from mbsym.report.compact import prepared
     from mbsym.report.html_motion import animated
 
     started = time.perf_counter()
@@ -90,13 +89,9 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
         def doing(text: str) -> None:
             say(f"{path.name}: {text}")
 
-        def meanwhile() -> None:
-            with angles_as(request.angles):
-                prepared(analysis, request.formats)
-
-        derive_all(analysis, request.formats, doing, beside, meanwhile)
+        early = derive_all(analysis, request.formats, doing, beside, lambda: angles_as(request.angles))
         with angles_as(request.angles), animated(request.animate):
-            files = rendered_all(analysis, request.formats, doing, beside)
+            files = rendered_all(analysis, request.formats, doing, beside, early)
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:
             say(f"{path.name}: ledger")

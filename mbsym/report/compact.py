@@ -7,7 +7,6 @@ closed formulas of everything.  Every target for people makes the same choice he
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -63,14 +62,6 @@ def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
     if key not in made:  # the results are kept with the choice, so that their ids stay their own
         made[key] = tuple(problems.values()), _chosen(analysis, problems)
     return made[key][1]
-
-
-def prepared(analysis: Analysis, formats: Sequence[str]) -> None:
-    """What the files for people will find made.  Who cannot do without it meets what goes wrong when he asks."""
-    if not {"latex", "html"}.isdisjoint(formats):
-        found = {number: analysis.stage(number).value for number in analysis.problems}
-        with suppress(Exception):
-            compact(analysis, found)
 
 
 _MADE: WeakKeyDictionary[Analysis, dict[tuple[Any, ...], tuple[Any, dict[int, Compact]]]] = WeakKeyDictionary()

@@ -6,19 +6,26 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
+    from mbsym.problems.checks import Check
     from mbsym.report.rendering import Rendered
 
 #: Says what is being done.
 Say = Callable[[str], None]
 
-#: The formats that are made beside the others: about half of the work of all of them.
-APART = ("latex",)
+#: The files of a format, by its name.
+Files = dict[str, tuple["Rendered", ...]]
+
+#: What is made beside verdicts, once checks are: these files tell nothing else.
+EARLY = ("python", "c")
+
+#: What is made beside the other files: about half of the work.
+APART = ("latex", "json")
 
 
 class Beside(Protocol):
@@ -38,7 +45,7 @@ def unhelped(work: Callable[[], Any], sound: Callable[[Any], bool]) -> Iterator[
     yield work
 
 
-def _nothing() -> None: ...
+def _silent(_: str) -> None: ...
 
 
 def derive_all(
@@ -46,14 +53,16 @@ def derive_all(
     formats: Iterable[str],
     say: Say,
     beside: Beside = unhelped,
-    meanwhile: Callable[[], None] = _nothing,
-) -> None:
-    """Everything that the files and the terminal will show, in order.
+    writing: Callable[[], AbstractContextManager[None]] = nullcontext,
+) -> Files:
+    """Everything that the files and the terminal will show, in order; files that were made on the way, if any.
 
-    Checks are carried out ``beside`` the verdict of stability, which they do not read, and ``meanwhile``; what is said
-    then waits for them.
+    Where somebody helps he carries out the checks and makes the files of the program ``beside`` the verdict of
+    stability, which needs neither, and the telling of long formulas; what is said then waits for the checks.  Files are
+    made as ``writing`` has them.
     """
-    from mbsym.analysis import PROBLEMS, second_routes
+    from mbsym.analysis import PROBLEMS
+    from mbsym.analysis.second_routes import carried_out
     from mbsym.report.targets import FORMATS
 
     def derive(late: bool) -> None:
@@ -66,40 +75,69 @@ def derive_all(
         derive(late=False)
         if any(FORMATS[name].program for name in formats):
             analysis.optional("programs")
-        defects = len(analysis.defects)
-        with beside(lambda: second_routes.carried_out(analysis), lambda _: len(analysis.defects) == defects) as found:
+    defects = len(analysis.defects)
+    helped = beside is not unhelped
+    early = [name for name in formats if name in EARLY] if helped else []
+
+    def work() -> tuple[list[Check], Files]:
+        checks = carried_out(analysis)
+        with writing():
+            return checks, _made(early, analysis, _silent)
+
+    with beside(work, lambda found: len(analysis.defects) == defects and _whole(found[1])) as found:
+        with analysis.unvouched():
             derive(late=True)
-            meanwhile()
-            say("self-check")
-            analysis.take(found())
+            if helped:
+                _prepare(formats, analysis, writing)
+        say("self-check")
+        checks, files = found()
+    analysis.take(checks)
     if analysis.system.claims:
         say("claims")
         _ = analysis.claims
-    say("self-check")
     _ = analysis.checks
+    return files
 
 
-def rendered_all(analysis: Analysis, formats: Iterable[str], say: Say, beside: Beside = unhelped) -> list[Rendered]:
-    """The files of some formats, those of one format all or none; about half of them made ``beside`` the others."""
+def rendered_all(
+    analysis: Analysis, formats: Iterable[str], say: Say, beside: Beside = unhelped, files: Files | None = None
+) -> list[Rendered]:
+    """The files of some formats, those of one format all or none; ``files`` are there already.
+
+    About half of them are made ``beside`` the others.
+    """
+    made = dict(files or {})
+    missing = [name for name in formats if name not in made]
+    apart = [name for name in missing if name in APART]
+    here = [name for name in missing if name not in APART]
+    with (beside if here and apart else unhelped)(lambda: _made(apart, analysis, say), _whole) as others:
+        made |= _made(here, analysis, say)
+        made |= others()
+    return [file for name in formats for file in made[name]]
+
+
+def _prepare(formats: Iterable[str], analysis: Analysis, writing: Callable[[], AbstractContextManager[None]]) -> None:
+    """What the files for people will find made.  Who cannot do without it meets what goes wrong when he asks."""
+    from mbsym.report.compact import compact
+
+    if not {"latex", "html"}.isdisjoint(formats):
+        with suppress(Exception), writing():
+            compact(analysis, {number: analysis.stage(number).value for number in analysis.problems})
+
+
+def _made(formats: Iterable[str], analysis: Analysis, say: Say) -> Files:
     from mbsym.report.rendering import rendered
     from mbsym.report.targets import FORMATS
 
-    formats = tuple(formats)
-    made: dict[str, tuple[Rendered, ...]] = {}
-
-    def make(name: str) -> tuple[Rendered, ...]:
+    made = {}
+    for name in formats:
         say(f"writing {FORMATS[name].filename}")
-        return rendered(FORMATS[name], analysis, analysis.problems)
+        made[name] = rendered(FORMATS[name], analysis, analysis.problems)
+    return made
 
-    def whole(files: list[tuple[Rendered, ...]]) -> bool:
-        return not any(file.failure or file.withheld for several in files for file in several)
 
-    here = [name for name in formats if name not in APART]
-    apart = [name for name in formats if name in APART]
-    with (beside if here else unhelped)(lambda: [make(name) for name in apart], whole) as others:
-        made |= {name: make(name) for name in here}
-        made |= dict(zip(apart, others(), strict=True))
-    return [file for name in formats for file in made[name]]
+def _whole(made: Files) -> bool:
+    return not any(file.failure or file.withheld for files in made.values() for file in files)
 
 
 def lost(analysis: Analysis, files: Iterable[Rendered]) -> list[tuple[str, NoResult]]:
