@@ -20,7 +20,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
 from typing import Any
@@ -34,6 +33,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.dataclass import dataclass
 
 Polynomial = Any
 

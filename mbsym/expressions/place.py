@@ -7,7 +7,9 @@ they collect into.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from mbsym.expressions.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -8,9 +8,10 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
+from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.

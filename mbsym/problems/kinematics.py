@@ -20,8 +20,7 @@ Example:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.frames import direction_cosines

@@ -6,8 +6,7 @@ that the file holds, and only the builder, which knows what a place wants, gives
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 
 #: Bounds on a whole description.

@@ -5,8 +5,9 @@ from __future__ import annotations
 import keyword
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, JUMPS, KINKED, Call, Expression, Name, walk
