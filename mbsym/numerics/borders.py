@@ -32,6 +32,7 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
+from mbsym.numerics.scales import kinds, scales
 from mbsym.numerics.scenario import Incomplete, Scenario, changed
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
@@ -87,6 +88,8 @@ class LinearModel:
         self.verdict_of = ExactVerdicts(scene, analysis.balance, linear, motion, analysis.signs)
         self.ring, self.linear = scene.ring, linear
         self.size = len(linear.coordinates)
+        named = dict(zip(analysis.system.coordinates, kinds(analysis.system), strict=True))
+        self.alike = tuple(named[name] for name in linear.coordinates)
         self.names = (*analysis.system.parameter_names, "pi")
         program = Program()
         carry = Carrier(scene.ring, program, {name: program.input(name) for name in self.names})
@@ -104,12 +107,14 @@ class LinearModel:
         """Of every matrix that is not zero, by its letter, and of the ``eigenvalues``."""
         inputs = self._floats(given)
         found = {}
+        masses = self._exact("M", given)[0][:: self.size + 1]
         for name in self.shown:
             exact, bits = self._exact(name, given)
-            pairs = {s: compared(self._values(name, s, inputs), exact, full) for s, full in FULL.items()}
+            sizes = scales(name, exact, masses, self.alike)
+            pairs = {s: compared(self._values(name, s, inputs), exact, full, sizes) for s, full in FULL.items()}
             kept, worst = ({s: pair[i] for s, pair in pairs.items()} for i in (0, 1))
             norm = max((abs(float(x.mid())) for x in exact), default=0.0)
-            condition = self._condition(name, given)
+            condition = self._condition(name, given, sizes)
             found[name] = Digits(kept, worst, kept[FLOAT64], condition, bits, norm)
         eigenvalues = self._eigenvalue_digits(given)
         if eigenvalues is not None:
@@ -134,7 +139,7 @@ class LinearModel:
     def _balls(self, given: Scenario) -> list[Any]:
         return [*(ball(given.parameters[name]) for name in self.names[:-1]), acb.pi().real]
 
-    def _condition(self, name: str, given: Scenario) -> float:
+    def _condition(self, name: str, given: Scenario, sizes: Sequence[Any]) -> float:
         with ctx.workprec(512):
             inputs = self._balls(given)
             base = self._truth[name](inputs)
@@ -147,8 +152,8 @@ class LinearModel:
                     s + abs(float(((a - b) * acb(2).real ** 200).mid()))
                     for s, a, b in zip(sums, values, base, strict=True)
                 ]
-            norm = max((abs(float(x.mid())) for x in base), default=0.0)
-        return max(sums) / norm if norm else 1.0
+            parts = [s / float(size) if size > 0 else inf for s, size in zip(sums, sizes, strict=True) if s]
+        return max(parts, default=1.0)
 
     def eigenvalues(self, given: Scenario, scalar: str) -> Any:
         """Of the first-order system, in floating point throughout; None where M is singular to it."""

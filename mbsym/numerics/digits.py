@@ -5,11 +5,12 @@ are tight.  Three numbers are told apart for an arithmetic with unit roundoff u:
 
 digits       -log10 of the relative error at the state that is meant, whose inputs had to be rounded first
 formula      the same at the rounded state itself: what the formula and its arithmetic cost
-condition    max_i sum_j |df_i/dx_j x_j| / max_i |f_i|, over the parameters, coordinates and velocities: an input known
+condition    max_i sum_j |df_i/dx_j x_j| / s_i, over the parameters, coordinates and velocities: an input known
              to a relative error u gives a result known to condition * u, whatever the formula (Higham, section 1.6)
 
 so a loss of log10(condition) digits is in the question, and only what goes beyond it is in the formula.
-Errors are norm-wise, max |error_i| / max |f_i| (``digits``), and for the worst entry of its own (``worst``).
+Errors are max |error_i| / s_i with the sizes s_i of ``mbsym.numerics.scales``, which do not depend on units
+(``digits``), and for the worst entry of its own (``worst``).
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.scales import kinds, scales
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import bound, substituted
 
@@ -127,7 +129,7 @@ class Truth:
     """Rigorous values of quantities, and their condition."""
 
     def __init__(self, system: System, found: Sequence[Quantity]) -> None:
-        self.system = system
+        self.system, self.alike = system, kinds(system)
         self.functions = {q.name: precise(q.code, PRECISIONS[-1]) for q in found}
         self.varied = [
             place
@@ -155,8 +157,21 @@ class Truth:
                     return balls, bits
         return balls, 0
 
-    def condition(self, name: str, scenario: Scenario, time: Fraction, state: Sequence[Fraction]) -> float:
-        """By differences in 512 bits, which are derivatives for all that matters here."""
+    def scales(
+        self, name: str, exact: Sequence[arb], scenario: Scenario, time: Fraction, state: Sequence[Fraction]
+    ) -> list[arb]:
+        """What the errors of the entries are measured by at a state where they are ``exact``."""
+        masses: list[arb] = []
+        if "mass matrix" in self.functions:
+            n = len(self.alike)
+            with ctx.workprec(PRECISIONS[0]):
+                masses = self.functions["mass matrix"](self.inputs(scenario, time, state))[:: n + 1]
+        return scales(name, exact, masses if all(x.is_finite() for x in masses) else (), self.alike)
+
+    def condition(
+        self, name: str, scenario: Scenario, time: Fraction, state: Sequence[Fraction], sizes: Sequence[arb] = ()
+    ) -> float:
+        """By differences in 512 bits, which are derivatives for all that matters here; sizes: all the largest entry."""
         with ctx.workprec(512):
             inputs = self.inputs(scenario, time, state)
             base = self.functions[name](inputs)
@@ -168,9 +183,11 @@ class Truth:
                     moved[place] = inputs[place] * (1 + tiny)
                     values = self.functions[name](moved)
                     sums = [s + abs(a - b) for s, a, b in zip(sums, values, base, strict=True)]
-            norm = max((abs(float(x.mid())) for x in base), default=0.0)
-            largest = max((float((s / tiny).mid()) for s in sums), default=0.0)
-        return largest / norm if norm and isfinite(largest) else (inf if largest else 1.0)
+            whole = max((abs(x.mid()) for x in base), default=arb(0))
+            pairs = zip(sums, sizes or [whole] * len(sums), strict=True)
+            parts = [float((s / tiny / size).mid()) if size > 0 else inf for s, size in pairs if not s.is_zero()]
+        found = max(parts, default=1.0)
+        return found if isfinite(found) else inf
 
 
 def ball(value: Fraction) -> arb:
@@ -256,32 +273,37 @@ def measured(
         return Digits(nothing, nothing, 0.0, inf, 0, inf)
     norm = max((abs(float(x.mid())) for x in exact), default=0.0)
     inputs = np.array([float(x) for x in (time, *state)])
+    sizes = truth.scales(name, exact, scenario, time, state)
     kept, worst = {}, {}
     for scalar, full in FULL.items():
-        kept[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full)
+        kept[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full, sizes)
     rounded = [Fraction(x) for x in inputs]
     there, known = truth.value(name, scenario, rounded[0], rounded[1:])
-    formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64])[0] if known else 0.0
-    return Digits(kept, worst, formula, truth.condition(name, scenario, time, state), bits, norm)
+    formula = 0.0
+    if known:
+        own = truth.scales(name, there, scenario, rounded[0], rounded[1:])
+        formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64], own)[0]
+    return Digits(kept, worst, formula, truth.condition(name, scenario, time, state, sizes), bits, norm)
 
 
-def compared(values: Any, exact: Sequence[arb], full: float) -> tuple[float, float]:
-    """(norm-wise digits, digits of the worst entry), between 0 and ``full``."""
+def compared(values: Any, exact: Sequence[arb], full: float, sizes: Sequence[arb] = ()) -> tuple[float, float]:
+    """(digits relative to ``sizes``, digits of the worst entry of its own), between 0 and ``full``.
+
+    Without sizes every entry is measured by the largest one.
+    """
     with ctx.workprec(512):
-        size = max((abs(x).upper() for x in exact), default=arb(0))
+        whole = max((abs(x).upper() for x in exact), default=arb(0))
         largest, worst = arb(0), full
-        for value, x in zip(values, exact, strict=True):
+        for value, x, size in zip(values, exact, sizes or [whole] * len(exact), strict=True):
             if not isfinite(value):
                 return 0.0, 0.0
             error = abs(arb(float(value)) - x).upper()
-            largest = max(largest, error)
+            if error > 0 and not size > 0:
+                return 0.0, 0.0
+            largest = max(largest, error / size if size > 0 else arb(0))
             if not x.contains(0):
                 worst = min(worst, digits_of(error / abs(x), full))
-            elif error > 0 and size.is_zero():
-                worst = 0.0
-        if size.is_zero():
-            return (full, worst) if largest.is_zero() else (0.0, worst)
-        return digits_of(largest / size, full), worst
+        return digits_of(largest, full), worst
 
 
 def digits_of(error: arb, full: float) -> float:
