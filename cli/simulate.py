@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -13,8 +14,9 @@ from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_des
 from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_certify import Certifying, certify_options
 from mbsym_cli.simulation_many import Many, many_options, read_many
-from mbsym_cli.simulation_options import Output, Span, Way, output_options, span_options, typed, way_options
+from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags, read_request
 from mbsym_cli.simulation_run import run
 
@@ -24,8 +26,9 @@ from mbsym_cli.simulation_run import run
 @span_options
 @way_options
 @many_options
+@certify_options
 @output_options
-def command(file: Path, span: Span, way: Way, many: Many, output: Output) -> None:
+def command(file: Path, span: Span, way: Way, many: Many, certifying: Certifying, output: Output) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -46,6 +49,9 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output) -> Non
     deviation, extremes and quantiles at every time), members.csv (values and final state of each), fan charts and
     ensemble.json.  --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
 
+    --certify encloses the exact solution in balls: what it says is proved, whatever the method did.  enclosure.csv has
+    it.  Where neighbouring motions part fast that takes long, and ends early (exit code 3) where it is out of reach.
+
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
     ...-partial.  Exit codes: 0 done, 1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
 
@@ -57,24 +63,34 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output) -> Non
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4
       mbsym simulate systems/double-pendulum.yaml --time 10 --vary "theta1=normal(1, 0.01)" --members 1000
       mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
+      mbsym simulate systems/double-pendulum.yaml --time 5 --certify 1e-12
     """
     folder = folder_for(file, output.out)
     flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
-        sys.exit(_command(file, folder, span.settings, typed(span, way, output), flags, many))
+        texts = typed(span, way, output)
+        sys.exit(_command(file, folder, span.settings, texts, flags, many, [certifying]))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
 
 
 def _command(
-    file: Path, folder: Path, settings: Sequence[str], texts: Mapping[str, str | None], flags: Flags, many: Many
+    file: Path,
+    folder: Path,
+    settings: Sequence[str],
+    texts: Mapping[str, str | None],
+    flags: Flags,
+    many: Many,
+    further: Sequence[Group],
 ) -> int:
     """Reads everything, complains about everything, then simulates."""
     system = read_description(file)
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     wanted = read_request(system, texts, flags, asked)
+    for group in further:
+        wanted = replace(wanted, request=group.added(wanted.request, system, asked))
     varied, sensitive = read_many(many, given, wanted, asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT

@@ -28,6 +28,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     Files of an earlier simulation go with it: they would contradict simulation.json.  What stops the drawing, as Ctrl-C
     does, stops it only when the rest is delivered.
     """
+    from mbsym.report.certificate import enclosure_csv
     from mbsym.report.simulation_json import simulation_json
     from mbsym.report.trajectory_csv import trajectory_csv
 
@@ -37,6 +38,8 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         further = {kept.column: kept.values for kept in run.invariants}
         units = {kept.column: kept.unit for kept in run.invariants}
         files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further, units)
+    if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:
+        files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
     if "bodies-csv" in asked.formats:
         files[f"bodies{mark}.csv"] = _bodies(run)
     kinds = [kind for kind in asked.formats if kind in FIGURES]

@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 import click
 
 from mbsym_cli.console import OutPath
 from mbsym_cli.option_groups import group
 from mbsym_cli.simulation_request import ARITHMETIC
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.simulation import Request
+    from mbsym_cli.options import Options
+
+
+class Group(Protocol):
+    """What a group of further options adds to the request."""
+
+    def added(self, request: Request, system: System | None, asked: Options) -> Request:
+        """The request with what this group asks for; what is wrong joins the complaints of ``asked``."""
 
 
 @dataclass(frozen=True)

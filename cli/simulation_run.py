@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
     from mbsym.algebra.failures import Failure, SingularPoint
+    from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Unusable
     from mbsym.simulation import simulate
 
@@ -32,6 +33,11 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         return _delivered(file, folder, found, wanted)
     except Unusable as error:
         options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
+        options.refused(file)
+        return BAD_INPUT
+    except NotAnalytic as error:
+        hint = "leave --certify out: enclosures go through power series"
+        options.complain("--certify", "not-analytic", f"{error} in the equations has no power series", hint)
         options.refused(file)
         return BAD_INPUT
     except SingularPoint as error:
@@ -59,6 +65,7 @@ def _delivered(file: Path, folder: Path, found: Simulation, asked: Asked) -> int
 
 def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
     from mbsym.numerics.accuracy import Lacking, NoEstimate
+    from mbsym.numerics.enclosure.enclose import INTERRUPTED as CERTIFICATE_INTERRUPTED
 
     if found.ended is not None:
         print(broken(file, found.ended, found.trajectory, paths), file=sys.stderr)
@@ -72,6 +79,8 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         )
         complain(file, f"interrupted{kept}")
         return INTERRUPTED
+    if found.certificate is not None and not found.certificate.whole:
+        return INTERRUPTED if found.certificate.ended == CERTIFICATE_INTERRUPTED else BROKEN_DOWN
     return OK
 
 
@@ -82,18 +91,19 @@ Stage: TypeAlias = Callable[[str], AbstractContextManager[object]]
 @contextmanager
 def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
     """A bar while it integrates, a spinner before and after."""
-    from mbsym.simulation import COMPILING, ESTIMATING, INTEGRATING
+    from mbsym.simulation import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING
 
     said = {COMPILING: "compiling", ESTIMATING: "the same more finely, to see how good it is"}
+    with_bar = {INTEGRATING: file.name, CERTIFYING: f"{file.name}: enclosing the exact solution"}
     bars: list[Watch] = []
 
     @contextmanager
     def stage(what: str) -> Iterator[None]:
-        if what != INTEGRATING:
+        if what not in with_bar:
             with status(asked.quiet, f"{file.name}: {said[what]}"):
                 yield
             return
-        with progress(asked.quiet, file.name, asked.request.time) as bar:
+        with progress(asked.quiet, with_bar[what], asked.request.time) as bar:
             bars.append(bar)
             yield
 

@@ -37,6 +37,7 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
 def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
     from mbsym.numerics.simulate import least_pivot
+    from mbsym.report.certificate import certificate_lines
     from mbsym.report.simulation_words import conservation_line, error_lines, invariant_line, warnings
 
     found, chosen, request = run.trajectory, run.chosen, run.request
@@ -69,6 +70,9 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
         yield "invariant", invariant_line(kept.conservation)
     for place, text in enumerate(error_lines(run.error)):
         yield "" if place else "error", text
+    if run.certificate is not None:
+        for place, text in enumerate(certificate_lines(run.certificate, run.system, len(found.times))):
+            yield "" if place else "certified", text
     for text in warnings(run.conservation, run.error):
         yield "warning", text
     ratio, at = least_pivot(run.dynamics, found)

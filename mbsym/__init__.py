@@ -79,6 +79,7 @@ def simulate(
     invariants: bool = False,
     estimate: bool | None = None,
     whole: bool = False,
+    certify: float | None = None,
 ) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
@@ -103,7 +104,7 @@ def simulate(
 
     system = _system(source)
     request = simulation.Request(
-        time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole
+        time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify
     )
     return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
 

@@ -10,10 +10,11 @@
 
 from mbsym.simulation.request import TOLERANCE, Request, read_values
 from mbsym.simulation.result import Chosen, Kept, Simulation
-from mbsym.simulation.run import COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, simulate
+from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, simulate
 from mbsym.simulation.sampling import SAMPLES, sample_times
 
 __all__ = [
+    "CERTIFYING",
     "COMPILING",
     "ESTIMATING",
     "INTEGRATING",

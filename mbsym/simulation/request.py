@@ -24,7 +24,7 @@ class Request:
     ``samples`` rows from 0 to ``time``, or one ``every`` so often (by default as many as the motion needs); a method's
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
-    integrated, too.
+    integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size.
     """
 
     time: float
@@ -38,6 +38,7 @@ class Request:
     invariants: bool = False
     estimate: bool | None = None
     whole: bool = False
+    certify: float | None = None
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -73,6 +74,7 @@ def read_values(system: System, given: Mapping[str, Expression | Fraction | floa
 def wrong_with(request: Request) -> Iterator[str]:
     """What of it cannot be done, a sentence each."""
     positive = {"time": request.time, "every": request.every, "tolerance": request.tolerance, "step": request.step}
+    positive["certify"] = request.certify
     for name, value in positive.items():
         if value is not None and not (isfinite(value) and value > 0):
             yield f"{name} must be positive, not {value}"

@@ -10,6 +10,7 @@ from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.enclosure.compare import Certificate
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
@@ -68,6 +69,7 @@ class Simulation:
     invariants: tuple[Kept, ...]
     error: ErrorEstimate | NoEstimate
     no_invariants: str = ""
+    certificate: Certificate | None = None
 
     @property
     def system(self) -> System:

@@ -20,6 +20,7 @@ from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.enclosure.compare import analytic, certified
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
@@ -32,7 +33,7 @@ from mbsym.simulation.result import Simulation
 SOON_DONE = 2.0
 
 #: What ``simulate`` is doing, for whoever watches.
-COMPILING, INTEGRATING, ESTIMATING = "compiling", "integrating", "estimating"
+COMPILING, INTEGRATING, ESTIMATING, CERTIFYING = "compiling", "integrating", "estimating", "certifying"
 
 #: Is told what is being done, for as long as it takes.
 Stage = Callable[[str], AbstractContextManager[object]]
@@ -48,7 +49,8 @@ def simulate(
 
     What ends a run early (a blow-up, a singular mass matrix, a step limit, Ctrl-C) is part of the result.  Raises
     ValueError for a request that cannot be met, Unusable where the method asked for does not apply, Failure where there
-    is no program for the equations, or a division by zero in them at these values.
+    is no program for the equations, or a division by zero in them at these values, NotAnalytic where a certificate is
+    asked for and the equations have no power series.
     """
     wrong = list(wrong_with(request))
     if wrong:
@@ -57,6 +59,8 @@ def simulate(
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
         dynamics = Dynamics(scenario, analysis.ring) if analysis is not None and not missing else Dynamics(scenario)
+        if request.certify is not None:
+            analytic(dynamics)
         resting = reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
     with stage(INTEGRATING):
@@ -71,7 +75,11 @@ def simulate(
             error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
-    return Simulation(scenario, dynamics, request, chosen, found, *both, kept, error, missing)
+    certificate = None
+    if request.certify is not None:
+        with stage(CERTIFYING):
+            certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch)
+    return Simulation(scenario, dynamics, request, chosen, found, *both, kept, error, missing, certificate)
 
 
 def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:

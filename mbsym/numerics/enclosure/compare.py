@@ -12,6 +12,7 @@ from flint import arb, ctx, fmpq
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
+from mbsym.numerics.enclosure.field import function_of
 
 #: What a float bound is multiplied by, so that it stays one after its own rounding.
 LARGER = 1 + 1e-15
@@ -57,6 +58,12 @@ class Certificate:
         return float(np.max(np.max(values, axis=1, initial=0.0) / self.scale, initial=0.0)) * LARGER
 
 
+def analytic(dynamics: Dynamics) -> None:
+    """Raises NotAnalytic where the equations of motion or their Jacobian have a function without a power series."""
+    for code in (dynamics.right_hand_side, dynamics.jacobian):
+        function_of(code, GUARD)
+
+
 def certified(
     dynamics: Dynamics,
     times: Any,
@@ -74,9 +81,7 @@ def certified(
     scale = np.where(sizes > 0, sizes, 1.0)
     end = float(times[-1])
     state = dynamics.scenario.state
-    found = enclosed(
-        dynamics.right_hand_side, dynamics.jacobian, state, end, width, scale.tolist(), seconds, watch
-    )
+    found = enclosed(dynamics.right_hand_side, dynamics.jacobian, state, end, width, scale.tolist(), seconds, watch)
     rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
     centre, radius, error = (np.zeros((len(states), rows)) for _ in range(3))
     with ctx.workprec(found.bits + GUARD):

@@ -6,8 +6,8 @@ degree d what they are, and those beyond it are
 
     integral_0^s (terms of f(t0 + s', x(s')) of degree d and more),      |s^k integrated|_R = R |s^k|_R / (k + 1).
 
-If their norm is at most e, all iterates stay there, and with them the solutions: they are analytic for |s| < R, and what
-their series leave out after K > d terms at s = h is at most  e q^K,  q = h/R.
+If their norm is at most e, all iterates stay there, and with them the solutions: they are analytic for |s| < R, and
+what their series leave out after K > d terms at s = h is at most  e q^K,  q = h/R.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ width of a solution from a point grows by a factor that belongs to the motion, w
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -61,7 +61,7 @@ class Enclosure:
             if first < 0 or last > self.reached or not self.segments:
                 raise ValueError(f"enclosed from 0 to {self.reached:g} only")
             found: list[arb] | None = None
-            place = max(0, bisect_right(self._starts, first) - 1)
+            place = max(0, bisect_left(self._starts, first) - 1)
             for segment in self.segments[place:]:
                 if segment.start > end:
                     break

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import exp, inf, isfinite, log, nan, sqrt
+from math import exp, inf, isfinite, log, nan
 from typing import Any
 
 import numpy as np
@@ -111,7 +111,7 @@ class Model:
         return self.reciprocal() * other
 
     def _composed(self, poly: Any, majorant: Callable[[float], float], slope: Callable[[float], float]) -> Model:
-        """F of it: ``poly`` is that of its polynomial, ``majorant`` G and ``slope`` G' of sizes without the constant."""
+        """F of it: ``poly`` is F of its polynomial; ``majorant`` G and ``slope`` G' take sizes without the constant."""
         sizes = self.sizes[1:]
         total = _up(float(np.sum(sizes)))
         degrees = np.arange(1, self.ring.degree + 1)

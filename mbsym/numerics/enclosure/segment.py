@@ -5,8 +5,8 @@ A set is  {m + A r : r in a box about 0}  with an exact point m and an exact mat
     x(h; m + A r)  is in  x(h; m) + S A r,     S containing dx(h)/dx0 for every state of the set (mean values),
 
 x(h; m) by its Taylor series with the tail of ``disc``; S by that of the variational equation V' = J V, whose tail is
-bounded by  |V_ij,k| <= exp(R B)_ij / R^k,  B_ij >= |J_ij|_R, on a disc of thrice the step.  The new A is orthogonal, along the longest axes
-of S A first, so that boxes turn with the motion and are not wrapped again and again.
+bounded by  |V_ij,k| <= exp(R B)_ij / R^k,  B_ij >= |J_ij|_R, on a disc of thrice the step.  The new A is orthogonal,
+along the longest axes of S A first, so that boxes turn with the motion and are not wrapped again and again.
 """
 
 from __future__ import annotations
@@ -48,15 +48,21 @@ class Bundle:
 
 @dataclass(frozen=True)
 class Segment:
-    """Solutions from ``start`` to ``end``: x_i(start + s) is within ``spread_i`` of  sum_k coefficients_i,k s^k."""
+    """Solutions from ``start`` to ``end``: x_i(start + s) is within ``spread_i`` of  sum_k coefficients_i,k s^k.
+
+    ``last`` are balls of every component at the end, where the set is known best.
+    """
 
     start: arb
     end: arb
     coefficients: tuple[tuple[arb, ...], ...]
     spread: tuple[arb, ...]
+    last: tuple[arb, ...]
 
     def at(self, t: arb) -> list[arb]:
         """Balls that contain every component at ``t`` (a point or an interval of times within the segment)."""
+        if t == self.end:
+            return list(self.last)
         s = t - self.start
         found = []
         for row, spread in zip(self.coefficients, self.spread, strict=True):
@@ -71,12 +77,16 @@ class CannotStep(Exception):
     """No disc of times was found in which the solutions are proved to exist."""
 
 
+def unit(n: int) -> arb_mat:
+    """The unit matrix."""
+    return arb_mat(n, n, [1 if i == j else 0 for i in range(n) for j in range(n)])
+
+
 def bundle(time: arb, state: Sequence[arb]) -> Bundle:
     """The set of states within balls."""
     n = len(state)
-    unit = arb_mat(n, n, [1 if i == j else 0 for i in range(n) for j in range(n)])
     box = arb_mat(n, 1, [value - value.mid() for value in state])
-    return Bundle(time, tuple(value.mid() for value in state), unit, box)
+    return Bundle(time, tuple(value.mid() for value in state), unit(n), box)
 
 
 def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tuple[Segment, Bundle, Disc]:
@@ -100,8 +110,9 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     derivative, bound = _derivative(field, now.time, solutions, found, step)
     spread = bound * (_absolute(now.axes) * _absolute(now.box))
     between = tuple(upper(spread[i, 0] + tail[i]) for i in range(field.size))
-    segment = Segment(now.time, after, tuple(tuple(row) for row in coefficients), between)
-    return segment, _carried(after, reached, derivative * now.axes, now.box), found
+    later = _carried(after, reached, derivative * now.axes, now.box)
+    segment = Segment(now.time, after, tuple(tuple(row) for row in coefficients), between, tuple(later.hull))
+    return segment, later, found
 
 
 def _derivative(
@@ -112,7 +123,7 @@ def _derivative(
     radius = min(found.radius, WIDER * float(step))
     sizes = arb_mat(n, n, [arb(size) for size in field.jacobian_sizes(t, found.within(radius))])
     gradients = field.gradients(t, solutions, terms)
-    powers = [arb_mat(n, n, [1 if i == j else 0 for i in range(n) for j in range(n)])]
+    powers = [unit(n)]
     slopes = [arb_mat([[gradients[i][j][k] for j in range(n)] for i in range(n)]) for k in range(terms)]
     total, scale = powers[0], arb(1)
     for k in range(terms - 1):
