@@ -31,7 +31,9 @@ OSCILLATOR = LINE + "loads:\n  - potential: x**2/2\ninitial: {x: 1}\n"
 #: x'' = -sin x.
 PENDULUM = LINE + "loads:\n  - potential: 1 - cos(x)\ninitial: {x: 2}\n"
 #: An ellipse with e = 9/10, from its pericentre: fast there, slow elsewhere.
-KEPLER = PLANE + "loads:\n  - potential: -1/sqrt(x**2 + y**2)\ninitial: {x: 1/10, y: {position: 0, velocity: sqrt(19)}}\n"
+KEPLER = (
+    PLANE + "loads:\n  - potential: -1/sqrt(x**2 + y**2)\ninitial: {x: 1/10, y: {position: 0, velocity: sqrt(19)}}\n"
+)
 #: x'' = cos(t)^2 is driven through a load that depends on time.
 DRIVEN = LINE + "loads:\n  - generalized force: {x: cos(t)**2}\ninitial: {x: 0}\n"
 #: x'' = 6 x^2 with x = 1/(1 - t)^2: ends at t = 1.
