@@ -16,7 +16,7 @@ from mbsym.report.unit_text import pretty
 
 #: Why an enclosure ends early.
 WHY = {
-    NO_STEP: "no further step could be proved: the motion comes near a singularity of the equations",
+    NO_STEP: "no step could be proved there: a singularity of the equations is near, or their balls grow too fast",
     TOO_WIDE: "neighbouring motions part too fast",
     OUT_OF_TIME: "its time was over",
     INTERRUPTED: "interrupted",

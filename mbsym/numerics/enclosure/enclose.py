@@ -151,8 +151,8 @@ def _once(
                 if ended:
                     break
                 watch(float(now.time))
-        except CannotStep:
-            ended = NO_STEP
+        except CannotStep as reason:
+            ended = TOO_WIDE if reason.blurred else NO_STEP
         except KeyboardInterrupt:
             ended = INTERRUPTED
         reached = float(segments[-1].end) if segments else 0.0
