@@ -28,7 +28,7 @@ FIRST, GUARD, MOST = 24, 24, 2_000
 FIRST_GUESS, GROWTH = 0.02, 1.3
 
 #: A disc smaller than this part of the whole time means that the enclosure cannot go on.
-LEAST = 1e-6
+LEAST = 1e-7
 
 #: A set that is wider than this part of a quantity's size, or so many times what was wanted, is given up.
 WIDE, MUCH_WIDER = 1e-3, 1e3

@@ -26,9 +26,6 @@ PART = 0.25
 #: The derivative S needs few digits, for it multiplies what is small already.
 TERMS_OF_DERIVATIVE = 18
 
-#: A disc so much smaller than that of convergence makes no way: the balls have grown from term to term.
-MUCH_SMALLER = 0.02
-
 #: The disc on which the derivative is bounded is so much larger than the step.
 WIDER = 3.0
 
@@ -106,7 +103,7 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     """
     solutions = field.solution(now.time, now.hull, TERMS_OF_DERIVATIVE - 1)
     found = disc(field, now.time, solutions, guess)
-    if found is None or found.radius < MUCH_SMALLER * _convergence(solutions):
+    if found is None:
         raise CannotStep(_blurred(solutions))
     longest = arb(found.radius * PART)
     left = end - now.time
@@ -123,14 +120,6 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     later = _carried(after, reached, derivative * now.axes, now.box)
     segment = Segment(now.time, after, tuple(tuple(row) for row in coefficients), between, tuple(later.hull))
     return segment, later, found
-
-
-def _convergence(coefficients: Sequence[Sequence[arb]]) -> float:
-    """About how far the series converges, by their last coefficients (roots of their sizes); no bound of anything."""
-    order = len(coefficients[0]) - 1
-    sizes = [abs(float(row[order].mid())) for row in coefficients]
-    largest = max(sizes)
-    return largest ** (-1 / order) if 0 < largest < np.inf else 0.0
 
 
 def _blurred(coefficients: Sequence[Sequence[arb]]) -> bool:
