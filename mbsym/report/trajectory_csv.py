@@ -19,6 +19,7 @@ import numpy as np
 from mbsym.model.quantities import energy_unit, marked, unit_of
 from mbsym.model.system import System
 from mbsym.numerics.columns import columns
+from mbsym.numerics.kernels.decimals import MANY, lines
 from mbsym.numerics.simulate import Trajectory
 
 #: Rows turned into text at a time: numbers of Python take more room than those of an array.
@@ -45,9 +46,22 @@ def column_units(system: System, natural: bool = True) -> dict[str, str | None]:
 
 def written(names: Sequence[str], table: Sequence[Any]) -> str:
     """A header and the columns of a table, a block of rows after the other."""
-    line = ",".join(["%.17g"] * len(names))
-    pieces = [",".join(names)]
-    for start in range(0, len(table[0]), BLOCK):
-        block = np.array([column[start : start + BLOCK] for column in table], dtype=float)
-        pieces.append("\n".join(line % tuple(row) for row in block.T.tolist()))
-    return "\n".join([*pieces, ""])
+    many = len(table) * len(table[0]) >= MANY
+    blocks = range(0, len(table[0]), BLOCK)
+    return "".join(
+        [header(names), *(rows([column[start : start + BLOCK] for column in table], many) for start in blocks)]
+    )
+
+
+def header(names: Sequence[str]) -> str:
+    """The line of names."""
+    return ",".join(names) + "\n"
+
+
+def rows(table: Sequence[Any], many: bool) -> str:
+    """The rows of a table, given as columns; by machine code, which has to be compiled, where there are ``many``."""
+    block = np.array(table, dtype=float)
+    if many:
+        return lines(block)
+    line = ",".join(["%.17g"] * len(block)) + "\n"
+    return "".join(line % tuple(row) for row in block.T.tolist())
