@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from dataclasses import FrozenInstanceError
+from dataclasses import MISSING, Field, FrozenInstanceError
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -30,32 +30,41 @@ else:
         return decorated if cls is None else decorated(cls)
 
 
+#: What the text of ``__init__`` calls something else.
+_TAKEN = ("self", "_assign")
+
 #: Annotations that are no fields, or fields of another kind.
 _NO_FIELDS = ("ClassVar", "InitVar", "KW_ONLY")
 
 #: What a plain class does not define itself.
 _GENERATED = (
-    *("__init__", "__post_init__", "__setattr__", "__delattr__", "__eq__", "__hash__"),
-    *("__slots__", "__match_args__", "__getstate__", "__setstate__", "__signature__"),
+    *("__init__", "__setattr__", "__delattr__", "__slots__"),
+    *("__match_args__", "__getstate__", "__setstate__", "__signature__"),
 )
 
 #: What the library looks at, besides the defaults of fields.
-_READ = ("__module__", "__qualname__", "__doc__", "__annotations__", "__orig_bases__")
+_READ = ("__module__", "__qualname__", "__doc__", "__annotations__", "__orig_bases__", "__post_init__")
 
 _FIELDS = "__dataclass_fields__"
 
 
 def _is_plain(cls: type, slots: bool) -> bool:
-    """All of it is fields with or without a default, and none are inherited."""
+    """All of it is fields with or without a default, and none are inherited; it compares and hashes itself, or not."""
     own = cls.__dict__
     annotations = own.get("__annotations__")  # from Python 3.14 on they come late themselves
     if not annotations or not own.get("__doc__") or any(name in own for name in _GENERATED):
         return False
+    if ("__eq__" in own) != (own.get("__hash__") is not None):
+        return False
     for name, words in annotations.items():
-        if name in ("self", "_assign") or not isinstance(words, str) or any(word in words for word in _NO_FIELDS):
+        if name in _TAKEN or not isinstance(words, str) or any(word in words for word in _NO_FIELDS):
             return False
         default = own.get(name)
-        if isinstance(default, dataclasses.Field) or type(default).__hash__ is None:  # the library has words for that
+        if isinstance(default, Field):
+            if default.default is MISSING or not default.init or default.hash is not None or default.kw_only is True:
+                return False
+            default = default.default
+        if type(default).__hash__ is None:  # the library has words for that
             return False
     bases = cls.__mro__[1:-1]
     return not any(_FIELDS in base.__dict__ or (slots and "__slots__" not in base.__dict__) for base in bases)
@@ -68,17 +77,19 @@ class _Late:
         own = dict(cls.__dict__)
         self.names = tuple(own["__annotations__"])
         self._own = {name: own[name] for name in (*_READ, *self.names) if name in own}
+        given = {name: own[name] for name in self.names if name in own}
+        self._defaults = {name: x.default if isinstance(x, Field) else x for name, x in given.items()}
         self._options, self._bases = {"frozen": True, "eq": eq, "repr": repr_}, cls.__bases__
         self.cls: Any = _slotted(cls, own, self.names) if slots else cls
         methods: dict[str, Any] = {"__init__": self._first_init(), **_frozen(self.cls)}
         for name in (_FIELDS, "__dataclass_params__", "__match_args__", "__signature__"):
             methods[name] = _Put(self, name)
-        if eq:
-            methods |= _compared(self.names)
+        if eq and "__eq__" not in own:
+            ignored = [name for name, x in given.items() if isinstance(x, Field) and not x.compare]
+            methods |= _compared(tuple(name for name in self.names if name not in ignored))
         if repr_ and "__repr__" not in own:
             methods["__repr__"] = self._first_repr()
-        if slots:
-            methods |= _STATE
+        methods |= _STATE if slots else self._defaults
         for name, method in methods.items():
             setattr(self.cls, name, method)
 
@@ -93,9 +104,11 @@ class _Late:
 
     def _init(self) -> Any:
         """``__init__`` that sets the fields, as the library's does."""
-        names = {f"_default_{name}": self._own[name] for name in self.names if name in self._own}
-        arguments = ", ".join(f"{x}=_default_{x}" if x in self._own else x for x in self.names)
-        body = "\n ".join(f"_assign(self, {name!r}, {name})" for name in self.names)
+        names: dict[str, Any] = {f"_default_{name}": value for name, value in self._defaults.items()}
+        arguments = ", ".join(f"{x}=_default_{x}" if x in self._defaults else x for x in self.names)
+        lines = [f"_assign(self, {name!r}, {name})" for name in self.names]
+        lines += ["self.__post_init__()"] if hasattr(self.cls, "__post_init__") else []
+        body = "\n ".join(lines)
         names["_assign"] = object.__setattr__
         exec(f"def __init__(self, {arguments}):\n {body}", names)
         names["__init__"].__qualname__ = f"{self.cls.__qualname__}.__init__"
@@ -142,10 +155,9 @@ def _compared(names: tuple[str, ...]) -> dict[str, Callable[..., Any]]:
     if len(names) > 1:
         values = attrgetter(*names)
     else:
-        only = attrgetter(*names)
 
         def values(self: Any) -> tuple[Any, ...]:
-            return (only(self),)
+            return tuple([getattr(self, name) for name in names])
 
     def __eq__(self: Any, other: object) -> Any:
         return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented

@@ -37,6 +37,39 @@ def plain(dataclass: Maker, **options: bool) -> Any:
     return Plain
 
 
+def with_fields(dataclass: Maker, **options: bool) -> Any:
+    @dataclass(frozen=True, **options)
+    class Fields:
+        """Two that are compared, one that is not, and is not shown; what is given is looked at."""
+
+        a: int
+        c: tuple[int, ...] = field(default=(), repr=False)
+        span: str | None = field(default="here", compare=False, repr=False)
+
+        def __post_init__(self) -> None:
+            if self.a < 0:
+                raise ValueError("negative")
+
+    return Fields
+
+
+@pytest.mark.parametrize("slots", [False, True])
+@given(st.integers(-1, 1), st.integers(0, 1), st.sampled_from(["x", None]))
+def test_fields_with_options(slots: bool, a: int, d: int, span: str | None) -> None:
+    one, other = with_fields(late, slots=slots), with_fields(dataclasses.dataclass, slots=slots)
+    for make in (
+        lambda cls: repr(cls(a, (1,), span)),
+        lambda cls: hash(cls(a, span=span)),
+        lambda cls: cls(a, (), span) == cls(d),
+        lambda cls: cls(a).span,
+        lambda cls: dataclasses.astuple(dataclasses.replace(cls(d, (3,), span), a=a)),
+        lambda cls: repr(dataclasses.fields(cls)),
+        lambda cls: str(inspect.signature(cls)),
+        lambda cls: [name for name in ("a", "c", "span") if name in vars(cls) and not slots],
+    ):
+        assert results(lambda make=make: make(one)) == results(lambda make=make: make(other))
+
+
 def single(dataclass: Maker) -> Any:
     @dataclass(frozen=True)
     class Single(Generic[T]):
@@ -170,7 +203,7 @@ def test_classes_beneath_it() -> None:
 def test_what_is_not_plain_is_the_library_s() -> None:
     @late(frozen=True)
     class Counted:
-        """A default that is made, a class variable, a field that is not compared."""
+        """A default that is made, a class variable."""
 
         count: ClassVar[int] = 3
         items: list[int] = field(default_factory=list)
@@ -187,7 +220,7 @@ def test_what_is_not_plain_is_the_library_s() -> None:
 
 
 def test_own_methods_stay() -> None:
-    @late(frozen=True)
+    @late(frozen=True, slots=True)
     class Own:
         """Says and compares what it wants."""
 
