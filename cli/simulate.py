@@ -15,6 +15,7 @@ from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_certify import Certifying, certify_options
+from mbsym_cli.simulation_events import Watched, watch_options
 from mbsym_cli.simulation_many import Many, many_options, read_many
 from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags, read_request
@@ -27,8 +28,11 @@ from mbsym_cli.simulation_run import run
 @way_options
 @many_options
 @certify_options
+@watch_options
 @output_options
-def command(file: Path, span: Span, way: Way, many: Many, certifying: Certifying, output: Output) -> None:
+def command(
+    file: Path, span: Span, way: Way, many: Many, certifying: Certifying, watched: Watched, output: Output
+) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -52,6 +56,10 @@ def command(file: Path, span: Span, way: Way, many: Many, certifying: Certifying
     --certify encloses the exact solution in balls: what it says is proved, whatever the method did.  enclosure.csv has
     it.  Where neighbouring motions part fast that takes long, and ends early (exit code 3) where it is out of reach.
 
+    A condition is EXPRESSION = EXPRESSION (or <, >) in t, coordinates, velocities, parameters, energy; "rising" or
+    "falling" keep one direction of =, "mod 2*pi" takes an angle modulo a turn (never done unasked).  events.csv has
+    every time of an --event that dense output shows; --stop ends the run; a --section is a table and a picture.
+
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
     ...-partial.  Exit codes: 0 done, 1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
 
@@ -61,6 +69,8 @@ def command(file: Path, span: Span, way: Way, many: Many, certifying: Certifying
       mbsym simulate systems/spring-pendulum.yaml --time 20 --set theta=pi/6 --set r=3/2 --set theta_dot=0
       mbsym simulate systems/double-pendulum.yaml --time 6 --animate --bodies --format csv,pdf
       mbsym simulate systems/heavy-top.yaml --time 5 --method rk4 --step 1e-4
+      mbsym simulate systems/double-pendulum.yaml --time 60 --event "theta1 = 0 rising" --stop "theta2 > pi"
+      mbsym simulate systems/double-pendulum.yaml --time 2000 --section "theta1 = 0 mod 2*pi rising"
       mbsym simulate systems/double-pendulum.yaml --time 10 --vary "theta1=normal(1, 0.01)" --members 1000
       mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
       mbsym simulate systems/double-pendulum.yaml --time 5 --certify 1e-12
@@ -69,7 +79,7 @@ def command(file: Path, span: Span, way: Way, many: Many, certifying: Certifying
     flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
         texts = typed(span, way, output)
-        sys.exit(_command(file, folder, span.settings, texts, flags, many, [certifying]))
+        sys.exit(_command(file, folder, span.settings, texts, flags, many, [certifying, watched]))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)

@@ -40,6 +40,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further, units)
     if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:
         files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
+    files |= {f"{stem}{mark}.csv": text for stem, text in _happened(run).items()}
     if "bodies-csv" in asked.formats:
         files[f"bodies{mark}.csv"] = _bodies(run)
     kinds = [kind for kind in asked.formats if kind in FIGURES]
@@ -47,7 +48,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     try:
         with status(asked.quiet, "drawing"):
             pictures = _pictures(run, kinds) if kinds else {}
-            pictures |= _animation(run, asked.formats)
+            pictures |= _animation(run, asked.formats) | _section(run, kinds)
     except (Exception, KeyboardInterrupt) as error:
         stopped, pictures = error, {}
     for name, content in pictures.items():
@@ -68,6 +69,24 @@ def _bodies(run: Simulation) -> str:
     found = run.trajectory
     rates = accelerations(run.dynamics, found.times, found.states)
     return bodies_csv(body_motions(run.scenario, found.times, found.states, rates), run.system)
+
+
+def _happened(run: Simulation) -> dict[str, str]:
+    """What was watched for is written whatever the formats are: it was asked for by options of its own."""
+    from mbsym.report.events_csv import events_csv, section_csv
+
+    if run.happened is None:
+        return {}
+    found = {"events": events_csv(run.happened.occurrences, run.system)} if run.happened.occurrences.events else {}
+    return found | ({} if run.section is None else {"section": section_csv(run.section, run.system)})
+
+
+def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
+    from mbsym.report.section_figure import section_figure
+
+    return (
+        {} if run.section is None or not kinds else section_figure(run.section, run.system, note(run.trajectory), kinds)
+    )
 
 
 def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:

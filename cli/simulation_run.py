@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
@@ -25,12 +26,16 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
     from mbsym.algebra.failures import Failure, SingularPoint
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Unusable
-    from mbsym.simulation import simulate
+    from mbsym.simulation import NoEvent, simulate
 
     try:
         with _watching(file, wanted) as (watch, stage):
             found = simulate(given, wanted.request, watch, stage)
         return _delivered(file, folder, found, wanted)
+    except NoEvent as error:
+        options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
+        options.refused(file)
+        return BAD_INPUT
     except Unusable as error:
         options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
         options.refused(file)

@@ -38,6 +38,7 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
     from mbsym.numerics.simulate import least_pivot
     from mbsym.report.certificate import certificate_lines
+    from mbsym.report.events_words import events_lines
     from mbsym.report.simulation_words import conservation_line, error_lines, invariant_line, warnings
 
     found, chosen, request = run.trajectory, run.chosen, run.request
@@ -54,6 +55,10 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     yield "setting", f"{how}, {request.arithmetic}"
     unit = pretty(time_unit(run.system))
     reached = "" if found.whole else f", reached {with_unit(f'{found.times[-1]:.9g}', unit)}"
+    if run.happened is not None and run.happened.ended is not None:
+        reached = (
+            f", of which {len(found.times)} up to t = {with_unit(f'{found.times[-1]:.9g}', unit)}, where it was stopped"
+        )
     yield "time", f"0 to {with_unit(f'{request.time:g}', unit)}, {len(chosen.times)} samples{reached}"
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
@@ -61,6 +66,7 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
     yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
+    yield from events_lines(run)
     if run.dynamics.natural:
         yield "energy", conservation_line(run.conservation)
     else:

@@ -80,6 +80,10 @@ def simulate(
     estimate: bool | None = None,
     whole: bool = False,
     certify: float | None = None,
+    events: str | Iterable[str] = (),
+    stop: str | Iterable[str] = (),
+    section: str | None = None,
+    axes: str = "",
 ) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
@@ -96,6 +100,11 @@ def simulate(
     velocities by ``<name>_dot``; numbers, or text such as ``"pi/6"``.  The rest is what ``mbsym simulate`` calls by the
     same names (``mbsym.simulation.Request``).  A run that ends early is a result too: ``run.whole``, ``run.ended``.
 
+    ``events`` are conditions such as ``"theta = 0 rising"``; every time at which one is met is in ``run.events``
+    (``times``, ``which``, ``turns``, ``states``; ``run.events.of("theta = 0 rising")``).  ``stop`` are conditions that
+    end the run, ``run.events.ended`` the one that did.  ``section`` is a surface, ``run.section.points`` the states
+    there in the ``axes`` (``"q2, q2_dot"``).
+
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
@@ -104,7 +113,8 @@ def simulate(
 
     system = _system(source)
     request = simulation.Request(
-        time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify
+        *(time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify),
+        events=simulation.read_watch(system, _several(events), _several(stop), section, axes),
     )
     return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
 
@@ -233,6 +243,10 @@ def equilibria(
     from mbsym import studies
 
     return studies.equilibria(_system(source), values or {}, within)
+
+
+def _several(texts: str | Iterable[str]) -> tuple[str, ...]:
+    return (texts,) if isinstance(texts, str) else tuple(texts)
 
 
 def _system(source: str | Path | Analysis) -> System:

@@ -10,7 +10,7 @@ an angle that goes round is not taken modulo 2*pi unless that is said.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -104,3 +104,35 @@ def _expression(
             hint = f"did you mean '{close[0]}'?" if close else f"there are {listed}"
             complaints.error("unknown-name", f"unknown name {quoted(node.name)}", node.span, hint)
     return found if complaints.error_count == before else None
+
+
+def _commas(text: str) -> Iterator[int]:
+    """Where the parts of a list end: at commas outside of parentheses, and at its end."""
+    depth = 0
+    for place, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if character == "," and depth <= 0:
+            yield place
+    yield len(text)
+
+
+#: (text, expression, period) of an axis.
+AxisText = tuple[str, Expression, Expression | None]
+
+
+def parse_axes(text: str, known: Collection[str], complaints: Complaints, span_of: SpanOf) -> tuple[AxisText, ...]:
+    """``q2, q2_dot`` or ``theta mod 2*pi, energy``: expressions, two at least, each perhaps modulo a period."""
+    found: list[AxisText] = []
+    start = 0
+    for end in _commas(text[:MAX_LENGTH]):
+        piece = text[start:end]
+        word = re.search(r"\bmod\b", piece)
+        middle = start + word.start() if word else end
+        value = _expression(text, start, middle, known, complaints, span_of)
+        period = _expression(text, start + word.end(), end, known, complaints, span_of) if word else None
+        if value is not None:
+            found.append((piece.strip(), value, period))
+        start = end + 1
+    if len(text) > MAX_LENGTH or (len(found) < 2 and not complaints.errors):
+        complaints.error("bad-axes", "a section has two axes at least", span_of(0, max(1, len(text))), "q2, q2_dot")
+    return tuple(found)

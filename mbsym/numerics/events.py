@@ -19,14 +19,16 @@ A touch may be two passages or none; it is recorded with direction 0 for events 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from mbsym.numerics.crossings import NODES, Sign, free_of_zeros, nodes, passages, resolved, series
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernel, kernels
+from mbsym.numerics.methods.interface import Piece
+from mbsym.numerics.pieces import states_on
 from mbsym.numerics.surfaces import Action, Direction, Event, slopes_code, values_code
 
 #: Pieces are looked at so many at a time.
@@ -40,15 +42,6 @@ ROUNDINGS, OF_FIXED_STEP = 16, 1e-12
 
 #: So many occurrences are kept; further ones are counted.
 MOST = 1_000_000
-
-
-class Dense(Protocol):
-    """The solution over one step: ``piece(times)`` gives states of shape (2n, m)."""
-
-    start: float
-    end: float
-
-    def __call__(self, times: Any) -> Any: ...
 
 
 @dataclass(frozen=True)
@@ -90,7 +83,13 @@ class Occurrences:
 
 
 #: (piece, time) -> the state of the motion that starts where the piece does.
-Flow = Callable[[Dense, float], Any]
+Flow = Callable[[Piece, float], Any]
+
+
+def sampled(pieces: Sequence[Piece]) -> Any:
+    """(t, q, q') in columns at the nodes of every piece, one piece after the other."""
+    times = [nodes(float(piece.start), float(piece.end)) for piece in pieces]
+    return np.vstack([np.concatenate(times), np.asarray(states_on(pieces, times), dtype=float)])
 
 
 @dataclass
@@ -98,7 +97,7 @@ class _Course:
     """How far one event has been followed: the sign of g, and where it was nearest to zero since it lost that."""
 
     sign: Sign = field(default_factory=Sign)
-    near: tuple[float, Dense] | None = None
+    near: tuple[float, Piece] | None = None
     left: bool = False  # whether g has ever been outside the blur
 
 
@@ -113,7 +112,7 @@ class Watcher:
         self._tolerance = max(OF_FIXED_STEP if tolerance is None else tolerance, ROUNDINGS * np.finfo(float).eps)
         self._flow = flow
         self._courses = [_Course() for _ in self.events]
-        self._waiting: list[tuple[Dense, Any]] = []
+        self._waiting: list[Piece] = []
         self._found: list[Occurrence] = []
         self._beyond = 0
         self._start = 0.0
@@ -129,10 +128,9 @@ class Watcher:
                 self._found.append(self.ended)
         return self.ended is not None
 
-    def see(self, piece: Dense) -> bool:
+    def see(self, piece: Piece) -> bool:
         """Takes a piece; whether the run is known to have ended by now (it may end up to BATCH pieces earlier)."""
-        places = nodes(piece.start, piece.end)
-        self._waiting.append((piece, np.vstack([places, np.asarray(piece(places), dtype=float)])))
+        self._waiting.append(piece)
         if len(self._waiting) >= BATCH:
             self.settle()
         return self.ended is not None
@@ -142,7 +140,7 @@ class Watcher:
         waiting, self._waiting = self._waiting, []
         if not waiting or self.ended is not None:
             return self.ended is not None
-        values = self._values(np.hstack([points for _, points in waiting]))
+        values = self._values(sampled(waiting))
         found = series(values.reshape(len(self.events), len(waiting), NODES))
         free, signs = free_of_zeros(found), np.sign(found[..., 0])
         met: list[Occurrence] = []
@@ -151,7 +149,7 @@ class Watcher:
             same[1:] = free[event, :-1] & (signs[event, 1:] == signs[event, :-1])
             same[0] = not course.sign.near and course.sign.last == signs[event, 0]
             for place in np.flatnonzero(~(free[event] & same)):
-                piece = waiting[place][0]
+                piece = waiting[place]
                 blur = self._blur(event, piece)
                 met += self._within(event, piece, piece.start, piece.end, found[event, place], blur, DEPTH)
         self._keep(met)
@@ -160,8 +158,14 @@ class Watcher:
     def finish(self, end: float) -> Occurrences:
         """Everything that was found up to ``end``; what has begun there and is not over counts as having happened."""
         if not self.settle():
-            self._keep([found for event in range(len(self.events)) for found in self._unfinished(event, end)])
-        found = sorted(self._found, key=lambda one: (one.time, one.event))
+            self._keep([found for event in range(len(self.events)) for found in self._unfinished(event)])
+        latest = end + 8 * np.finfo(float).eps * abs(end)
+        if self.ended is not None and self.ended.time > latest:
+            self.ended = None  # a step may lead beyond the end
+        found = sorted(
+            (replace(one, time=min(one.time, end)) for one in self._found if one.time <= latest),
+            key=lambda one: (one.time, one.event),
+        )
         undecided = () if self.ended is not None else tuple(self._undecided())
         return Occurrences(
             events=self.events,
@@ -177,7 +181,7 @@ class Watcher:
     # --- one event in one piece ---
 
     def _within(
-        self, event: int, piece: Dense, start: float, end: float, known: Any, blur: float, depth: int
+        self, event: int, piece: Piece, start: float, end: float, known: Any, blur: float, depth: int
     ) -> list[Occurrence]:
         """What happens between two times of a piece, where g has the series ``known``; nothing where g has no value."""
         course = self._courses[event]
@@ -205,11 +209,11 @@ class Watcher:
         course.sign, course.left = sign, course.left or sign.last != 0
         return met
 
-    def _on(self, event: int, piece: Dense, times: Any) -> Any:
+    def _on(self, event: int, piece: Piece, times: Any) -> Any:
         """(g, dg/dt, o, derivatives) at times of a piece."""
         return self._slopes[event](np.vstack([times, np.asarray(piece(times), dtype=float)]))
 
-    def _blur(self, event: int, piece: Dense) -> float:
+    def _blur(self, event: int, piece: Piece) -> float:
         """tol sum |dg/dx_i| (1 + |x_i|), at worst."""
         times = nodes(piece.start, piece.end)
         states = np.asarray(piece(times), dtype=float)
@@ -218,7 +222,7 @@ class Watcher:
             sizes = np.sum(np.abs(derivatives) * (1 + np.abs(states)), axis=0)
         return self._tolerance * float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
 
-    def _occurrence(self, event: int, piece: Dense, time: float, turn: int) -> Occurrence:
+    def _occurrence(self, event: int, piece: Piece, time: float, turn: int) -> Occurrence:
         """Polished on the motion from the start of the piece; the direction is that of a - b."""
         state = np.asarray(piece(np.array([time])), dtype=float)[:, 0]
         if turn and time > self._start:
@@ -226,7 +230,7 @@ class Watcher:
         orientation = self._slopes[event](np.concatenate(([time], state)))[2]
         return Occurrence(event, time, turn * (1 if orientation > 0 else -1), state)
 
-    def _polished(self, event: int, piece: Dense, time: float, state: Any) -> tuple[float, Any]:
+    def _polished(self, event: int, piece: Piece, time: float, state: Any) -> tuple[float, Any]:
         """Newton's method on the motion; the time on the dense output where it leads away."""
         length, guess, best = piece.end - piece.start, time, (time, state)
         for _ in range(4):
@@ -261,7 +265,7 @@ class Watcher:
             else:
                 self._beyond += 1
 
-    def _unfinished(self, event: int, end: float) -> list[Occurrence]:
+    def _unfinished(self, event: int) -> list[Occurrence]:
         """An event at the very end: g is within the blur there, and has not come out of it."""
         course = self._courses[event]
         if not (course.sign.near and course.left and course.near is not None):
@@ -271,8 +275,6 @@ class Watcher:
         slope = float(self._slopes[event](np.concatenate(([time], state)))[1])
         turn = -course.sign.last if slope * course.sign.last < 0 else 0
         found = self._occurrence(event, piece, time, turn)
-        if found.time > end:
-            found = Occurrence(event, end, found.turn, np.asarray(piece(np.array([end])), dtype=float)[:, 0])
         return [found]
 
     def _undecided(self) -> list[Event]:

@@ -20,6 +20,7 @@ from mbsym.numerics.methods.interface import (
     LARGEST,
     SINGULAR,
     STEP_LIMIT,
+    STOPPED,
     STUCK,
     UNDEFINED,
     Breakdown,
@@ -187,7 +188,7 @@ def integrated(
         interrupted = True
     seconds = time.perf_counter() - started
     kept = np.array(times[:reached], dtype=float)
-    if breakdown is not None and breakdown.kind in (STEP_LIMIT, STUCK) and breakdown.time > kept[-1]:
+    if breakdown is not None and breakdown.kind in (STEP_LIMIT, STUCK, STOPPED) and breakdown.time > kept[-1]:
         # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
         states[:, reached], kept = breakdown.state, np.append(kept, breakdown.time)
         reached += 1

@@ -16,6 +16,7 @@ from mbsym.model.quantities import energy_unit, units_by_name
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.certificate import certificate_json
+from mbsym.report.events_json import events_json
 from mbsym.report.simulation_words import conservation_json, error_json
 from mbsym.simulation import Simulation
 from mbsym.source.meaning import meaning
@@ -61,6 +62,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         },
         "estimated_error": error_json(run.error),
         "resting": _resting(chosen.resting),
+        **events_json(run),
     }
     if run.certificate is not None:
         content["certificate"] = certificate_json(run.certificate, [*system.coordinates, *system.velocities])

@@ -4,6 +4,7 @@
 ``request``     what is asked for, and what of it cannot be done
 ``choosing``    what that leaves open: method and samples (``sampling``)
 ``run``         integrates, judges what is kept (``kept``), estimates the error
+``watching``    events, conditions that end it, sections: as asked for and as found
 ``result``      what was found
 ==============  ====================================================================================
 """
@@ -12,6 +13,7 @@ from mbsym.simulation.request import TOLERANCE, Request, read_values
 from mbsym.simulation.result import Chosen, Kept, Simulation
 from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, simulate
 from mbsym.simulation.sampling import SAMPLES, sample_times
+from mbsym.simulation.watching import NoEvent, Watch, read_watch
 
 __all__ = [
     "CERTIFYING",
@@ -23,9 +25,12 @@ __all__ = [
     "TOLERANCE",
     "Chosen",
     "Kept",
+    "NoEvent",
     "Request",
     "Simulation",
+    "Watch",
     "read_values",
+    "read_watch",
     "sample_times",
     "simulate",
 ]

@@ -12,6 +12,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
+from mbsym.simulation.watching import Watch
 
 #: The local error unless asked for otherwise.
 TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
@@ -25,6 +26,7 @@ class Request:
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size.
+    integrated, too; ``events``: what is watched for.
     """
 
     time: float
@@ -39,6 +41,7 @@ class Request:
     estimate: bool | None = None
     whole: bool = False
     certify: float | None = None
+    events: Watch = Watch()
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:

@@ -11,11 +11,13 @@ from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import Certificate
+from mbsym.numerics.events import Occurrences
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.dense import Dense
 from mbsym.simulation.request import Request
+from mbsym.simulation.watching import Happened, SectionPoints
 
 if TYPE_CHECKING:
     from mbsym.numerics.simulate import Trajectory
@@ -70,6 +72,17 @@ class Simulation:
     error: ErrorEstimate | NoEstimate
     no_invariants: str = ""
     certificate: Certificate | None = None
+    happened: Happened | None = None
+
+    @property
+    def events(self) -> Occurrences | None:
+        """What happened along the run of what was watched for: ``times``, ``which``, ``turns``, ``states``."""
+        return None if self.happened is None else self.happened.occurrences
+
+    @property
+    def section(self) -> SectionPoints | None:
+        """The Poincare section: ``points`` (axes, m), ``times``, ``states``."""
+        return None if self.happened is None else self.happened.section
 
     @property
     def system(self) -> System:

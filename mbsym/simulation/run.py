@@ -28,6 +28,7 @@ from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import Request, wrong_with
 from mbsym.simulation.result import Simulation
+from mbsym.simulation.watching import Watching
 
 #: The error of a run shorter than this many seconds is estimated without being asked for.
 SOON_DONE = 2.0
@@ -48,9 +49,9 @@ def simulate(
     """Integrates a scenario.
 
     What ends a run early (a blow-up, a singular mass matrix, a step limit, Ctrl-C) is part of the result.  Raises
-    ValueError for a request that cannot be met, Unusable where the method asked for does not apply, Failure where there
-    is no program for the equations, or a division by zero in them at these values, NotAnalytic where a certificate is
-    asked for and the equations have no power series.
+    ValueError for a request that cannot be met (NoEvent: a condition without a value), Unusable where the method asked
+    for does not apply, Failure where there is no program for the equations, or a division by zero in them at these
+    values, NotAnalytic where a certificate is asked for and the equations have no power series.
     """
     wrong = list(wrong_with(request))
     if wrong:
@@ -63,8 +64,13 @@ def simulate(
             analytic(dynamics)
         resting = reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
+        watching = Watching(dynamics, chosen.method, request.events) if request.events else None
+    method = chosen.method if watching is None else watching.method
     with stage(INTEGRATING):
-        found = integration.simulate(dynamics, chosen.method, chosen.setting, chosen.times, request.arithmetic, watch)
+        found = integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch)
+    happened = None
+    if watching is not None:
+        found, happened = watching.happened(found)
     found = replace(found, between=kinetic_between(dynamics, found, chosen.completed))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
@@ -79,7 +85,9 @@ def simulate(
     if request.certify is not None:
         with stage(CERTIFYING):
             certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch)
-    return Simulation(scenario, dynamics, request, chosen, found, *both, kept, error, missing, certificate)
+    return Simulation(
+        *(scenario, dynamics, request, chosen, found, *both, kept, error, missing), certificate, happened=happened
+    )
 
 
 def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:

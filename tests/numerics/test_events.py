@@ -16,6 +16,7 @@ from mbsym.expressions.condition import Condition, parse_condition
 from mbsym.expressions.place import Complaints, Span
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events import Occurrences, Watcher
+from mbsym.numerics.methods.interface import Piece
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.surfaces import Action, Direction, event, known_names
 
@@ -34,14 +35,9 @@ initial: {x: {position: 0, velocity: 1}}
 State = Callable[[Any], Any]
 
 
-class Exact:
+def exact(motion: State, start: float, end: float) -> Piece:
     """A step of a motion that is known."""
-
-    def __init__(self, motion: State, start: float, end: float) -> None:
-        self.motion, self.start, self.end = motion, start, end
-
-    def __call__(self, times: Any) -> Any:
-        return self.motion(np.asarray(times, dtype=float))
+    return Piece(start, end, motion)
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +71,7 @@ def watched(
     watcher = Watcher(dynamics, events, tolerance, lambda piece, time: motion(np.array([time]))[:, 0])
     watcher.begin(motion(np.array([borders[0]]))[:, 0], borders[0])
     for start, end in itertools.pairwise(borders):
-        if watcher.see(Exact(motion, start, end)):
+        if watcher.see(exact(motion, start, end)):
             break
     return watcher.finish(borders[-1])
 
@@ -105,7 +101,7 @@ def test_an_event_in_the_wrong_direction_is_another_event(oscillator: Dynamics) 
     first = event(oscillator, condition(oscillator, "x = 1/2 rising"))
     wrong = replace(first, direction=Direction.FALLING)
     watcher = Watcher(oscillator, [wrong], 1e-13, lambda piece, time: sine(np.array([time]))[:, 0])
-    watcher.see(Exact(sine, 0.0, 6.0))
+    watcher.see(exact(sine, 0.0, 6.0))
     times = watcher.finish(6.0).times
     assert abs(times[0] - asin(0.5)) > 1
     assert times[0] == pytest.approx(pi - asin(0.5), abs=1e-13)
@@ -208,13 +204,13 @@ def test_an_error_of_the_dense_output_is_polished_away(oscillator: Dynamics) -> 
         return sine(times) + 1e-6 * np.sin(times * pi / 3) ** 2
 
     events = [event(oscillator, condition(oscillator, "x = 1/2"))]
-    for exact in (True, False):
-        flow = sine if exact else wrong
+    for right in (True, False):
+        flow = sine if right else wrong
         watcher = Watcher(oscillator, events, 1e-7, lambda piece, time, flow=flow: flow(np.array([time]))[:, 0])
         for k in range(4):
-            watcher.see(Exact(wrong, 3.0 * k, 3.0 * k + 3))
+            watcher.see(exact(wrong, 3.0 * k, 3.0 * k + 3))
         error = np.abs(watcher.finish(12.0).times - [pi / 6, 5 * pi / 6, 13 * pi / 6, 17 * pi / 6])
-        assert (np.max(error) < 1e-13) if exact else (np.max(error) > 1e-7)
+        assert (np.max(error) < 1e-13) if right else (np.max(error) > 1e-7)
 
 
 def test_an_event_at_the_end_counts(oscillator: Dynamics) -> None:

@@ -32,6 +32,9 @@ class Breakdown(Exception):
 
 BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step limit", "step size too small"
 
+#: No mistake: an event asked for it.
+STOPPED = "stopped by an event"
+
 #: A root or a logarithm of a negative number: the model says nothing about such states.
 UNDEFINED = "no real value"
 

@@ -1,0 +1,144 @@
+"""A method whose runs are watched for events, and end where one of them asks for it.
+
+The steps are those of the method itself: events look at its pieces and change nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.events import BATCH, Occurrences, Watcher
+from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Piece, Run, Setting
+from mbsym.numerics.pieces import states_on
+from mbsym.numerics.surfaces import Event
+
+#: (dynamics, events, tolerance, flow) -> the watcher of a run.
+Watch = Callable[..., Watcher]
+
+
+class Watched:
+    """``method``, watched for ``events`` of the whole system ``dynamics``; ``watcher`` is that of the last run."""
+
+    def __init__(self, method: Method, dynamics: Dynamics, events: Sequence[Event], watch: Watch = Watcher) -> None:
+        self.traits = method.traits
+        self.method, self.events = method, tuple(events)
+        self._dynamics, self._watch = dynamics, watch
+        self._run: WatchedRun | None = None
+
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
+    ) -> WatchedRun:
+        """A run that ends with a Breakdown of kind ``STOPPED`` where an event asks for it."""
+        inner = self.method.start(dynamics, setting, scalar, initial, at)
+        anew: list[Run] = []
+
+        def flow(piece: Any, time: float) -> Any:
+            """The state at a time of a piece, integrated from its start."""
+            if not anew:
+                anew.append(self.method.start(dynamics, setting, scalar, initial, at))
+            anew[0].restart(piece.start, piece(piece.start))
+            return np.asarray(anew[0].advance(time), dtype=float)
+
+        watcher = self._watch(self._dynamics, self.events, setting.tolerance, flow)
+        self._run = WatchedRun(inner, watcher)
+        return self._run
+
+    def occurrences(self, end: float) -> Occurrences:
+        """What happened in the last run up to ``end``, where it ended."""
+        assert self._run is not None
+        return self._run.watcher.finish(end)
+
+
+class WatchedRun:
+    """A run that shows its pieces to a watcher."""
+
+    def __init__(self, inner: Run, watcher: Watcher) -> None:
+        self._inner, self.watcher = inner, watcher
+        self.work = inner.work
+        self.time, self.state = inner.time, inner.state
+        self._piece: Piece | None = None
+        self._filled = 0
+        watcher.begin(np.asarray(inner.state, dtype=float), float(inner.time))
+
+    def advance(self, until: float) -> Any:
+        """The state at ``until``."""
+        return self.fill([until])[:, 0]
+
+    def fill(self, times: Sequence[float]) -> Any:
+        """The states at increasing times; raises Breakdown with those that there are."""
+        wanted = np.asarray(times, dtype=float)
+        states = np.empty((len(self.state), len(wanted)), dtype=np.asarray(self.state).dtype)
+        # The first of them may be where the run is.
+        done = 0 if self._piece is not None else int(np.searchsorted(wanted, self.time, side="right"))
+        states[:, :done] = np.asarray(self.state)[:, None]
+        try:
+            while done < self._upto(wanted):
+                done = self._some(wanted, states, done)
+        except Breakdown as found:
+            if not self.watcher.settle():
+                found.filled = states[:, : self._filled]
+                raise
+            done = self._filled
+        self.watcher.settle()
+        if len(wanted) and self._end <= wanted[-1]:
+            self._stopped(states[:, : min(done, self._upto(wanted))])
+        if len(wanted):
+            self.time, self.state = float(wanted[-1]), states[:, -1].copy()
+        return states
+
+    def _some(self, wanted: Any, states: Any, done: int) -> int:
+        """Fills the rows of the next few steps; how many are done then, a Breakdown on the way or not."""
+        pieces: list[Piece] = []
+        parts: list[Any] = []
+        upto, piece = done, self._piece
+        try:
+            while upto < len(wanted) and len(pieces) < BATCH:
+                if piece is None or piece.end < wanted[upto]:
+                    piece = self._next()
+                last = upto + int(np.searchsorted(wanted[upto:], piece.end, side="right"))
+                pieces.append(piece)
+                parts.append(wanted[upto:last])
+                upto = last
+        finally:
+            if upto > done:
+                states[:, done:upto] = states_on(pieces, parts)
+            self._filled = upto
+        return upto
+
+    def step(self, until: float | None = None) -> Piece:
+        """One step, shown to the watcher."""
+        piece = self._next(until)
+        if self.watcher.settle():
+            self._stopped(np.empty((len(self.state), 0)))
+        self.time, self.state = piece.end, self._inner.state
+        return piece
+
+    def restart(self, time: float, state: Any) -> None:
+        """Go on from another state; events before and after are those of one run."""
+        self._inner.restart(time, state)
+        self._piece, self.time, self.state = None, time, self._inner.state
+
+    def _next(self, until: float | None = None) -> Piece:
+        self._piece = piece = self._inner.step() if until is None else self._inner.step(until)
+        self.watcher.see(piece)
+        return piece
+
+    @property
+    def _end(self) -> float:
+        ended = self.watcher.ended
+        return float("inf") if ended is None else ended.time
+
+    def _upto(self, wanted: Any) -> int:
+        """How many of the times are not after the end."""
+        return int(np.searchsorted(wanted, self._end, side="right"))
+
+    def _stopped(self, filled: Any) -> None:
+        ended = self.watcher.ended
+        assert ended is not None
+        self.time, self.state = ended.time, ended.state
+        event = self.watcher.events[ended.event]
+        raise Breakdown(STOPPED, event.text, ended.time, ended.state, filled)

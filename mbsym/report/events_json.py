@@ -1,0 +1,53 @@
+"""What ``simulation.json`` says of events and of a section; the occurrences themselves are in the tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.events import Occurrence, Occurrences
+from mbsym.numerics.surfaces import Event
+from mbsym.simulation import Simulation
+
+
+def events_json(run: Simulation) -> dict[str, Any]:
+    """``events``, ``stopped`` and ``section``; nothing where nothing was watched for."""
+    if run.happened is None:
+        return {}
+    found = run.happened.occurrences
+    content: dict[str, Any] = {
+        "events": [_event(found, place, event) for place, event in enumerate(found.events)],
+        "stopped": _stopped(run, found.ended),
+    }
+    section = run.happened.section
+    if section is not None:
+        content["section"] = {
+            "condition": section.section.condition.text,
+            "axes": [axis.text for axis in section.section.axes],
+            "count": len(section.times),
+        }
+    return content
+
+
+def _event(found: Occurrences, place: int, event: Event) -> dict[str, Any]:
+    times = found.times[found.which == place]
+    return {
+        "name": event.name,
+        "condition": event.text,
+        "direction": event.direction.value,
+        "action": event.action.value,
+        "count": len(times),
+        "first": float(times[0]) if len(times) else None,
+        "last": float(times[-1]) if len(times) else None,
+        "touches": int(np.sum(found.turns[found.which == place] == 0)),
+        "undecided": event in found.undecided,
+    }
+
+
+def _stopped(run: Simulation, ended: Occurrence | None) -> dict[str, Any] | None:
+    if ended is None or run.happened is None:
+        return None
+    names = [*run.system.coordinates, *run.system.velocities]
+    state = dict(zip(names, map(float, ended.state), strict=True))
+    return {"event": run.happened.occurrences.events[ended.event].name, "time": float(ended.time), "state": state}
