@@ -111,6 +111,7 @@ def _check_method(wanted: Asked, options: Options) -> None:
         ("--invariants", request.invariants),
         ("--whole", request.whole),
         ("--estimate", request.estimate is not None),
+        ("--event, --stop or --section", bool(request.events)),
     )
     for option, asked in flags:
         if asked:
