@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, console, printable, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
+from mbsym_cli.telling import told
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
@@ -49,8 +50,8 @@ def spread(
             texts["ensemble.json"] = ensemble_json(found, varied.variations, varied.seed, varied.sampling, files)
             deliver(folder, texts, "ensemble")
     except Unvaried as error:
-        for name, told, hint in error.reasons:
-            options.complain(f"--vary {name}", "bad-variation", told, hint or None)
+        for name, text, hint in error.reasons:
+            options.complain(f"--vary {name}", "bad-variation", text, hint or None)
         options.refused(file)
         return BAD_INPUT
     except Failure as error:
@@ -63,7 +64,7 @@ def spread(
         complain(file, "out of memory; ask for fewer members")
         return FAILED
     if not wanted.quiet:
-        _print(file, given.system.name, sentences(found), folder, texts)
+        told(file, given.system.name, sentences(found), folder, texts)
     if found.interrupted:
         complain(file, f"interrupted; kept up to t = {found.times[-1]:.9g}")
         return INTERRUPTED
@@ -97,19 +98,8 @@ def answers(
         complain(file, f"the derivatives cannot be written: {error}")
         return FAILED
     if not wanted.quiet:
-        _print(file, f"{given.system.name}: derivatives", sentences(found), folder, ["sensitivity.csv"])
+        told(file, f"{given.system.name}: derivatives", sentences(found), folder, ["sensitivity.csv"])
     if found.ended is not None:
         complain(file, f"the derivatives end early: {found.ended}")
         return BROKEN_DOWN
     return OK
-
-
-def _print(file: Path, title: str, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str]) -> None:
-    from rich.text import Text
-
-    out = console()
-    out.print(Text.assemble((title, "bold"), (f"  {printable(file)}", "dim")))
-    for name, text in lines:
-        style = "yellow" if name == "warning" else "bold cyan"
-        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
-    out.print(Text.assemble("  files in ", (printable(folder), "bold"), f": {', '.join(names)}"))

@@ -31,6 +31,8 @@ COMMANDS = {
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
+    "orbit": Listed("orbit", "Find a periodic motion near a guess, with its multipliers."),
+    "lyapunov": Listed("lyapunov", "Measure how fast neighbouring motions part."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),

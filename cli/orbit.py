@@ -1,0 +1,117 @@
+"""``mbsym orbit``: a periodic motion near a guess, with its Floquet multipliers."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from mbsym_cli.assignments import given_numbers
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, read_description, status
+from mbsym_cli.files import deliver, folder_for, obstacle
+from mbsym_cli.options import Options
+from mbsym_cli.telling import told
+
+#: What may be kept while the orbit is sought.
+KEPT = ("auto", "energy", "period", "nothing")
+
+
+@click.command("orbit")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--period", "-T", metavar="T", help="The period, about (2.6, 2*pi).  [required]")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--keep", metavar=f"[{'|'.join(KEPT)}]", default="auto", show_default=True)
+@click.option("--turns", multiple=True, metavar="NAME=N", help="This angle comes back turned by N revolutions.")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
+def command(
+    file: Path,
+    period: str | None,
+    settings: tuple[str, ...],
+    keep: str,
+    turns: tuple[str, ...],
+    out: Path | None,
+    quiet: bool,
+) -> None:
+    """Find a periodic motion of FILE near its initial state and near the period T, by shooting.
+
+    Newton's method with the exact derivative of the flow.  The initial state (initial:, --set) is the guess.  --keep
+    says what stays as the guess has it: its energy, the period, or nothing; auto keeps the energy where it is conserved
+    and the period where the equations know the time (T must then be a period of theirs).
+
+    Told are the state, the period, how well the motion closes by the method that found it and by another one, and the
+    Floquet multipliers with those that are 1 for a reason.  Numbers, no proofs.  Written are orbit.csv (one period) and
+    orbit.json.  Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym orbit systems/double-pendulum.yaml --period 2.6 --set theta1=0.3 --set theta2=0.12
+      mbsym orbit systems/spherical-pendulum.yaml --period 1.57 --turns psi=1 --set psi_dot=4 --set theta=0.9
+    """
+    try:
+        sys.exit(_command(file, folder_for(file, out), period, settings, keep, turns, quiet))
+    except KeyboardInterrupt:
+        complain(file, "interrupted; nothing was written")
+        sys.exit(INTERRUPTED)
+
+
+def _command(
+    file: Path,
+    folder: Path,
+    period: str | None,
+    settings: tuple[str, ...],
+    keep: str,
+    turns: tuple[str, ...],
+    quiet: bool,
+) -> int:
+    """Reads everything, complains about everything, then searches."""
+    system = read_description(file)
+    asked = Options()
+    given = None if system is None else given_numbers(file, system, settings, asked)[0]
+    if period is None:
+        asked.complain("--period", "missing-option", "about how long a period is is not said", "for example --period 2")
+    length = asked.number("--period", period)
+    kept = asked.word("--keep", keep, KEPT, "choice")
+    turned = {}
+    for text in turns:
+        name, _, number = text.partition("=")
+        if system is not None and name.strip() not in system.coordinates:
+            asked.complain(
+                "--turns",
+                "unknown-name",
+                f"there is no coordinate {name!r}",
+                f"there are {', '.join(system.coordinates)}",
+            )
+        whole = asked.whole("--turns", number or "nothing", -1000, 1000)
+        turned[name.strip()] = whole or 0
+    if asked.refused(None if system is None else file) or given is None or length is None or kept is None:
+        return BAD_INPUT
+    reason = obstacle(folder)
+    if reason:
+        complain(file, f"the results cannot be written: {reason}")
+        return FAILED
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.periodic import NotFound
+    from mbsym.report.orbit_files import orbit_csv, orbit_json, sentences
+    from mbsym.simulation.motions import find_orbit
+
+    try:
+        with status(quiet, f"{file.name}: compiling") as say:
+            found = find_orbit(
+                given, length, kept, turned, lambda k, size: say(f"{file.name}: step {k}, {size:.1e} left over")
+            )
+        files: dict[str, str | bytes] = {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)}
+        deliver(folder, files, "orbit")
+    except NotFound as error:
+        complain(file, f"no periodic motion was found: {error}")
+        return FAILED
+    except Failure as error:
+        complain(file, f"error[no-program]: there is no program for these equations: {error}")
+        return FAILED
+    except OSError as error:
+        complain(file, f"the results cannot be written: {error}")
+        return FAILED
+    if not quiet:
+        told(file, given.system.name, sentences(found), folder, files)
+    return OK

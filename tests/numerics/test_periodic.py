@@ -1,0 +1,223 @@
+"""Periodic motions, multipliers and Lyapunov exponents against closed forms, published orbits, and planted mistakes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED, reference
+from jsonschema import Draft202012Validator
+from scipy.special import ellipk
+
+import mbsym
+from mbsym.numerics import lyapunov, variational
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.lyapunov import Parting, exponents
+from mbsym.numerics.periodic import NotFound, Orbit, guessed, periodic_orbit
+from mbsym.numerics.scenario import scenario
+from mbsym.report.schemas import schema
+from mbsym.simulation import read_values
+from mbsym.simulation.motions import find_orbit
+from mbsym_cli.main import main
+
+PENDULUM = """
+mbsym: 1
+name: Pendulum
+bodies:
+  - name: rod
+    attached to: 0
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: [0, -1, 0]
+    mass: 1
+loads:
+  - uniform gravity: {vector: [0, -1, 0]}
+initial: {theta: 1}
+"""
+
+#: Rotating axes; primaries at (-mu, 0) and (1 - mu, 0).
+THREE_BODIES = """
+mbsym: 1
+name: Restricted three-body problem
+parameters: {mu: positive}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - generalized force:
+      x: 2*y_dot + x - (1 - mu)*(x + mu)/sqrt((x + mu)**2 + y**2)**3 - mu*(x - 1 + mu)/sqrt((x - 1 + mu)**2 + y**2)**3
+      y: -2*x_dot + y - (1 - mu)*y/sqrt((x + mu)**2 + y**2)**3 - mu*y/sqrt((x - 1 + mu)**2 + y**2)**3
+values: {mu: 0.012277471}
+initial: {x: {position: 0.994, velocity: 0}, y: {position: 0, velocity: -2.001585106379}}
+"""
+
+HENON_HEILES = """
+mbsym: 1
+name: Henon and Heiles
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - generalized force: {x: -x - 2*x*y, y: -y - x**2 + y**2}
+initial: {x: {position: 0, velocity: 0.42081}, y: {position: -0.25, velocity: 0}}
+"""
+
+KEPLER = """
+mbsym: 1
+name: Kepler
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - generalized force: {x: -x/sqrt(x**2 + y**2)**3, y: -y/sqrt(x**2 + y**2)**3}
+initial: {x: {position: 1, velocity: 0}, y: {position: 0, velocity: 1.1}}
+"""
+
+
+def dynamics(text: str, **values: Any) -> Dynamics:
+    system = mbsym.loads(text).system if "\n" in text else mbsym.load(SHIPPED / f"{text}.yaml").system
+    return Dynamics(scenario(system, read_values(system, values)))
+
+
+def orbit(text: str, period: float, turns: dict[str, int] | None = None, keep: str = "auto", **values: Any) -> Orbit:
+    return find_orbit(dynamics(text, **values).scenario, period, keep, turns).orbit
+
+
+def test_the_period_of_a_pendulum() -> None:
+    """T = 4 K(sin(a/2)), from the energy of the guess, which is not that of a turning point."""
+    found = orbit(PENDULUM, 6.5, theta=0.7, theta_dot=0.8)
+    energy = 0.8**2 / 2 - np.cos(0.7)
+    modulus = np.sqrt((1 + energy) / 2)
+    assert found.period == pytest.approx(4 * ellipk(modulus**2), abs=1e-10)
+    assert found.closure < 1e-11
+    assert found.verified < 1e-10
+    assert found.trivial == 2
+    assert np.max(np.abs(found.multipliers - 1)) < 1e-4  # a double eigenvalue of a Jordan block: half the digits
+    assert found.determinant == pytest.approx(1, abs=1e-10)
+
+
+def test_a_conical_pendulum_closes_up_to_a_revolution() -> None:
+    """cos theta0 = g/(l Omega^2); theta oscillates about it with Omega sqrt(1 + 3 cos^2 theta0) (Whittaker)."""
+    found = orbit("spherical-pendulum", 1.57, {"psi": 1}, psi_dot=4, theta=0.9, keep="period")
+    cosine = 9.81 / (2 * np.pi / 1.57) ** 2
+    assert np.cos(found.state[found.names.index("theta")]) == pytest.approx(cosine, abs=1e-9)
+    angle = 2 * np.pi * np.sqrt(1 + 3 * cosine**2)
+    near = min(abs(mu - np.exp(1j * angle)) for mu in found.multipliers)
+    assert near < 1e-6
+    assert {one.reason for one in found.reasons} >= {"psi is cyclic", "the energy is conserved"}
+
+
+def test_the_orbit_of_arenstorf() -> None:
+    """The reference of cr3bp: period and velocity to nine digits."""
+    published = reference("cr3bp")["parameters"]["arenstorf"]
+    found = orbit(THREE_BODIES, float(published["period"]), keep="nothing")
+    assert found.period == pytest.approx(float(published["period"]), abs=1e-8)
+    assert found.state[3] == pytest.approx(float(published["yd0"]), abs=1e-8)
+    sizes = np.abs(found.multipliers)
+    assert sizes[0] * sizes[-1] == pytest.approx(1, rel=1e-5)  # symplectic: they come in pairs mu, 1/mu
+    assert sizes[0] > 100
+
+
+def test_kepler_has_no_multiplier_but_one() -> None:
+    """The period of the orbit that was found is 2 pi a^(3/2) with its own a."""
+    found = orbit(KEPLER, 8.5)
+    x, y, u, v = found.state
+    semiaxis = 1 / (2 / np.hypot(x, y) - u**2 - v**2)
+    assert found.period == pytest.approx(2 * np.pi * semiaxis**1.5, abs=1e-9)
+    assert np.max(np.abs(found.multipliers - 1)) < 1e-3
+    with pytest.raises(NotFound, match="not known to be conserved"):
+        orbit(KEPLER, 8.5, keep="energy")  # a generalised force has no energy here
+
+
+def test_rest_and_nothing_are_not_called_periodic() -> None:
+    with pytest.raises(NotFound, match=r"rest|no convergence|shrinks"):
+        periodic_orbit(dynamics("ziegler-damped"), guessed(dynamics("ziegler-damped"), 2.0))
+
+
+def test_a_transposed_jacobian_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Newton's method may still converge; the multipliers are no longer 1 for their reasons."""
+    applied = variational._applied
+    monkeypatch.setattr(variational, "_applied", lambda p, m, v: applied(p, tuple(zip(*m, strict=True)), v))
+    swept = lambda p, o, i, d: variational._applied(p, variational.jacobian(p, o, i), d)  # noqa: E731
+    monkeypatch.setattr(variational, "directional", swept)
+    try:
+        found = orbit(PENDULUM, 6.5, theta=0.7, theta_dot=0.8)
+    except NotFound:
+        return
+    assert found.trivial < 2
+
+
+# --- Lyapunov exponents ---
+
+
+def test_a_damped_oscillator_has_the_real_parts_of_its_roots() -> None:
+    """x'' + 0.4 x' + x = 0: both exponents are -0.2; their sum is the divergence -0.4."""
+    text = KEPLER.split("loads:")[0] + "loads:\n  - generalized force: {x: -x - 0.4*x_dot, y: 2*y - y_dot}\n"
+    found = exponents(dynamics(text + "initial: {x: 1, y: 0}\n"), 400, 1.0)
+    # y'' + y' - 2 y = 0: roots 1 and -2
+    assert np.max(np.abs(found.values - [1, -0.2, -0.2, -2])) < 2e-2
+    assert found.divergence == pytest.approx(-1.4, abs=1e-12)
+    assert found.sum_error < 1e-9
+    assert found.parting is Parting.POSITIVE
+
+
+@pytest.mark.slow
+def test_henon_and_heiles_at_an_eighth() -> None:
+    """E = 1/8, x = 0, y = -0.25, py = 0, a chaotic orbit: near 0.045 (Benettin, Galgani & Strelcyn 1976)."""
+    found = exponents(dynamics(HENON_HEILES), 4000, 2.0)
+    assert 0.03 < found.values[0] < 0.06
+    assert found.parting is Parting.POSITIVE
+    assert abs(found.values[0] + found.values[3]) < 2e-3  # pairs of opposite sign
+    assert found.sum_error < 1e-9
+
+
+@pytest.mark.parametrize("text", [PENDULUM, KEPLER])
+def test_integrable_motion_is_not_called_chaotic(text: str) -> None:
+    found = exponents(dynamics(text), 400, 1.0)
+    assert found.parting is Parting.NOT_TOLD_FROM_ZERO
+    assert abs(found.values[0]) < 0.04
+    assert found.falling
+
+
+def test_lost_growth_is_caught_by_the_divergence(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Directions that are made orthogonal without keeping what they grew by."""
+    real = np.linalg.qr
+
+    class Forgetful:
+        def __getattr__(self, name: str) -> Any:
+            return getattr(np.linalg, name)
+
+        def qr(self, matrix: Any) -> Any:
+            q, r = real(matrix)
+            return q, r * (1 + 1e-3)
+
+    class Arrays:
+        linalg = Forgetful()
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(np, name)
+
+    monkeypatch.setattr(lyapunov, "np", Arrays())
+    assert exponents(dynamics(KEPLER), 100, 1.0).sum_error > 1e-4
+
+
+# --- commands ---
+
+
+def test_the_commands(tmp_path: Path) -> None:
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(PENDULUM)
+    done = CliRunner().invoke(main, ["orbit", str(path), "--period", "6.5", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    content = json.loads((tmp_path / "out" / "orbit.json").read_text())
+    Draft202012Validator(schema("orbit")).validate(content)
+    assert content["period"] == pytest.approx(4 * ellipk(np.sin(0.5) ** 2), abs=1e-10)
+    assert "stable" not in done.output.replace("stability", "")
+    done = CliRunner().invoke(main, ["lyapunov", str(path), "--time", "50", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    Draft202012Validator(schema("lyapunov")).validate(json.loads((tmp_path / "out" / "lyapunov.json").read_text()))
+    assert "undecided" in done.output
+    done = CliRunner().invoke(main, ["orbit", str(path), "--turns", "psi=1", "--keep", "all"])
+    assert done.exit_code == 2
+    for part in ("--period", "no coordinate 'psi'", "unknown-choice"):
+        assert part in done.output
