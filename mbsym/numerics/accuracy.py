@@ -1,12 +1,15 @@
-"""How wrong a run is: its difference from a better one, quantity by quantity.
+"""How wrong a run is: its difference from a better one over the whole interval, quantity by quantity.
 
-    error_i = max over the samples of |x_i - better_i|,      relative to scale_i = max over the whole run of |better_i|
+    error_i = max over 0 <= t <= end of |x_i(t) - better_i(t)|,      relative to  scale_i = max over t of |better_i(t)|
+
+on dense output of both, following the steps of both, and at the rows that were shown (``mbsym.numerics.comparison``).
 
 The better run differs in more than name: in an arithmetic of more digits, by another method, or by a tolerance ten
 times smaller at least; two runs that come down to the same settings are never compared.  It takes no step longer than a
-two thousandth of the whole, so that short events are not stepped over twice.
+two thousandth of the whole, so that short events are not stepped over twice.  Where the run is as fine as any method,
+a short one is compared with an extrapolation in 160 bits at places that lie unevenly.
 
-What a quantity is relative to is settled by the scene where it rests but for rounding (``mbsym.numerics.sizes``).
+Where the two part, both may be wrong from there on: the estimate is a lower bound then, and says so.
 """
 
 from __future__ import annotations
@@ -14,17 +17,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any
 
 import numpy as np
 
+from mbsym.numerics.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
-from mbsym.numerics.methods.interface import STEP_LIMIT, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.simulate import Integrated, Trajectory, integrated
-from mbsym.numerics.sizes import AFFORDABLE, GRID, MANY, scaled, usual_sizes
+from mbsym.numerics.reference import BITS, solved_at
+from mbsym.numerics.simulate import Trajectory
+from mbsym.numerics.sizes import AFFORDABLE, sizes_of_scene
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
 TIGHTER, LEAST_RATIO = 1e-2, 0.1
@@ -37,6 +41,9 @@ PARTS = 2_000
 
 #: Nothing new is compiled for a right-hand side with more operations.
 LONG = 20_000
+
+#: Places at which a run is held against an extrapolation, its tolerance, and the seconds that it may take.
+PLACES, PRECISELY, SECONDS = 150, 1e-22, 2.0
 
 #: A relative tolerance below this many roundings is not taken by the methods themselves.
 LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
@@ -64,40 +71,33 @@ class Against:
 
 
 @dataclass(frozen=True)
-class QuantityError:
-    """Absolute errors of one coordinate or velocity: at the end and at worst; ``size`` its own, ``scale`` it is by."""
-
-    name: str
-    final: float
-    largest: float
-    size: float
-    scale: float
-
-    @property
-    def rests(self) -> bool:
-        """Its own size is nothing to measure by."""
-        return self.size < self.scale
-
-
-@dataclass(frozen=True)
 class ErrorEstimate:
-    """Differences from a better run over ``samples`` times from 0 to ``end``; ``rounding`` is that of one number."""
+    """Differences from a better run over the whole interval; ``rounding`` is that of one number of the run."""
 
     against: Against
-    quantities: tuple[QuantityError, ...]
-    samples: int
-    end: float
+    compared: Comparison
     rounding: float
+
+    @property
+    def quantities(self) -> tuple[Difference, ...]:
+        """The differences, coordinate by coordinate, then velocity by velocity."""
+        return self.compared.quantities
 
     @property
     def final(self) -> float:
         """The largest relative error at the end; no run is better than the rounding of one number."""
-        return max(self.rounding, *(q.final / q.scale for q in self.quantities))
+        return max(self.rounding, self.compared.final)
 
     @property
     def largest(self) -> float:
-        """The largest relative error over all samples."""
-        return max(self.rounding, *(q.largest / q.scale for q in self.quantities))
+        """The largest relative error of the whole interval."""
+        return max(self.rounding, self.compared.largest)
+
+    @property
+    def parted(self) -> float | None:
+        """By when the two runs have parted; from there on nothing is known of either, and the estimate is a bound from
+        below."""
+        return self.compared.parted
 
 
 @dataclass(frozen=True)
@@ -120,25 +120,59 @@ def estimated(
     """
     if not found.whole:
         return NoEstimate(Lacking.NOT_WHOLE)
-    times, end = found.times, float(found.times[-1])
-    finer: Any = times if len(times) >= MANY else np.union1d(times, np.linspace(0.0, end, GRID))
     why = Lacking.FINEST
-    for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
-        try:
-            run = integrated(dynamics, better, setting, finer, kind)
-        except Unusable:
-            continue
-        if run.interrupted:
-            return NoEstimate(Lacking.INTERRUPTED)
-        if not run.whole:
-            if run.breakdown is not None and run.breakdown.kind != STEP_LIMIT:
-                return NoEstimate(Lacking.BREAKS_DOWN)
-            why = Lacking.TOO_LONG
-            continue
-        against = Against(better.traits.name, kind, setting)
-        errors = tuple(_differences(dynamics, found, run))
-        return ErrorEstimate(against, errors, len(times), end, _rounding(scalar))
+    try:
+        for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
+            try:
+                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting))
+            except Unusable:
+                continue
+            except Ended as ended:
+                if ended.breakdown.kind != STEP_LIMIT:
+                    return NoEstimate(Lacking.BREAKS_DOWN)
+                why = Lacking.TOO_LONG
+                continue
+            return ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
+        if why is Lacking.FINEST:
+            return _precisely(dynamics, found, method, scalar)
+    except KeyboardInterrupt:
+        return NoEstimate(Lacking.INTERRUPTED)
     return NoEstimate(why)
+
+
+def _compared(
+    dynamics: Dynamics, found: Trajectory, own: tuple[Method, str], better: tuple[Method, str, Setting]
+) -> Comparison:
+    """The run once more, step by step beside the better one."""
+    method, scalar = own
+    other, kind, setting = better
+    with np.errstate(all="ignore"):
+        return compared(
+            method.start(dynamics, found.setting, scalar),
+            other.start(dynamics, setting, kind),
+            float(found.times[-1]),
+            (*dynamics.system.coordinates, *dynamics.system.velocities),
+            lambda times, states: sizes_of_scene(dynamics, times, states),
+            (found.times, found.states),
+        )
+
+
+def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
+    """The error of a run that no other method can judge, by an extrapolation in 160 bits at some places."""
+    end = float(found.times[-1])
+    rows = np.unique(np.linspace(0, len(found.times) - 1, min(len(found.times), PLACES)).astype(int))
+    places = np.union1d(uneven(0.0, end, PLACES), found.times[rows])
+    own = method.start(dynamics, found.setting, scalar)
+    try:
+        states = np.column_stack([own.state, own.fill(places[1:])])
+        states[:, np.searchsorted(places, found.times[rows])] = found.states[:, rows]
+        truth = solved_at(dynamics, places, PRECISELY, SECONDS)
+    except Breakdown as ended:
+        return NoEstimate(Lacking.FINEST if ended.kind == STEP_LIMIT else Lacking.BREAKS_DOWN)
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
+    against = Against("extrapolation", f"{BITS} bits", Setting(PRECISELY))
+    return ErrorEstimate(against, scene, _rounding(scalar))
 
 
 def _candidates(
@@ -180,18 +214,6 @@ def _taken(name: str, scalar: str, tolerance: float) -> float:
     """The relative tolerance that a method takes where one is asked for."""
     roundings = LEAST_ROUNDINGS * 2 * _rounding(scalar)
     return max(tolerance, roundings if name in ("dop853", "rk45", "taylor") else LEAST_OF_SCIPY)
-
-
-def _differences(dynamics: Dynamics, found: Trajectory, better: Integrated) -> Iterator[QuantityError]:
-    """Row by row, at the times of ``found``."""
-    places = np.searchsorted(better.times, found.times)
-    sizes = np.max(np.abs(better.states), axis=1).astype(float)
-    scales = scaled(sizes, usual_sizes(dynamics, found.times, found.states, found.largest_kinetic))
-    with np.errstate(all="ignore"):
-        errors = np.abs(found.states - better.states[:, places]).astype(float)
-    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
-    for name, row, size, scale in zip(names, errors, sizes, scales, strict=True):
-        yield QuantityError(name, float(row[-1]), float(np.max(row)), float(size), float(scale))
 
 
 def contradicted(estimate: ErrorEstimate | NoEstimate, drift: float) -> bool:

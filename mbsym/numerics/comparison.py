@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -28,13 +28,19 @@ from mbsym.numerics.sizes import RESTS, scaled
 SHARES = np.array([0.17, 0.38, 0.61, 0.83])
 
 #: Overlaps that are followed one by one, and places in the rest of the interval.
-MOST = 8_000
+MOST = 4_000
+
+#: So many of them are looked at together.
+AT_ONCE = 16
+
+#: Blocks in which the rest is looked at.
+BLOCKS = 32
 
 #: Differences beyond this part of a quantity's scale: the two solutions have parted.
 PARTED = 0.1
 
-#: Stretches of the interval whose largest differences are remembered, and states that are kept for sizes.
-STRETCHES = 1_024
+#: Stretches of the interval whose largest differences are remembered, and how many places make one at first.
+STRETCHES, TOGETHER = 1_024, 8
 
 #: 1/golden ratio: multiples of it lie evenly in the unit interval however many they are, and on no period.
 UNEVEN = 0.6180339887498949
@@ -43,8 +49,11 @@ UNEVEN = 0.6180339887498949
 class Piecewise(Protocol):
     """One step of a solution: states (2n, m) at times (m,) between ``start`` and ``end``."""
 
-    start: float
-    end: float
+    @property
+    def start(self) -> float: ...
+
+    @property
+    def end(self) -> float: ...
 
     def __call__(self, times: Any) -> Any: ...
 
@@ -58,7 +67,7 @@ class Solution(Protocol):
     def step(self, until: float | None = None) -> Piecewise:
         """One step of its own choosing."""
 
-    def fill(self, times: Any) -> Any:
+    def fill(self, times: Sequence[float]) -> Any:
         """States (2n, m) at increasing times, not before the present one."""
 
 
@@ -132,28 +141,44 @@ def compared(
     usual: Callable[[Any, Any], Any] = lambda times, states: np.zeros(len(states)),
     shown: tuple[Any, Any] | None = None,
     most: int = MOST,
+    watch: Callable[[float], None] = lambda t: None,
 ) -> Comparison:
     """The differences of two solutions that stand at t = 0, from there to ``end``, scaled by the second one.
 
     ``usual(times, states)`` is what the scene would move each quantity by, shape (2n,); ``shown`` are rows (times,
-    states) of the first solution that count as they are.  Raises Ended where a solution does not come to the end.
+    states) of the first solution that count as they are.  ``watch`` is told the time reached, and may raise.  Raises
+    Ended where a solution does not come to the end.
     """
     seen = _Seen(first.state, second.state)
     rows = _Rows.of(shown)
     followed = True
-    for times, one, other, every in _places(first, second, end, rows, most):
-        seen.add(times, rows.instead(times, one), other)
-        followed = followed and every
-    kept = seen.kept()
-    usually = np.asarray(usual(*kept), dtype=float)
-    scales = scaled(seen.size, usually)
-    quantities = tuple(
-        Difference(name, *map(float, values))
-        for name, *values in zip(
-            names, seen.final, seen.largest, seen.when, seen.size, scales, RESTS * usually, strict=True
+    places = _places(first, second, end, rows, most)
+    while block := list(islice(places, AT_ONCE)):
+        times, one, other = (
+            np.concatenate(parts, axis=-1) for parts in zip(*(place[:3] for place in block), strict=True)
         )
-    )
-    return Comparison(quantities, end, seen.points, followed, seen.parted(PARTED * scales), *kept)
+        seen.add(times, rows.instead(times, one), other)
+        followed = followed and block[-1][3]
+        watch(float(times[-1]))
+    return seen.comparison(names, usual, followed)
+
+
+def compared_at(
+    times: Any,
+    one: Any,
+    other: Any,
+    names: Sequence[str],
+    usual: Callable[[Any, Any], Any] = lambda times, states: np.zeros(len(states)),
+) -> Comparison:
+    """The differences of states (2n, m) at increasing times that begin with 0, scaled by ``other``."""
+    seen = _Seen(one[:, 0], other[:, 0])
+    seen.add(times[1:], one[:, 1:], other[:, 1:])
+    return seen.comparison(names, usual, followed=False)
+
+
+def uneven(start: float, end: float, count: int) -> Any:
+    """``count`` times between ``start`` and ``end``, one in each equal part of it, on no period."""
+    return start + (end - start) * (np.arange(count) + np.arange(1, count + 1) * UNEVEN % 1) / count
 
 
 @dataclass(frozen=True)
@@ -189,7 +214,9 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
     one, other = _step(first, second=False), _step(second, second=True)
     for _ in range(most):
         until = min(float(one.end), float(other.end), end)
-        times = np.union1d(np.append(now + SHARES * (until - now), until), rows.among(now, until))
+        times = np.append(now + SHARES * (until - now), until)
+        some = rows.among(now, until)
+        times = np.union1d(times, some) if len(some) else times
         yield times, one(times), other(times), True
         if until >= end:
             return
@@ -198,10 +225,11 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
         other = other if other.end > now else _step(second, second=True)
     # One of them, or both, may be ahead of what was looked at.
     ahead = sorted({now, min(float(one.end), end), min(float(other.end), end), end})
+    ahead = sorted({*ahead, *np.linspace(ahead[-2], end, BLOCKS + 1).tolist()})
     for after, until in pairwise(ahead):
         count = max(16, int(most * len(SHARES) * (until - after) / (end - now)))
-        uneven = after + (until - after) * (np.arange(count) + np.arange(1, count + 1) * UNEVEN % 1) / count
-        times = np.union1d(np.append(uneven[(uneven > after) & (uneven < until)], until), rows.among(after, until))
+        inside = uneven(after, until, count)
+        times = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
         yield times, _at(first, one, times, second=False), _at(second, other, times, second=True), False
 
 
@@ -248,10 +276,11 @@ class _Seen:
         self.final = differences[:, -1]
         self.size = np.maximum(self.size, np.max(np.abs(np.asarray(other, dtype=float)), axis=1))
         self.points += len(times)
-        for chosen in np.array_split(np.arange(len(times)), min(len(times), 1 + len(times) // 8)):
-            self._ends.append(float(times[chosen[-1]]))
+        for start in range(0, len(times), TOGETHER):
+            chosen = slice(start, start + TOGETHER)
+            self._ends.append(float(times[chosen][-1]))
             self._worst.append(np.max(differences[:, chosen], axis=1))
-            self._states.append(np.asarray(other[:, chosen[-1]], dtype=float))
+            self._states.append(np.asarray(other[:, chosen][:, -1], dtype=float))
         while len(self._ends) > 2 * STRETCHES:
             self._thin()
 
@@ -262,6 +291,19 @@ class _Seen:
         self._worst = [self._worst[0], *(np.maximum(*pair) for pair in pairs), *self._worst[odd]]
         self._ends = [self._ends[0], *self._ends[2::2], *self._ends[odd]]
         self._states = [self._states[0], *self._states[2::2], *self._states[odd]]
+
+    def comparison(self, names: Sequence[str], usual: Callable[[Any, Any], Any], followed: bool) -> Comparison:
+        """What it comes to."""
+        kept = self.kept()
+        usually = np.asarray(usual(*kept), dtype=float)
+        scales = scaled(self.size, usually)
+        quantities = tuple(
+            Difference(name, *map(float, values))
+            for name, *values in zip(
+                names, self.final, self.largest, self.when, self.size, scales, RESTS * usually, strict=True
+            )
+        )
+        return Comparison(quantities, self._ends[-1], self.points, followed, self.parted(PARTED * scales), *kept)
 
     def kept(self) -> tuple[Any, Any]:
         """(times, states) of the second solution, some of them along the whole interval."""

@@ -24,12 +24,16 @@ from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
 BITS = 160
 COLUMNS = 12
 
+#: Ways to a reference.
+EXTRAPOLATION, EXPLICIT, IMPLICIT = "extrapolation", "explicit", "implicit"
+
 
 @dataclass(frozen=True)
 class Reference:
-    """``states`` at ``times``, shape (2n, m), rounded to float64; ``error`` is the estimated error of the solution,
+    """``states`` at ``times``, shape (2n, m), rounded to float64; ``error`` is the estimated error of the solution:
 
-    the largest difference from a second solution, each component relative to ``scale``, shape (2n,).
+    the largest difference from a second solution, each component relative to ``scale``, shape (2n,).  ``method`` says
+    what the two are, ``way`` of which kind.
     """
 
     times: Any
@@ -38,46 +42,55 @@ class Reference:
     seconds: float
     method: str
     scale: Any
+    way: str = EXTRAPOLATION
 
 
-class _Extrapolation:
+class Extrapolation:
+    """A solution under way: ``state`` at ``time``, which is a double, so that others can start there."""
+
     def __init__(self, dynamics: Dynamics, tolerance: float, columns: int, deadline: float) -> None:
         self.f = precise(dynamics.right_hand_side, BITS)
-        self.time = arb(0)
+        self.time = 0.0
         self.state = [arb(fmpq(x.numerator, x.denominator)) for x in dynamics.scenario.state]
         self.tolerance = tolerance
         self.columns = columns
         self.deadline = deadline
-        self.step = 1e-3
+        self.step_size = 1e-3
         self.scale = [max(abs(float(x)), 1e-3) for x in dynamics.scenario.state]
 
-    def advance(self, until: arb) -> None:
-        """Steps up to ``until``; the last one ends there exactly."""
+    def advance(self, until: float) -> None:
+        """Steps up to ``until``; the last one ends there exactly.  Raises Breakdown."""
         while self.time < until:
-            left = float(until - self.time)
-            last = self.step >= left * (1 - 1e-9)
-            size = until - self.time if last else arb(self.step)
-            new, error = self._extrapolated(size)
+            self.step(until)
+
+    def step(self, until: float) -> None:
+        """One step, which ends at ``until`` at the latest.  Raises Breakdown."""
+        while True:
+            now = min(self.time + self.step_size, until)
+            last, length = now == until, now - self.time
+            new, error = self._extrapolated(arb(now) - arb(self.time))
             growth = 0.9 * (self.tolerance / max(error, 1e-300)) ** (1 / (2 * self.columns - 1))
-            if error <= self.tolerance:
-                self.time = until if last else (self.time + size).mid()
-                self.state = new
+            accepted = error <= self.tolerance
+            if not accepted:
+                self.step_size = length * min(0.7, max(0.1, growth))
+            elif not last or growth < 1:
+                self.step_size = length * min(4.0, growth)
+            if accepted:
+                self.time, self.state = now, new
                 self.scale = [max(s, abs(float(x))) for s, x in zip(self.scale, new, strict=True)]
-                if not last or growth < 1:
-                    self.step = float(size) * min(4.0, growth)
-            else:
-                self.step = float(size) * min(0.7, max(0.1, growth))
-            if not self.step > 1e-12 * max(1.0, float(self.time)):
-                raise Breakdown(BLOW_UP, "the reference solution cannot go on", float(self.time), self.floats())
+            if not self.step_size > 1e-12 * max(1.0, self.time):
+                raise Breakdown(BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
             if time.perf_counter() > self.deadline:
-                raise Breakdown(STEP_LIMIT, "out of time", float(self.time), self.floats())
+                raise Breakdown(STEP_LIMIT, "out of time", self.time, self.floats())
+            if accepted:
+                return
 
     def floats(self) -> Any:
         return np.array([float(x) for x in self.state])
 
     def _extrapolated(self, size: arb) -> tuple[list[arb], float]:
         """Aitken-Neville: T_jk = T_j,k-1 + (T_j,k-1 - T_j-1,k-1) / ((n_j/n_j-k)^2 - 1); and the relative error."""
-        slope = self._slope(self.time, self.state)
+        slope = self._slope(arb(self.time), self.state)
         rows: list[list[list[arb]]] = []
         for j in range(self.columns):
             n = 2 * (j + 1)
@@ -105,6 +118,27 @@ class _Extrapolation:
         return now
 
 
+def solved_at(dynamics: Dynamics, times: Any, tolerance: float, seconds: float) -> Any:
+    """The states (2n, m) at increasing times from 0, in the most digits that NumPy has.
+
+    Raises Breakdown where there is no solution, or after so many seconds (kind STEP_LIMIT).
+    """
+    with ctx.workprec(BITS):
+        run = Extrapolation(dynamics, tolerance, COLUMNS, time.perf_counter() + seconds)
+        states = [in_doubles(run.state)]
+        for t in times[1:]:
+            run.advance(float(t))
+            states.append(in_doubles(run.state))
+    return np.array(states).T
+
+
+def in_doubles(state: Sequence[arb]) -> Any:
+    """The sum of two doubles for each component, as far as NumPy's longest numbers hold it."""
+    heads = [float(x) for x in state]
+    tails = [float(x - arb(head)) for x, head in zip(state, heads, strict=True)]
+    return np.array(heads, np.longdouble) + np.array(tails, np.longdouble)
+
+
 def reference(
     dynamics: Dynamics,
     times: Sequence[float],
@@ -122,10 +156,10 @@ def reference(
     runs = []
     with ctx.workprec(BITS):
         for columns, local in ((COLUMNS, tolerance), (COLUMNS - 3, tolerance * 1e3)):
-            run = _Extrapolation(dynamics, local, columns, started + budget)
+            run = Extrapolation(dynamics, local, columns, started + budget)
             states = [list(run.state)]
             for t in times[1:]:
-                run.advance(arb(float(t)))
+                run.advance(float(t))
                 states.append(list(run.state))
                 watch(float(t))
             runs.append(states)

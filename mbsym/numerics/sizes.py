@@ -65,6 +65,17 @@ def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> 
     return np.where(np.isfinite(usual), usual, 0.0)
 
 
+def sizes_of_scene(dynamics: Dynamics, times: Any, states: Any) -> Any:
+    """``usual_sizes`` of a motion whose states (2n, m) lie close to each other."""
+    with np.errstate(all="ignore"):
+        kinetic = compiled_kernel(dynamics, "relative_energy")(np.vstack([times, states]))[1]
+    largest = float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
+    try:
+        return usual_sizes(dynamics, times, states, largest)
+    except Failure:
+        return np.zeros(len(states))
+
+
 def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[Method], Method]) -> float:
     """The largest kinetic energy of the motion where the samples are too few to show it, by a coarse run; else 0."""
     if len(found.times) >= MANY or len(found.times) < 2:

@@ -1,25 +1,28 @@
-"""The trade of one scenario as a whole: reference, ladders of settings, simpler models."""
+"""The trade of one scenario as a whole: reference, simpler models, ladders of settings, in the time that there is."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from mbsym.numerics import fidelity
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.fidelity import ModelError
 from mbsym.numerics.methods.interface import Method
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reference import reference
+from mbsym.numerics.reference import IMPLICIT
+from mbsym.numerics.reference_search import whole_reference
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.sizes import motion_sizes
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
 
-#: Solutions are compared at these 64ths of the time: unevenly, for whole periods show little of an error.
-PLACES = (0, 7, 13, 22, 30, 37, 45, 54, 64)
+#: The part of the budget that the search for a reference may take, and the seconds that it has in any case.
+FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.4, 10.0
 
-#: The reference may take so many seconds, or as many as the budget has.
-LEAST_FOR_REFERENCE = 30.0
+#: Places at which models are compared; they differ smoothly.
+PLACES = 500
 
 
 @dataclass(frozen=True)
@@ -38,23 +41,17 @@ def studied(
     with_models: bool,
     watch: Callable[[str], None] = lambda text: None,
 ) -> Study:
-    """The study from 0 to ``end``, in about ``budget`` seconds beside those of the reference.
+    """The study from 0 to ``end``, in ``budget`` seconds (some more where these are too few for a reference).
 
     Raises Breakdown where there is no reference solution up to ``end``, Failure where the equations have no program.
     """
-    times = [end * place / PLACES[-1] for place in PLACES]
+    until = time.perf_counter() + budget
     dynamics = Dynamics(scenario)
     watch("reference solution")
-    sizes = motion_sizes(dynamics, end)
-    truth = reference(
-        dynamics,
-        times,
-        budget=max(LEAST_FOR_REFERENCE, budget),
-        watch=lambda t: watch(f"reference solution, t = {t:.4g} of {end:g}"),
-        scale=sizes,
-    )
-    trade = tradeoff(dynamics, methods, truth, budget, watch)
+    truth = whole_reference(dynamics, end, max(LEAST_FOR_REFERENCE, FOR_REFERENCE * budget), watch)
     models: tuple[ModelError, ...] = ()
-    if with_models and not trade.interrupted:
-        models = fidelity.measured(scenario, METHODS["dop853"], times, watch, sizes)
-    return Study(trade, models)
+    if with_models:
+        places = np.unique(np.linspace(0, len(truth.times) - 1, PLACES).astype(int))
+        method = METHODS["lsoda" if truth.way == IMPLICIT else "dop853"]
+        models = fidelity.measured(scenario, method, truth.times[places].tolist(), watch, truth.scale)
+    return Study(tradeoff(dynamics, methods, truth, max(until - time.perf_counter(), 0.0), watch), models)

@@ -1,9 +1,9 @@
 """What accuracy costs: ladders over method, tolerance or step, and arithmetic, measured on one system on this machine.
 
-error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and sampled times, each relative to its size
-         in the whole motion (``mbsym.numerics.sizes``)
-drift    largest change of the energy h, relative to the largest kinetic energy
-seconds  median of the integration itself; compiling is not counted (it happens once)
+error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and the thousands of times at which the
+         reference is known, each relative to its size in the whole motion (``mbsym.numerics.sizes``)
+drift    largest change of the energy h at the same times, relative to the largest kinetic energy
+seconds  median of the integration from 0 to the end; compiling is not counted (it happens once), nor are rows
 
 An error is measured against a reference solution of a different method and arithmetic, never against a tolerance; what
 is smaller than a hundred times the reference's own error is not called an error at all.
@@ -24,7 +24,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
 from mbsym.numerics.reference import Reference
 
 #: A reference must be so much better than what it judges.
@@ -33,6 +33,9 @@ MARGIN = 100.0
 #: Runs shorter than this are repeated, and the median taken.
 SHORT = 0.25
 REPEATS = 5
+
+#: A run is stopped after so many seconds at the earliest, and looked at in so many places meanwhile.
+LEAST, BLOCKS = 0.05, 64
 
 
 @dataclass(frozen=True)
@@ -112,17 +115,17 @@ def tradeoff(
 ) -> Tradeoff:
     """Measures every method's ladder against ``reference`` (whose times are the sampled ones), in ``budget`` seconds.
 
-    The budget is one of integration (compiling comes on top, once a method) and is shared evenly between the ladders;
-    a ladder stops where its next rung would cost too much, or where a finer setting no longer gives a smaller error.
+    The budget is one of everything that happens here, compiling included, and is shared evenly between the ladders; a
+    ladder stops where its next rung would cost too much, or where a finer setting no longer gives a smaller error.
     Ctrl-C ends the measuring and keeps the rows that there are.
     """
     judge = _Judge(dynamics, reference)
     rows: list[Measured] = []
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
-    interrupted = False
+    interrupted, until = False, time.perf_counter() + budget
     for place, (method, scalar) in enumerate(pairs):
-        share = (budget - judge.spent) / (len(pairs) - place)
+        share = (until - time.perf_counter()) / (len(pairs) - place)
         try:
             for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
                 rows.append(row)
@@ -143,33 +146,44 @@ class _Judge:
         self.reference = reference
         self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
-        self.spent = 0.0
 
-    def measure(self, candidate: Candidate) -> Measured:
-        """Error, drift and median seconds of a candidate; a breakdown is a result too."""
+    def measure(self, candidate: Candidate, deadline: float = inf) -> Measured:
+        """Error, drift and median seconds of a candidate; a breakdown is a result too, and so is a ``deadline``."""
         with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
-            return self._measure(candidate)
+            return self._measure(candidate, deadline)
 
-    def _measure(self, candidate: Candidate) -> Measured:
+    def _measure(self, candidate: Candidate, deadline: float) -> Measured:
         times = self.reference.times
-        seconds: list[float] = []
-        while not seconds or (sum(seconds) < SHORT and len(seconds) < REPEATS):
+        run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
+        states = [np.array(run.state, dtype=float)[:, np.newaxis]]
+        started = time.perf_counter()
+        try:
+            for some in np.array_split(times[1:], min(BLOCKS, len(times) - 1)):
+                states.append(np.asarray(run.fill(some), dtype=float))
+                if time.perf_counter() > deadline and some[-1] < times[-1]:
+                    raise Breakdown(STEP_LIMIT, "no time left to measure it", float(some[-1]), states[-1][:, -1])
+            seconds = self._seconds(candidate, time.perf_counter() - started, run.work, deadline)
+        except Breakdown as found:
+            wasted = time.perf_counter() - started
+            return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
+        matrix = np.hstack(states)
+        work, typical = seconds
+        return Measured(
+            candidate, self._error(matrix), self._drift(times, matrix), work.evaluations, work.steps, typical
+        )
+
+    def _seconds(self, candidate: Candidate, with_rows: float, work: Work, deadline: float) -> tuple[Work, float]:
+        """What the run costs without the places at which it was compared, where these count."""
+        taken: list[float] = []
+        if with_rows > SHORT:
+            return work, with_rows
+        end = float(self.reference.times[-1])
+        while not taken or (sum(taken) < SHORT and len(taken) < REPEATS and time.perf_counter() < deadline):
             run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
-            states = [np.array(run.state, dtype=float)]
             started = time.perf_counter()
-            try:
-                for t in times[1:]:
-                    states.append(np.array(run.advance(float(t)), dtype=float))
-            except Breakdown as found:
-                wasted = time.perf_counter() - started
-                self.spent += wasted
-                return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
-            seconds.append(time.perf_counter() - started)
-            self.spent += seconds[-1]
-        matrix = np.array(states).T
-        error, drift = self._error(matrix), self._drift(times, matrix)
-        work, typical = run.work, statistics.median(seconds)
-        return Measured(candidate, error, drift, work.evaluations, work.steps, typical)
+            run.advance(end)
+            taken.append(time.perf_counter() - started)
+        return run.work, statistics.median(taken)
 
     def _error(self, states: Any) -> float:
         with np.errstate(all="ignore"):
@@ -188,19 +202,21 @@ def _ladder(
     judge: _Judge, method: Method, scalar: str, share: float, watch: Callable[[str], None]
 ) -> Iterator[Measured]:
     """From coarse to fine, until the next rung costs too much or brings nothing."""
-    before = judge.spent
-    idle, best = 0, inf
-    last: Measured | None = None
+    begun = time.perf_counter()
+    idle, best, cost = 0, inf, 0.0
     for setting in _settings(method, scalar, float(judge.reference.times[-1])):
         candidate = Candidate(method, scalar, setting)
         watch(candidate.label)
-        row = judge.measure(candidate)
+        started = time.perf_counter()
+        row = judge.measure(candidate, begun + max(share, LEAST))
         yield row
+        now = time.perf_counter()
         idle = 0 if row.error < 0.5 * best else idle + (best < inf)
         best = min(best, row.error)
-        growth = max(1.3, row.seconds / last.seconds) if last is not None and last.seconds > 0 else 2.0
-        last = row
-        if idle >= 3 or judge.spent - before + min(growth, 4.0) * row.seconds > share:
+        # The first rung is compiled as well: it says little about the next one.
+        growth = max(1.3, (now - started) / cost) if cost else 1.3
+        cost = now - started
+        if idle >= 3 or now - begun + min(growth, 4.0) * cost > share:
             return
 
 
@@ -269,9 +285,8 @@ def advice(found: Tradeoff, target: float) -> str:
         )
     judged = best.error > found.smallest_judged
     error = f"{best.error:.1e}" if judged else f"below {found.smallest_judged:.0e}"
-    times = len(found.reference.times) - 1
     return (
-        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {error} at {times} times compared (the "
+        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {error} over the whole interval (the "
         f"reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
         f"{_more(found, best, target / 10)}, one digit less {_less(found, best, target * 10)}."
     )

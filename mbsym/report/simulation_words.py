@@ -9,9 +9,6 @@ from typing import Any
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
 
-#: From here on a run and a better one have little in common.
-UNLIKE = 0.1
-
 
 def standing_words(found: Conservation) -> str:
     """``conserved (proved)``, ``not conserved``, ``undecided (why)``."""
@@ -49,8 +46,13 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
         if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.INTERRUPTED):
             yield f"not estimated: {found.why.value}"
         return
-    against = f"of each quantity's size; against {against_words(found.against)}"
-    if found.largest <= found.rounding:
+    against = f"of each quantity's size in the whole motion; against {against_words(found.against)}"
+    if found.parted is not None:
+        yield (
+            f"at least {found.largest:.1e}: this run and a better one have parted by t = {found.parted:.4g}, and from "
+            f"there on nothing is known of either ({against})"
+        )
+    elif found.largest <= found.rounding:
         yield f"no more than the rounding of one number, {found.rounding:.1e} ({against})"
     else:
         worst = f", {found.largest:.1e} at worst" if found.largest > 2 * found.final else ""
@@ -59,7 +61,11 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
     if resting:
         names = ", ".join(q.name for q in resting)
         error = max(q.largest for q in resting)
-        yield f"{names} rest: the {error:.1e} that the run makes of it is measured by what the motion could do"
+        floor = min(q.floor for q in resting)
+        yield (
+            f"{names} rest: the {error:.1e} that the run makes of it is measured by what the motion could do (sizes "
+            f"below {floor:.1e} count as rest)"
+        )
 
 
 def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> Iterator[str]:
@@ -69,10 +75,10 @@ def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> I
             f"the {conservation.quantity} is conserved, and this run does not keep it: it is too coarse; choose a "
             "smaller --tolerance, or --method rk4 with a small --step"
         )
-    if isinstance(error, ErrorEstimate) and error.largest > UNLIKE:
+    if isinstance(error, ErrorEstimate) and error.parted is not None:
         yield (
-            "this run and a better one have little in common: the motion is chaotic or starts at an unstable rest, the "
-            "run has stepped over something short, or it is too coarse"
+            f"from t = {error.parted:.4g} on this run and a better one have little in common: the motion is chaotic or "
+            "starts at an unstable rest, the run has stepped over something short, or it is too coarse"
         )
 
 
@@ -104,9 +110,24 @@ def error_json(found: ErrorEstimate | NoEstimate) -> dict[str, Any]:
             "step": against.setting.step,
             "longest_step": against.setting.longest,
         },
-        "over": {"from": 0.0, "to": found.end, "samples": found.samples},
+        "lower_bound": found.parted is not None,
+        "parted": found.parted,
+        "over": {
+            "from": 0.0,
+            "to": found.compared.end,
+            "samples": found.compared.points,
+            "every_step": found.compared.followed,
+        },
         "quantities": {
-            q.name: {"final": q.final, "largest": q.largest, "size": q.size, "scale": q.scale, "rests": q.rests}
+            q.name: {
+                "final": q.final,
+                "largest": q.largest,
+                "when": q.when,
+                "size": q.size,
+                "scale": q.scale,
+                "floor": q.floor,
+                "rests": q.rests,
+            }
             for q in found.quantities
         },
     }

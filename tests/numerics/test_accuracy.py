@@ -12,7 +12,8 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, QuantityError, contradicted
+from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, contradicted
+from mbsym.numerics.comparison import Comparison, Difference
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Setting
 from mbsym.report.simulation_words import error_json, error_lines, warnings
@@ -133,17 +134,55 @@ def test_estimates_of_stiff_systems_are_true() -> None:
 
 
 @needs_extended
-def test_the_finest_run_has_no_estimate() -> None:
+@pytest.mark.parametrize(("case", "solution"), [("osc", oscillator), ("kepler", kepler), ("arm3", falling)])
+def test_the_finest_run_is_judged_by_an_extrapolation(case: str, solution: Solution) -> None:
+    """No method has more digits; 160 bits have."""
+    run = mbsym.simulate(CASES / f"{case}.yaml", 3, arithmetic="extended", tolerance=1e-19)
+    assert isinstance(run.error, ErrorEstimate)
+    assert run.error.against.scalar == "160 bits"
+    final, worst = true_errors(run, solution)
+    assert final / 3 <= run.error.final <= 3 * max(final, run.error.rounding)
+    assert worst / 3 <= run.error.largest <= 30 * max(worst, run.error.rounding)
+
+
+@needs_extended
+def test_the_finest_run_has_no_estimate_where_that_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.numerics.accuracy.SECONDS", 1e-3)
     run = mbsym.simulate(CASES / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
     assert run.error == NoEstimate(Lacking.FINEST)
     assert list(error_lines(run.error)) == [f"not estimated: {Lacking.FINEST.value}"]
     assert error_json(run.error)["available"] is False
 
 
-def test_without_finer_arithmetic_a_clamped_tolerance_has_no_estimate(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("tolerance", [1e-15, 1e-16, 1e-18])
+@pytest.mark.parametrize(("case", "solution"), [("osc", oscillator), ("kepler", kepler), ("arm3", falling)])
+def test_without_finer_arithmetic_a_clamped_tolerance_is_not_compared_with_itself(
+    monkeypatch: pytest.MonkeyPatch, case: str, solution: Solution, tolerance: float
+) -> None:
     """1e-16 and 1e-18 are one run in float64: their difference, 0, is no error."""
     monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
-    assert mbsym.simulate(CASES / "osc.yaml", 1, tolerance=1e-16).error == NoEstimate(Lacking.FINEST)
+    run = mbsym.simulate(CASES / f"{case}.yaml", 6, tolerance=tolerance)
+    assert isinstance(run.error, ErrorEstimate)
+    assert run.error.against.scalar == "160 bits"
+    final, worst = true_errors(run, solution)
+    assert final / 3 <= run.error.final <= 3 * max(final, run.error.rounding)
+    assert worst / 3 <= run.error.largest <= 30 * max(worst, run.error.rounding)
+
+
+def test_a_planted_comparison_of_a_run_with_itself_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negative control: were the run its own better one, its error would be that of rounding, and is not."""
+    monkeypatch.setattr(
+        "mbsym.numerics.accuracy._candidates",
+        lambda dynamics, found, method, scalar, completed: iter([(method, scalar, found.setting)]),
+    )
+    run = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
+    final, _ = true_errors(run, kepler)
+    assert isinstance(run.error, ErrorEstimate)
+    assert not final / 2 <= run.error.final
+
+
+def test_without_finer_arithmetic_a_coarse_run_is_judged_by_a_finer_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
     coarser = mbsym.simulate(CASES / "osc.yaml", 6, tolerance=1e-8).error
     assert isinstance(coarser, ErrorEstimate)
     assert (coarser.against.scalar, coarser.against.setting.tolerance) == ("float64", pytest.approx(1e-10))
@@ -196,7 +235,9 @@ def test_light_motion_is_measured_by_itself() -> None:
 
 def test_an_estimate_that_a_conserved_energy_belies_is_withdrawn() -> None:
     against = Against("dop853", "float64", Setting(1e-12))
-    estimate = ErrorEstimate(against, (QuantityError("x", 1e-9, 1e-9, 1.0, 1.0),), 10, 1.0, 1e-16)
+    difference = Difference("x", 1e-9, 1e-9, 1.0, 1.0, 1.0, 0.0)
+    compared = Comparison((difference,), 1.0, 10, True, None, np.array([0.0, 1.0]), np.zeros((1, 2)))
+    estimate = ErrorEstimate(against, compared, 1e-16)
     assert contradicted(estimate, 0.5)
     assert not contradicted(estimate, 1e-8)
     assert not contradicted(NoEstimate(Lacking.NOT_ASKED), 0.5)

@@ -14,6 +14,7 @@ from truth.statements import Run, false_run
 
 import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate
+from mbsym.numerics.comparison import uneven
 
 LINE = (
     "mbsym: 1\nname: one\nbodies:\n"
@@ -124,12 +125,15 @@ def truth_of(motion: Motion, times: tuple[float, ...]) -> np.ndarray:
 
 
 def run_of(motion: Motion, asked: dict[str, Any]) -> Run:
+    """The rows, and what the run shows between them."""
     found = mbsym.simulate(mbsym.loads(motion.text), motion.time, samples=motion.samples, estimate=True, **asked)
     assert found.whole
     error = found.error.largest if isinstance(found.error, ErrorEstimate) else None
-    return Run(
-        found.times, np.asarray(found.trajectory.states, dtype=float), error, found.conservation.standing.conserved
-    )
+    again = found.chosen.method.start(found.dynamics, found.chosen.setting)
+    times = np.union1d(found.times, uneven(0.0, motion.time, 150)[1:])
+    states = np.column_stack([again.state, again.fill(times[1:])])
+    states[:, np.searchsorted(times, found.times)] = found.trajectory.states
+    return Run(times, states, error, found.conservation.standing.conserved)
 
 
 RUNS = [

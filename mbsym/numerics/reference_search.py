@@ -1,0 +1,234 @@
+"""The best reference solution over a whole interval that can be had in a given time.
+
+Three ways, each with two solutions that share neither steps nor order, nor method where that is possible; how far they
+differ is the error that the reference is said to have.
+
+extrapolation    in 160 bits, twice, with other columns and steps; between its steps an explicit method in extended
+                 arithmetic, started anew at each of them, which has to arrive at the next one
+explicit         two methods in extended arithmetic that agree
+implicit         two methods of different order in float64 that agree (stiff scenes)
+
+Two solutions that do not agree are no reference, whatever each of them says of itself.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from mbsym.numerics.comparison import SHARES, Comparison, Ended, compared, uneven
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.kernels.llvm import available
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.reference import (
+    BITS,
+    COLUMNS,
+    EXPLICIT,
+    EXTRAPOLATION,
+    IMPLICIT,
+    Extrapolation,
+    Reference,
+    in_doubles,
+)
+from mbsym.numerics.sizes import scaled, sizes_of_scene
+
+#: Places at which a reference is known, at least, and twice as many at most where its steps are many.
+PLACES = 4_000
+
+#: The local errors of the two extrapolations, and of the explicit method between their steps.
+FINE, ROUGH, BETWEEN = 1e-24, 1e-21, 1e-19
+
+#: At every so many steps of the first extrapolation the second one is held against it.
+EVERY = 4
+
+#: Two solutions that differ by more than this are no reference.
+AGREE = 1e-3
+
+#: Parts of the time that is left that each way may take.
+SHARES_OF_TIME = (0.5, 0.6, 1.0)
+
+#: No step of an explicit or implicit reference is longer than this part of the whole.
+PARTS = 2_000
+
+#: Why there is no reference although solutions came to the end.
+DISAGREE = "no two solutions agree"
+
+
+def whole_reference(
+    dynamics: Dynamics, end: float, seconds: float, watch: Callable[[str], None] = lambda text: None
+) -> Reference:
+    """A solution over the whole interval, known at thousands of places, in about so many seconds.
+
+    Raises Breakdown where the solution does not exist up to the end, where none is found in time (kind STEP_LIMIT), or
+    where no two solutions agree (kind DISAGREE).
+    """
+    started = time.perf_counter()
+    failed: Breakdown | None = None
+    for way, share in zip((_extrapolated, _explicit, _implicit), SHARES_OF_TIME, strict=True):
+        left = seconds - (time.perf_counter() - started)
+        try:
+            found = way(_Search(dynamics, end, time.perf_counter() + share * max(left, 0.0), watch))
+        except Breakdown as reason:
+            if way is _extrapolated and reason.kind != STEP_LIMIT:
+                raise
+            failed = reason if failed is None or reason.time > failed.time or reason.kind == DISAGREE else failed
+        else:
+            return replace(found, seconds=time.perf_counter() - started)
+    assert failed is not None
+    raise failed
+
+
+@dataclass(frozen=True)
+class _Search:
+    """What is sought, until when, and who is told."""
+
+    dynamics: Dynamics
+    end: float
+    deadline: float
+    watch: Callable[[str], None]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*self.dynamics.system.coordinates, *self.dynamics.system.velocities)
+
+    def reached(self, t: float) -> None:
+        """Tells, and raises Breakdown where the time is over."""
+        self.watch(f"reference solution, t = {t:.4g} of {self.end:g}")
+        if time.perf_counter() > self.deadline:
+            raise Breakdown(STEP_LIMIT, "out of time", t, np.empty(0))
+
+    def usual(self, times: Any, states: Any) -> Any:
+        return sizes_of_scene(self.dynamics, times, states)
+
+    def finished(self, times: Any, states: Any, differences: Any, method: str, way: str) -> Reference:
+        """With ``differences`` (2n,) from a second solution, each relative to its scale then."""
+        states = np.asarray(states, dtype=float)
+        places = np.unique(np.linspace(0, len(times) - 1, 1000).astype(int))
+        scale = scaled(np.max(np.abs(states), axis=1), self.usual(times[places], states[:, places]))
+        error = float(np.max(differences / scale))
+        if not error < AGREE:
+            raise Breakdown(DISAGREE, f"{method} differ by {error:.1e}", self.end, states[:, -1])
+        return Reference(times, states, error, 0.0, method, scale, way)
+
+
+# --- extrapolation in many bits ---
+
+
+def _extrapolated(search: _Search) -> Reference:
+    with ctx.workprec(BITS):
+        times, exact = _knots(search)
+        differences = _second(search, times, exact)
+        knots = np.array([in_doubles(state) for state in exact]).T
+    places, states, missed = _between(search, np.array(times), knots)
+    told = f"extrapolation, {BITS} bits"
+    return search.finished(places, states, np.maximum(differences, missed), told, EXTRAPOLATION)
+
+
+def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
+    """The steps of the first extrapolation; given up early where it would take far too long."""
+    begun, allowed = time.perf_counter(), search.deadline - time.perf_counter()
+    run = Extrapolation(search.dynamics, FINE, COLUMNS, search.deadline)
+    times, states = [0.0], [list(run.state)]
+    while run.time < search.end:
+        run.step(search.end)
+        times.append(run.time)
+        states.append(list(run.state))
+        search.reached(run.time)
+        spent = time.perf_counter() - begun
+        hopeless = 4.0 if spent < allowed / 2 else 1.5
+        if spent > allowed / 8 and spent * search.end / run.time > hopeless * allowed:
+            raise Breakdown(STEP_LIMIT, "out of time", run.time, run.floats())
+    return times, states
+
+
+def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any:
+    """Largest |x_i - y_i| of an extrapolation with fewer columns, larger errors, and so with other steps."""
+    run = Extrapolation(search.dynamics, ROUGH, COLUMNS - 3, search.deadline)
+    worst = np.zeros(len(states[0]))
+    for place in sorted({*range(EVERY, len(times), EVERY), len(times) - 1}):
+        run.advance(times[place])
+        search.reached(run.time)
+        worst = np.maximum(worst, [abs(float(x - y)) for x, y in zip(run.state, states[place], strict=True)])
+    return worst
+
+
+def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
+    """(places, states there, by how much the explicit method misses the next knot, (2n,))."""
+    scalar = EXTENDED if available(EXTENDED) else FLOAT64
+    run = METHODS["dop853"].start(search.dynamics, Setting(BETWEEN, longest=search.end / PARTS), scalar)
+    inside = max(len(SHARES), -(-PLACES // (len(times) - 1)))
+    places, states, missed = [times[:1]], [knots[:, :1]], np.zeros(len(knots))
+    for k in range(len(times) - 1):
+        run.restart(float(times[k]), knots[:, k].astype(np.longdouble if scalar == EXTENDED else float))
+        wanted = np.append(uneven(times[k], times[k + 1], inside), times[k + 1])
+        found = run.fill(wanted)
+        with np.errstate(all="ignore"):
+            missed = np.maximum(missed, np.abs(found[:, -1] - knots[:, k + 1]).astype(float))
+        found[:, -1] = knots[:, k + 1]
+        places.append(wanted)
+        states.append(found)
+        search.reached(float(times[k + 1]))
+    return np.concatenate(places), np.hstack(states), np.where(np.isfinite(missed), missed, np.inf)
+
+
+# --- two methods that agree ---
+
+
+def _explicit(search: _Search) -> Reference:
+    scalar = EXTENDED if available(EXTENDED) else FLOAT64
+    longest = search.end / PARTS
+    first = METHODS["dop853"], Setting(1e-18, longest=longest)
+    for name, tolerance in (("taylor", 1e-18), ("rk45", 1e-13)):
+        try:
+            return _agreeing(search, first, (METHODS[name], Setting(tolerance, longest=longest)), scalar, EXPLICIT)
+        except Unusable:
+            continue
+    raise Breakdown(STEP_LIMIT, "no second method", 0.0, np.empty(0))
+
+
+def _implicit(search: _Search) -> Reference:
+    longest = search.end / PARTS
+    failed: Breakdown | None = None
+    for tolerance in (1e-12, 1e-9):
+        first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("radau", "lsoda"))
+        try:
+            return _agreeing(search, first, second, FLOAT64, IMPLICIT)
+        except Breakdown as reason:
+            failed = reason
+    assert failed is not None
+    raise failed
+
+
+def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str) -> Reference:
+    """The first of two methods as a reference, by how far the second one differs over the whole interval."""
+    (one, fine), (other, rough) = first, second
+    try:
+        with np.errstate(all="ignore"):
+            run, beside = (m.start(search.dynamics, setting, scalar) for m, setting in (first, second))
+            found = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
+            places, states = _filled(search, one.start(search.dynamics, fine, scalar), found)
+    except Ended as ended:
+        raise ended.breakdown from None
+    differences = np.array([q.largest for q in found.quantities])
+    told = f"{one.traits.name} and {other.traits.name} in {scalar}, tolerances {fine.tolerance:g}, {rough.tolerance:g}"
+    return search.finished(places, states, differences, told, way)
+
+
+_Way = tuple[Method, Setting]
+
+
+def _filled(search: _Search, run: Any, found: Comparison) -> tuple[Any, Any]:
+    """The states at places that follow the steps of both, and at others that lie unevenly."""
+    places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
+    states = [np.asarray(run.state)[:, None]]
+    for some in np.array_split(places[1:], 64):
+        states.append(run.fill(some))
+        search.reached(float(some[-1]))
+    return places, np.hstack(states)
