@@ -52,7 +52,7 @@ EVERY = 4
 AGREE = 1e-3
 
 #: Parts of the time that is left that each way may take.
-SHARES_OF_TIME = (0.5, 0.6, 1.0)
+SHARES_OF_TIME = (0.35, 0.85, 1.0)
 
 #: No step of an explicit or implicit reference is longer than this part of the whole.
 PARTS = 2_000
@@ -74,7 +74,8 @@ def whole_reference(
     for way, share in zip((_extrapolated, _explicit, _implicit), SHARES_OF_TIME, strict=True):
         left = seconds - (time.perf_counter() - started)
         try:
-            found = way(_Search(dynamics, end, time.perf_counter() + share * max(left, 0.0), watch))
+            now = time.perf_counter()
+            found = way(_Search(dynamics, end, now, now + share * max(left, 0.0), watch))
         except Breakdown as reason:
             if way is _extrapolated and reason.kind != STEP_LIMIT:
                 raise
@@ -91,6 +92,7 @@ class _Search:
 
     dynamics: Dynamics
     end: float
+    begun: float
     deadline: float
     watch: Callable[[str], None]
 
@@ -99,10 +101,17 @@ class _Search:
         return (*self.dynamics.system.coordinates, *self.dynamics.system.velocities)
 
     def reached(self, t: float) -> None:
-        """Tells, and raises Breakdown where the time is over."""
+        """Tells, and raises Breakdown where the time is over, or will be long before the end."""
         self.watch(f"reference solution, t = {t:.4g} of {self.end:g}")
-        if time.perf_counter() > self.deadline:
+        now, allowed = time.perf_counter(), self.deadline - self.begun
+        spent = now - self.begun
+        far_too_long = 4.0 if spent < allowed / 2 else 1.5
+        if now > self.deadline or (spent > allowed / 4 and spent * self.end > far_too_long * allowed * t):
             raise Breakdown(STEP_LIMIT, "out of time", t, np.empty(0))
+
+    def next(self) -> _Search:
+        """The time that is left for another solution from 0 to the end."""
+        return replace(self, begun=time.perf_counter())
 
     def usual(self, times: Any, states: Any) -> Any:
         return sizes_of_scene(self.dynamics, times, states)
@@ -132,8 +141,7 @@ def _extrapolated(search: _Search) -> Reference:
 
 
 def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
-    """The steps of the first extrapolation; given up early where it would take far too long."""
-    begun, allowed = time.perf_counter(), search.deadline - time.perf_counter()
+    """The steps of the first extrapolation."""
     run = Extrapolation(search.dynamics, FINE, COLUMNS, search.deadline)
     times, states = [0.0], [list(run.state)]
     while run.time < search.end:
@@ -141,15 +149,12 @@ def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
         times.append(run.time)
         states.append(list(run.state))
         search.reached(run.time)
-        spent = time.perf_counter() - begun
-        hopeless = 4.0 if spent < allowed / 2 else 1.5
-        if spent > allowed / 8 and spent * search.end / run.time > hopeless * allowed:
-            raise Breakdown(STEP_LIMIT, "out of time", run.time, run.floats())
     return times, states
 
 
 def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any:
     """Largest |x_i - y_i| of an extrapolation with fewer columns, larger errors, and so with other steps."""
+    search = search.next()
     run = Extrapolation(search.dynamics, ROUGH, COLUMNS - 3, search.deadline)
     worst = np.zeros(len(states[0]))
     for place in sorted({*range(EVERY, len(times), EVERY), len(times) - 1}):
@@ -161,6 +166,7 @@ def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any
 
 def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
     """(places, states there, by how much the explicit method misses the next knot, (2n,))."""
+    search = search.next()
     scalar = EXTENDED if available(EXTENDED) else FLOAT64
     run = METHODS["dop853"].start(search.dynamics, Setting(BETWEEN, longest=search.end / PARTS), scalar)
     inside = max(len(SHARES), -(-PLACES // (len(times) - 1)))
@@ -226,6 +232,7 @@ _Way = tuple[Method, Setting]
 
 def _filled(search: _Search, run: Any, found: Comparison) -> tuple[Any, Any]:
     """The states at places that follow the steps of both, and at others that lie unevenly."""
+    search = search.next()
     places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
     states = [np.asarray(run.state)[:, None]]
     for some in np.array_split(places[1:], 64):

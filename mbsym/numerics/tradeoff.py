@@ -146,6 +146,7 @@ class _Judge:
         self.reference = reference
         self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
+        self.starting = 0.0
 
     def measure(self, candidate: Candidate, deadline: float = inf) -> Measured:
         """Error, drift and median seconds of a candidate; a breakdown is a result too, and so is a ``deadline``."""
@@ -153,8 +154,9 @@ class _Judge:
             return self._measure(candidate, deadline)
 
     def _measure(self, candidate: Candidate, deadline: float) -> Measured:
-        times = self.reference.times
+        times, before = self.reference.times, time.perf_counter()
         run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
+        self.starting = time.perf_counter() - before
         states = [np.array(run.state, dtype=float)[:, np.newaxis]]
         started = time.perf_counter()
         try:
@@ -213,9 +215,9 @@ def _ladder(
         now = time.perf_counter()
         idle = 0 if row.error < 0.5 * best else idle + (best < inf)
         best = min(best, row.error)
-        # The first rung is compiled as well: it says little about the next one.
+        # What was compiled for the first rung is there for the next one, but for methods that compile every setting.
         growth = max(1.3, (now - started) / cost) if cost else 1.3
-        cost = now - started
+        cost = now - started - (0.0 if cost else judge.starting)
         if idle >= 3 or now - begun + min(growth, 4.0) * cost > share:
             return
 
