@@ -24,6 +24,9 @@ from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
 BITS = 160
 COLUMNS = 12
 
+#: Columns where many times are asked for: steps are short then.
+FEW_COLUMNS = 8
+
 #: Ways to a reference.
 EXTRAPOLATION, EXPLICIT, IMPLICIT = "extrapolation", "explicit", "implicit"
 
@@ -124,7 +127,7 @@ def solved_at(dynamics: Dynamics, times: Any, tolerance: float, seconds: float) 
     Raises Breakdown where there is no solution, or after so many seconds (kind STEP_LIMIT).
     """
     with ctx.workprec(BITS):
-        run = Extrapolation(dynamics, tolerance, COLUMNS, time.perf_counter() + seconds)
+        run = Extrapolation(dynamics, tolerance, FEW_COLUMNS, time.perf_counter() + seconds)
         states = [in_doubles(run.state)]
         for t in times[1:]:
             run.advance(float(t))

@@ -54,6 +54,9 @@ AGREE = 1e-3
 #: Parts of the time that is left that each way may take.
 SHARES_OF_TIME = (0.35, 0.85, 1.0)
 
+#: Nothing is given up as too slow before so many seconds.
+SOME_SECONDS = 1.0
+
 #: No step of an explicit or implicit reference is longer than this part of the whole.
 PARTS = 2_000
 
@@ -106,7 +109,8 @@ class _Search:
         now, allowed = time.perf_counter(), self.deadline - self.begun
         spent = now - self.begun
         far_too_long = 4.0 if spent < allowed / 2 else 1.5
-        if now > self.deadline or (spent > allowed / 4 and spent * self.end > far_too_long * allowed * t):
+        some = max(allowed / 4, SOME_SECONDS)
+        if now > self.deadline or (spent > some and spent * self.end > far_too_long * allowed * t):
             raise Breakdown(STEP_LIMIT, "out of time", t, np.empty(0))
 
     def next(self) -> _Search:
@@ -166,9 +170,9 @@ def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any
 
 def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
     """(places, states there, by how much the explicit method misses the next knot, (2n,))."""
-    search = search.next()
     scalar = EXTENDED if available(EXTENDED) else FLOAT64
     run = METHODS["dop853"].start(search.dynamics, Setting(BETWEEN, longest=search.end / PARTS), scalar)
+    search = search.next()
     inside = max(len(SHARES), -(-PLACES // (len(times) - 1)))
     places, states, missed = [times[:1]], [knots[:, :1]], np.zeros(len(knots))
     for k in range(len(times) - 1):
@@ -218,6 +222,7 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
     try:
         with np.errstate(all="ignore"):
             run, beside = (m.start(search.dynamics, setting, scalar) for m, setting in (first, second))
+            search = search.next()  # compiling is no sign of a slow solution
             found = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
             places, states = _filled(search, one.start(search.dynamics, fine, scalar), found)
     except Ended as ended:

@@ -19,7 +19,7 @@ from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
 
 #: The part of the budget that the search for a reference may take, and the seconds that it has in any case.
-FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.6, 10.0
+FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.6, 15.0
 
 #: Places at which models are compared; they differ smoothly.
 PLACES = 500
