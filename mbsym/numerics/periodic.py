@@ -37,7 +37,10 @@ MOST_STEPS, CLOSED = 40, 1e-11
 NEARLY, PATIENCE = 1e-8, 3
 
 #: A period that has become so much shorter than the guess is on its way to nothing; so many times a step is halved.
-SHORTEST, HALVINGS = 0.05, 12
+SHORTEST, HALVINGS = 0.05, 4
+
+#: How strongly singular values are damped, as multiples of what is left over; tried one after the other.
+DAMPINGS = (0.01, 1e-4, 0.1, 0.0, 1.0, 10.0)
 
 #: Where the motion's speed times its period is this part of the state's size only, it rests.
 RESTING = 1e-6
@@ -190,8 +193,12 @@ class _Search:
             size = max(size, abs(off) / (1 + abs(self.wanted)))
         return _Place(state, period, end, phi, rest, size)
 
-    def step(self, here: _Place, forward: Any, ahead: Any) -> Any:
-        """(dx0, dT), or dx0 alone; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the end."""
+    def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
+        """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
+        end.
+
+        Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
+        """
         size = self.flow.size
         matrix, right = here.phi - np.eye(size), -here.rest
         if self.wanted is not None:
@@ -202,26 +209,36 @@ class _Search:
             column[:size, 0] = ahead
             matrix = np.vstack([np.hstack([matrix, column]), forward])
             right, scale = np.append(right, 0.0), np.append(scale, here.period)
-        return _least_squares(matrix, right, scale)
+        return lambda damping: _least_squares(matrix, right, scale, damping * here.size)
 
-    def towards(self, here: _Place, step: Any) -> _Place | None:
-        """The next place; None where no part of the step is better."""
-        size, share = self.flow.size, 1.0
-        for _ in range(HALVINGS):
-            period = here.period + share * float(step[size]) if len(step) > size else here.period
-            if period > 0.3 * here.period:
-                found = self.at(here.state + share * step[:size], period)
-                if found is not None and (found.size < here.size or found.size < NEARLY):
-                    return found
-            share /= 2
-        return None
+    def towards(self, here: _Place, step: Callable[[float], Any]) -> _Place | None:
+        """The next place: the first that halves what is left over, else the best; None where nothing is better."""
+        best: _Place | None = None
+        for damping in DAMPINGS:
+            whole, share = step(damping), 1.0
+            for _ in range(HALVINGS):
+                found = self._moved(here, share * whole)
+                if found is not None and (best is None or found.size < best.size):
+                    best = found
+                if best is not None and best.size < max(0.5 * here.size, NEARLY):
+                    return best
+                share /= 2
+        return best if best is not None and best.size < here.size else None
+
+    def _moved(self, here: _Place, step: Any) -> _Place | None:
+        size = self.flow.size
+        period = here.period + float(step[size]) if len(step) > size else here.period
+        if not 0.3 * here.period < period < 3 * here.period:
+            return None
+        return self.at(here.state + step[:size], period)
 
 
-def _least_squares(matrix: Any, right: Any, scale: Any) -> Any:
-    """The shortest solution, lengths measured in ``scale``."""
-    scaled = matrix * scale
-    found, *_ = np.linalg.lstsq(scaled, right, rcond=RANK)
-    return found * scale
+def _least_squares(matrix: Any, right: Any, scale: Any, damping: float) -> Any:
+    """The shortest solution, lengths measured in ``scale``, damped as by Levenberg and Marquardt."""
+    u, s, v = np.linalg.svd(matrix * scale, full_matrices=False)
+    kept = s > RANK * s[0]
+    weights = np.where(kept, s / (s**2 + (damping * s[0]) ** 2 + np.where(kept, 0.0, 1.0)), 0.0)
+    return v.T @ (weights * (u.T @ right)) * scale
 
 
 class _Energy:
