@@ -62,6 +62,11 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     yield "time", f"0 to {with_unit(f'{request.time:g}', unit)}, {len(chosen.times)} samples{reached}"
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
+    if chosen.parts:
+        yield (
+            "parts",
+            f"{' | '.join(', '.join(part) for part in chosen.parts)}: nothing links them, each has its own steps",
+        )
     evaluations = counted(work.evaluations, "evaluation", "evaluations")
     jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""

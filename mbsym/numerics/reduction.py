@@ -71,7 +71,7 @@ def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str]
         candidates = {name: value for name, value in candidates.items() if name not in pushed}
     if not candidates or len(candidates) == len(system.coordinates):
         return None
-    return Reduction(candidates, how, _without(scenario, candidates))
+    return Reduction(candidates, how, without(scenario, candidates))
 
 
 def _candidates(scenario: Scenario) -> dict[str, Expression]:
@@ -162,7 +162,7 @@ def _moved_somewhere(
     return moved
 
 
-def _without(scenario: Scenario, values: Mapping[str, Expression]) -> Scenario:
+def without(scenario: Scenario, values: Mapping[str, Expression]) -> Scenario:
     """The scenario of the system in which the coordinates are held."""
     kept = [place for place, name in enumerate(scenario.system.coordinates) if name not in values]
     return replace(

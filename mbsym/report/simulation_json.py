@@ -63,6 +63,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "estimated_error": error_json(run.error),
         "resting": _resting(chosen.resting),
         **events_json(run),
+        "parts": [{"coordinates": list(part.names), "method": part.method} for part in chosen.parts],
     }
     if run.certificate is not None:
         content["certificate"] = certificate_json(run.certificate, [*system.coordinates, *system.velocities])

@@ -2,28 +2,48 @@
 
 from __future__ import annotations
 
-from mbsym.numerics.choice import choose, rates
+from mbsym.numerics.choice import Choice, choose, rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.reduced import Reduced
+from mbsym.numerics.separable import Separate, separated
 from mbsym.simulation.request import TOLERANCE, Request
-from mbsym.simulation.result import Chosen
+from mbsym.simulation.result import Chosen, PartMethod
 from mbsym.simulation.sampling import sample_times
 
 
 def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) -> Chosen:
     """Everything that was not asked for; ``resting`` is taken out of the integration where that is proved."""
     taken = resting if resting is not None and resting.proved else None
-    whole = dynamics if taken is None else taken.dynamics
+    moving = dynamics if taken is None else taken.dynamics
     tolerance = request.tolerance or TOLERANCE[request.arithmetic]
-    if request.method == "auto":
-        choice = choose(whole, tolerance, request.time, request.arithmetic)
-        method, why, measured, frequency = choice.method, choice.why, choice.measured, choice.frequency
-    else:
-        method, why, measured, frequency = METHODS[request.method], "as asked for", "", rates(whole)[1]
-    setting = Setting(None if method.traits.fixed else tolerance, request.step, request.step_limit)
+    parts = () if request.whole else separated(moving)
+    choices = [_choice(part.dynamics, request, tolerance) for part in parts] or [_choice(moving, request, tolerance)]
+    method = choices[0].method
+    fixed = method.traits.fixed
+    if len(choices) > 1 and not fixed:
+        method = Separate(moving, parts, [choice.method for choice in choices])
+    setting = Setting(None if fixed else tolerance, request.step, request.step_limit)
     if taken is not None:
         method = taken.method(method)
+    frequency = max(choice.frequency for choice in choices)
     times = sample_times(request, frequency, dynamics.system)
-    return Chosen(method, why, measured, setting, times, frequency, resting)
+    why, measured = ("; ".join(dict.fromkeys(filter(None, texts))) for texts in zip(*map(_words, choices), strict=True))
+    shares: tuple[PartMethod, ...] = ()
+    if len(parts) > 1 and not fixed:
+        pairs = zip(parts, choices, strict=True)
+        shares = tuple(PartMethod(part.names, choice.method.traits.name) for part, choice in pairs)
+    return Chosen(method, why, measured, setting, times, frequency, resting, shares)
+
+
+def _choice(dynamics: Dynamics, request: Request, tolerance: float) -> Choice:
+    """The method asked for, or the one that suits."""
+    if request.method == "auto":
+        return choose(dynamics, tolerance, request.time, request.arithmetic)
+    decay, frequency = rates(dynamics)
+    return Choice(METHODS[request.method], "as asked for", decay, frequency)
+
+
+def _words(choice: Choice) -> tuple[str, str]:
+    return choice.why, choice.measured

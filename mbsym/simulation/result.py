@@ -24,10 +24,19 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class PartMethod:
+    """Coordinates that are integrated by themselves, and the name of the method that does it."""
+
+    names: tuple[str, ...]
+    method: str
+
+
+@dataclass(frozen=True)
 class Chosen:
     """Everything settled before the first step; ``frequency`` is the greatest at the initial state, in rad per time.
 
-    ``resting`` are the coordinates that rest; where that is proved, ``method`` integrates the others only.
+    ``resting`` are the coordinates that rest; where that is proved, ``method`` integrates the others only.  ``parts``
+    are those that nothing links and that are integrated each by itself; none where all hang together.
     """
 
     method: Method
@@ -37,6 +46,7 @@ class Chosen:
     times: Any
     frequency: float
     resting: Reduced | None = None
+    parts: tuple[PartMethod, ...] = ()
 
     def completed(self, method: Method) -> Method:
         """Another method that integrates the same coordinates."""

@@ -1,0 +1,215 @@
+"""Coordinates that know nothing of each other: each part of a system integrated by itself, with steps of its own.
+
+Coordinates S and the others O are parts where the blocks M_SO of the mass matrix vanish and q_S'' depends on t, q_S and
+q_S' only; then M_SS q_S'' = f_S, and q_S moves as it does with q_O held.  That is read off the program of q'', after
+numbers are in it: what does not occur there has no influence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mbsym.expressions.tree import number
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting, Traits, Work
+from mbsym.numerics.reduction import without
+from mbsym.numerics.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Part:
+    """Coordinates ``names`` with equations of their own; ``places`` of their states among those of the whole."""
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+    dynamics: Dynamics
+
+
+def separated(dynamics: Dynamics) -> tuple[Part, ...]:
+    """The parts of a scenario in the order of their first coordinates; one, the whole, where all hang together."""
+    n, names = dynamics.size, dynamics.system.coordinates
+    linked = _linked(dynamics)
+    if len(set(linked)) > 1:
+        masses = dynamics.mass_matrix
+        for i in range(n):
+            for j in range(n):
+                if linked[i] != linked[j] and not masses.program.vanishes(masses.outputs[i * n + j]):
+                    linked = _merged(linked, i, j)
+    found = []
+    for first in sorted(set(linked)):
+        own = [i for i in range(n) if linked[i] == first]
+        if len(own) == n:
+            return (Part(names, tuple(range(2 * n)), dynamics),)
+        scenario = _alone(dynamics.scenario, {names[i] for i in own})
+        places = (*own, *(n + i for i in own))
+        found.append(Part(tuple(names[i] for i in own), places, Dynamics(scenario)))
+    return tuple(found)
+
+
+def _linked(dynamics: Dynamics) -> list[int]:
+    """For each coordinate the least place among those it hangs together with through q''."""
+    n, code = dynamics.size, dynamics.right_hand_side
+    owner = {name: place % n for place, name in enumerate(code.inputs[1:])}
+    linked = list(range(n))
+    for i in range(n):
+        for instruction in code.program.live(code.outputs[n + i : n + i + 1]):
+            found = code.program.instructions[instruction]
+            if found.operation == "input" and str(found.payload) in owner:
+                linked = _merged(linked, i, owner[str(found.payload)])
+    return linked
+
+
+def _merged(linked: Sequence[int], i: int, j: int) -> list[int]:
+    low, high = sorted((linked[i], linked[j]))
+    return [low if place == high else place for place in linked]
+
+
+def _alone(scenario: Scenario, names: set[str]) -> Scenario:
+    """The scenario with all other coordinates held where they start."""
+    held = {
+        name: number(position)
+        for name, position in zip(scenario.system.coordinates, scenario.positions, strict=True)
+        if name not in names
+    }
+    return without(scenario, held)
+
+
+class Separate:
+    """A method that integrates the parts of ``whole`` one beside the other, each by a method of its own."""
+
+    def __init__(self, whole: Dynamics, parts: Sequence[Part], methods: Sequence[Method]) -> None:
+        self._whole, self._parts, self._methods = whole, tuple(parts), tuple(methods)
+        self.traits = _traits(parts, methods)
+
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
+    ) -> Run:
+        """Raises ValueError for the dynamics of another scenario, Unusable where a method does not apply to a part."""
+        if dynamics is not self._whole:
+            raise ValueError("this method was made for the dynamics of another scenario")
+        runs = [
+            method.start(part.dynamics, setting, scalar, None if initial is None else initial[list(part.places)], at)
+            for part, method in zip(self._parts, self._methods, strict=True)
+        ]
+        return _Beside(self._parts, runs)
+
+
+def _traits(parts: Sequence[Part], methods: Sequence[Method]) -> Traits:
+    """Those of the one method, or of several."""
+    first = methods[0].traits
+    scalars = tuple(kind for kind in first.scalars if all(kind in method.traits.scalars for method in methods))
+    title = "; ".join(
+        f"{', '.join(part.names)}: {method.traits.title}" for part, method in zip(parts, methods, strict=True)
+    )
+    same = all(method.traits.name == first.name for method in methods)
+    orders = {method.traits.order for method in methods}
+    return Traits(
+        name=first.name if same else "parts",
+        title=f"{first.title}, each part by itself" if same else title,
+        order=first.order if len(orders) == 1 else None,
+        fixed=first.fixed,
+        scalars=scalars,
+        implicit=any(method.traits.implicit for method in methods),
+        conservative=any(method.traits.conservative for method in methods),
+    )
+
+
+@dataclass
+class _Beside:
+    """Runs of the parts, brought to the same times; ``ahead`` keeps what some have beyond the time that is shown."""
+
+    parts: Sequence[Part]
+    runs: Sequence[Run]
+    time: float = 0.0
+    state: Any = None
+    ahead: list[Piece | None] = field(default_factory=list)
+    work: Work = field(default_factory=Work)
+
+    def __post_init__(self) -> None:
+        self.time = self.runs[0].time
+        self.ahead = [None] * len(self.runs)
+        self.state = self._joined([run.state for run in self.runs])
+
+    def _count(self) -> None:
+        """The work of all parts together."""
+        for name in vars(self.work):
+            setattr(self.work, name, sum(getattr(run.work, name) for run in self.runs))
+
+    def _joined(self, states: Sequence[Any]) -> Any:
+        """Whole states of those of the parts, one or in columns."""
+        size = sum(len(part.places) for part in self.parts)
+        first = np.asarray(states[0])
+        found = np.empty((size, *first.shape[1:]), first.dtype)
+        for part, state in zip(self.parts, states, strict=True):
+            found[list(part.places)] = state
+        return found
+
+    def advance(self, until: float) -> Any:
+        return self.fill(np.array([until], dtype=float))[:, 0]
+
+    def fill(self, times: Any) -> Any:
+        """Where one part breaks down the others are brought to that time, too."""
+        times = np.asarray(times)
+        states: list[Any] = []
+        ended: Breakdown | None = None
+        for place in range(len(self.runs)):
+            try:
+                states.append(self._filled(place, times))
+            except Breakdown as found:
+                count = 0 if found.filled is None else found.filled.shape[1]
+                times, states = times[:count], [state[:, :count] for state in states]
+                states.append(np.empty((len(self.parts[place].places), 0)) if found.filled is None else found.filled)
+                ended = found if ended is None or found.time < ended.time else ended
+        self._count()
+        filled = self._joined(states)
+        if ended is not None:
+            state = filled[:, -1] if filled.shape[1] else self.state
+            raise Breakdown(ended.kind, ended.message, ended.time, np.asarray(state, dtype=float), filled)
+        if len(times):
+            self.time, self.state = float(times[-1]), filled[:, -1].copy()
+        return filled
+
+    def _filled(self, place: int, times: Any) -> Any:
+        """The states of one part, from what it has already and from its run."""
+        kept, run = self.ahead[place], self.runs[place]
+        known = 0 if kept is None else int(np.searchsorted(times, kept.end, side="right"))
+        early = kept(times[:known]) if kept is not None and known else None
+        if known == len(times):
+            return early
+        self.ahead[place] = None
+        try:
+            late = run.fill(times[known:])
+        except Breakdown as found:
+            filled = (
+                found.filled if early is None else early if found.filled is None else np.hstack((early, found.filled))
+            )
+            raise Breakdown(found.kind, found.message, found.time, found.state, filled) from None
+        return late if early is None else np.hstack((early, late))
+
+    def step(self, until: float | None = None) -> Piece:
+        """To where the first of the parts ends its step; the others keep theirs."""
+        start = self.time
+        pieces: list[Piece] = []
+        for place, run in enumerate(self.runs):
+            kept = self.ahead[place]
+            if kept is None or kept.end <= start:
+                kept = self.ahead[place] = run.step(until)
+            pieces.append(kept)
+        end = min(piece.end for piece in pieces) if until is None else min(until, *(piece.end for piece in pieces))
+        curves: list[Callable[[Any], Any]] = [piece.curve for piece in pieces]
+        joined = self._joined
+        found = Piece(start, end, lambda times: joined([curve(times) for curve in curves]))
+        self.time, self.state = end, found(end)
+        self._count()
+        return found
+
+    def restart(self, time: float, state: Any) -> None:
+        given = np.asarray(state)
+        for part, run in zip(self.parts, self.runs, strict=True):
+            run.restart(time, given[list(part.places)])
+        self.ahead = [None] * len(self.runs)
+        self.time, self.state = time, self._joined([run.state for run in self.runs])
