@@ -63,10 +63,8 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
     if chosen.parts:
-        yield (
-            "parts",
-            f"{' | '.join(', '.join(part) for part in chosen.parts)}: nothing links them, each has its own steps",
-        )
+        shares = " | ".join(f"{', '.join(part.names)} ({part.method})" for part in chosen.parts)
+        yield "parts", f"{shares}: nothing links them, each has its own steps"
     evaluations = counted(work.evaluations, "evaluation", "evaluations")
     jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
