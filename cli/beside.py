@@ -14,6 +14,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -42,7 +43,15 @@ def helped() -> bool:
     import resource
 
     held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    return len(os.sched_getaffinity(0)) > 1 and held < MOST_MEMORY
+    cores = len(os.sched_getaffinity(0))
+    return cores > 1 and _running() <= cores and held < MOST_MEMORY
+
+
+def _running() -> int:
+    """How many threads of this machine want a core now, this one among them; 1 where that is not told."""
+    with suppress(OSError, ValueError, IndexError):
+        return int(Path("/proc/loadavg").read_text().split()[3].partition("/")[0])
+    return 1
 
 
 @contextmanager

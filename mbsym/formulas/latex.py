@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -84,6 +85,7 @@ class Symbol:
         return str(Symbol(f"\\{accent}{{{self.stem}}}", self.index))
 
 
+@lru_cache(4096)
 def latex_symbol(name: str) -> Symbol:
     """theta1 -> \\theta_{1}, Jx -> J_{x}, p_max -> p_{\\mathrm{max}}, mass -> \\mathit{mass}."""
     split = parts(name)

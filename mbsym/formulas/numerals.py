@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log2
+from math import floor, log2
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 
@@ -10,7 +10,10 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 MOST_DIGITS = 4300
 
 
+_MOST_BITS = floor(MOST_DIGITS * log2(10))
+
+
 def writable(*numbers: int) -> None:
     """Raises NoClosedForm if one of the integers has more digits than can be read again."""
-    if any(number.bit_length() > MOST_DIGITS * log2(10) for number in numbers):
+    if max(map(int.bit_length, numbers)) > _MOST_BITS:
         raise NoClosedForm(f"a number in it has more than {MOST_DIGITS} digits", limit=Limit.DIGITS)

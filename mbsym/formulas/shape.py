@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 from math import lcm, prod
 from typing import Any
 from weakref import WeakKeyDictionary, proxy
@@ -288,15 +289,18 @@ class Presenter:
 
     def _terms_of(self, polynomial: Polynomial) -> tuple[int, Terms]:
         used = sorted(occurring([polynomial]), key=self.place)
-        scale = lcm(*[int(c.q) for c in polynomial.coeffs()])
         # In a context of its own: flint hands out all exponents, and the ring has many more generators.
-        context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
-        small = polynomial.project_to_context(context, {k: place for place, k in enumerate(used)})
+        small = polynomial.project_to_context(
+            _context(fmpq_mpoly_ctx, len(used)), {k: place for place, k in enumerate(used)}
+        )
+        coefficients = small.coeffs()
+        tops, bottoms = [int(c.p) for c in coefficients], [int(c.q) for c in coefficients]
+        scale = lcm(*bottoms)
+        if scale != 1:
+            tops = [top * (scale // bottom) for top, bottom in zip(tops, bottoms, strict=True)]
         return scale, {
-            tuple([(k, int(e)) for k, e in zip(used, monomial, strict=True) if e]): (
-                int(c.p) if scale == 1 else int(c.p) * (scale // int(c.q))
-            )
-            for monomial, c in zip(small.monoms(), small.coeffs(), strict=True)
+            tuple([(k, int(e)) for k, e in zip(used, monomial, strict=True) if e]): top
+            for monomial, top in zip(small.monoms(), tops, strict=True)
         }
 
     def _key(self, monomial: Monomial) -> tuple[int, ...]:
@@ -352,7 +356,7 @@ class Presenter:
             return self._positive(terms)
         # Over the generators that occur: the ring has many more, and flint minds them all.
         used = sorted({k for monomial in terms for k, _ in monomial}, key=self.place)
-        context = fmpz_mpoly_ctx.get([f"y{k}" for k in range(len(used))], Ordering.lex)
+        context = _context(fmpz_mpoly_ctx, len(used))
         places = {k: place for place, k in enumerate(used)}
         none, dense = [0] * len(used), {}
         for monomial, coefficient in terms.items():
@@ -631,6 +635,12 @@ class Presenter:
             else:
                 written += 2 if self.ring.generators[factor.base].kind in ("sine", "cosine") else 1
         return written
+
+
+@cache
+def _context(kind: Any, width: int) -> Any:
+    """A context of so many generators."""
+    return kind.get([f"y{k}" for k in range(width)], Ordering.lex)
 
 
 def _ordered(presenter: Presenter, factors: Sequence[Factor]) -> tuple[Factor, ...]:

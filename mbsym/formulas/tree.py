@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 from mbsym.expressions.dataclass import dataclass
@@ -55,17 +56,24 @@ class Sum:
 
     terms: tuple[Product, ...]
 
+    @cached_property
+    def leaves(self) -> int:
+        """How many symbols and numbers a reader meets."""
+        return sum([_leaves(term) for term in self.terms])
+
 
 def leaves(shape: Sum) -> int:
     """How many symbols and numbers a reader meets."""
-    return sum(_product_leaves(term) for term in shape.terms)
+    return shape.leaves
 
 
-def _product_leaves(product: Product) -> int:
-    number = 0 if abs(product.coefficient) == 1 else 1
-    factors = (*product.over, *product.under)
-    inner = sum(leaves(f.base) if isinstance(f.base, Sum) else 1 for f in factors)
-    return max(number + inner, 1)
+def _leaves(product: Product) -> int:
+    total = abs(product.coefficient) != 1
+    for base, _ in product.over:
+        total += base.leaves if isinstance(base, Sum) else 1
+    for base, _ in product.under:
+        total += base.leaves if isinstance(base, Sum) else 1
+    return total or 1
 
 
 _ASKED: ContextVar[Angles | None] = ContextVar("angles", default=None)

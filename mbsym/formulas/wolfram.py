@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
+from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
@@ -28,6 +29,7 @@ def wolfram_text(ring: Ring, polynomial: Polynomial, functions_of_time: bool = T
     return WolframPrinter(ring, functions_of_time).sum(present(ring, polynomial, angles_or("products")))
 
 
+@lru_cache(4096)
 def wolfram_name(name: str) -> str:
     """What a name would like to be called: no underscores, Greek letters, and nothing that Wolfram defines itself."""
     split = parts(name)

@@ -85,7 +85,10 @@ def _python(text: str) -> None:
 
 def _taken_from_module(scope: symtable.SymbolTable) -> set[str]:
     """The names that a function looks up in the module or among the builtins."""
-    found = {symbol.get_name() for symbol in scope.get_symbols() if symbol.is_global() and symbol.is_referenced()}
+    if isinstance(scope, symtable.Function):
+        found = set(scope.get_globals())
+    else:
+        found = {symbol.get_name() for symbol in scope.get_symbols() if symbol.is_global() and symbol.is_referenced()}
     return found.union(*map(_taken_from_module, scope.get_children()))
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
@@ -71,12 +72,14 @@ def derive_all(
                 say(f"problem {number}, {PROBLEMS[number].title}")
                 analysis.stage(number)
 
+    helped = beside is not unhelped
     with analysis.unvouched():
         derive(late=False)
         if any(FORMATS[name].program for name in formats):
             analysis.optional("programs")
+    if helped:
+        import_module("jinja2")  # which both need
     defects = len(analysis.defects)
-    helped = beside is not unhelped
     early = [name for name in formats if name in EARLY] if helped else []
 
     def work() -> tuple[list[Check], Files]:
