@@ -545,3 +545,19 @@ def test_seconds_are_told_only_where_they_differ_beyond_doubt() -> None:
     )
     lines = ledger_lines(Ledger((Saving("kind", ("what",), "why", PROVED, measures),)))
     assert [text.split(":")[0] for text in lines[0].saved] == ["2", "3"]
+
+
+def test_parts_that_nothing_links_are_listed() -> None:
+    """Two particles that know nothing of each other, and the same two with a spring between them."""
+    text = (
+        "mbsym: 1\nname: two\nbodies:\n"
+        "  - {name: a, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\n"
+        "  - {name: b, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}\n"
+        "loads:\n  - potential: x**2/2 + y**2/2\ninitial: {x: 1, y: 1}\n"
+    )
+    found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == "parts"]
+    assert [saving.what for saving in found] == [("x", "y")]
+    assert found[0].how == PROVED
+    assert [(item.without, item.taken) for item in found[0].measures] == [(2, 1), (16, 8)]
+    linked = text.replace("y**2/2", "y**2/2 + x*y/2")
+    assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == "parts"]

@@ -19,6 +19,7 @@ from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERM
 from mbsym.numerics.ledger.work import Work, holds
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.separable import separated
 from mbsym.problems.energy import Energy
 
 #: Random states, and bits, at which a parameter is given two values; and instructions that this may cost in all.
@@ -51,6 +52,27 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
     )
     kind = "plane motion" if normal else "coordinates that rest"
     yield Saving(kind, found.names, why, found.reduction.how, measures)
+
+
+def separate_parts(work: Work) -> Iterator[Saving]:
+    """Parts that nothing links at these values, each with steps of its own, against one step for all."""
+    scenario = work.scenario
+    if scenario is None:
+        return
+    whole, seconds = work.timed(lambda: _written(scenario))
+    work.require(seconds)
+    parts = separated(whole)
+    if len(parts) < 2:
+        return
+    sizes = [len(part.names) for part in parts]
+    measures = (
+        Measure("coordinates that share their steps", COUNT, whole.size, max(sizes)),
+        Measure(
+            "entries of the Jacobian of an implicit step", COUNT, (2 * whole.size) ** 2, sum(4 * n * n for n in sizes)
+        ),
+    )
+    why = "the blocks of M between them vanish, and none occurs in the accelerations of another"
+    yield Saving("parts", tuple(" and ".join(part.names) for part in parts), why, PROVED, measures)
 
 
 def _written(scenario: Scenario) -> Dynamics:

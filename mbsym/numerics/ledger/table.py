@@ -13,6 +13,7 @@ from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Work
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
     "coordinates that rest": motion.resting_coordinates,
+    "parts": motion.separate_parts,
     "massless bodies": described.massless_bodies,
     "point masses": described.point_masses,
     "unused axes": described.unused_axes,
