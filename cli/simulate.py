@@ -14,8 +14,9 @@ from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_des
 from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
-from mbsym_cli.simulation_certify import Certifying, certify_options
-from mbsym_cli.simulation_events import Watched, watch_options
+from mbsym_cli.simulation_certify import certify_options
+from mbsym_cli.simulation_choice import choice_options, with_goal
+from mbsym_cli.simulation_events import watch_options
 from mbsym_cli.simulation_many import Many, many_options, read_many
 from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags, read_request
@@ -26,13 +27,12 @@ from mbsym_cli.simulation_run import run
 @click.argument("file", type=click.Path(path_type=Path))
 @span_options
 @way_options
+@choice_options
 @many_options
 @certify_options
 @watch_options
 @output_options
-def command(
-    file: Path, span: Span, way: Way, many: Many, certifying: Certifying, watched: Watched, output: Output
-) -> None:
+def command(file: Path, span: Span, way: Way, many: Many, output: Output, **further: Group) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -60,8 +60,11 @@ def command(
     "falling" keep one direction of =, "mod 2*pi" takes an angle modulo a turn (never done unasked).  events.csv has
     every time of an --event that dense output shows; --stop ends the run; a --section is a table and a picture.
 
+    --accuracy 1e-6 chooses order of gravity, linear or nonlinear, parameters to drop, method, tolerance, arithmetic;
+    prints one bound, and the command that repeats the run.  --method, --tolerance, --gravity, ... settle a part of it.
+
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
-    ...-partial.  Exit codes: 0 done, 1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
+    ...-partial.  Exit codes: 0 done, 1 not written, 2 wrong, 3 ended early or not accurate enough, 130 interrupted.
 
     \b
     Examples:
@@ -74,12 +77,13 @@ def command(
       mbsym simulate systems/double-pendulum.yaml --time 10 --vary "theta1=normal(1, 0.01)" --members 1000
       mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
       mbsym simulate systems/double-pendulum.yaml --time 5 --certify 1e-12
+      mbsym simulate systems/satellite.yaml --time 20 --accuracy 1e-6 --plan
     """
     folder = folder_for(file, output.out)
     flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
         texts = typed(span, way, output)
-        sys.exit(_command(file, folder, span.settings, texts, flags, many, [certifying, watched]))
+        sys.exit(_command(file, folder, span.settings, texts, flags, many, further))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
@@ -92,16 +96,17 @@ def _command(
     texts: Mapping[str, str | None],
     flags: Flags,
     many: Many,
-    further: Sequence[Group],
+    further: Mapping[str, Group],
 ) -> int:
     """Reads everything, complains about everything, then simulates."""
     system = read_description(file)
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     wanted = read_request(system, texts, flags, asked)
-    for group in further:
+    for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, system, asked))
     varied, sensitive = read_many(many, given, wanted, asked)
+    wanted = with_goal(further["choosing"], system, wanted, settings, bool(many.vary or many.sensitivity), asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)

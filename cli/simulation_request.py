@@ -12,6 +12,7 @@ from mbsym_cli.options import Options
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
+    from mbsym_cli.simulation_choice import Wanted
 
 FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
 
@@ -28,11 +29,12 @@ TRIAL_STEPS = 10_000
 
 @dataclass(frozen=True)
 class Asked:
-    """What was asked for: the simulation, and what of it is written and printed."""
+    """What was asked for: the simulation, what of it is written and printed, and an accuracy to be reached."""
 
     request: Request
     formats: tuple[str, ...]
     quiet: bool
+    goal: Wanted | None = None
 
 
 @dataclass(frozen=True)

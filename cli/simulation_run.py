@@ -13,6 +13,7 @@ from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, c
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulation_files import write_files
+from mbsym_cli.simulation_planned import only_planned, print_repeat, simulated_to
 from mbsym_cli.simulation_request import Asked
 from mbsym_cli.simulation_summary import broken, print_summary
 
@@ -25,17 +26,26 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
     from mbsym.algebra.failures import Failure, SingularPoint
     from mbsym.numerics.enclosure.field import NotAnalytic
-    from mbsym.numerics.methods.interface import Unusable
+    from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
 
     try:
+        if wanted.goal is not None and wanted.goal.only_plan:
+            return only_planned(file, given, wanted)
         with _watching(file, wanted) as (watch, stage):
-            found = simulate(given, wanted.request, watch, stage)
+            if wanted.goal is not None:
+                found = simulated_to(wanted.goal, given, wanted.request, watch, stage)
+            else:
+                found = simulate(given, wanted.request, watch, stage)
         return _delivered(file, folder, found, wanted)
     except NoEvent as error:
         options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
         options.refused(file)
         return BAD_INPUT
+    except Breakdown as error:
+        complain(file, f"error[no-plan]: the motion does not come to the end, so nothing can be planned: {error}")
+        complain(file, "nothing was written.")
+        return BROKEN_DOWN
     except Unusable as error:
         options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
         options.refused(file)
@@ -65,6 +75,8 @@ def _delivered(file: Path, folder: Path, found: Simulation, asked: Asked) -> int
     paths = write_files(folder, found, asked)
     if not asked.quiet:
         print_summary(file, found, paths)
+        if asked.goal is not None:
+            print_repeat(file, asked.goal, found.request)
     return _code(file, found, paths)
 
 
@@ -86,7 +98,7 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         return INTERRUPTED
     if found.certificate is not None and not found.certificate.whole:
         return INTERRUPTED if found.certificate.ended == CERTIFICATE_INTERRUPTED else BROKEN_DOWN
-    return OK
+    return OK if found.plan is None or found.plan.reached else BROKEN_DOWN
 
 
 Watch: TypeAlias = Callable[[float], None]
@@ -97,8 +109,13 @@ Stage: TypeAlias = Callable[[str], AbstractContextManager[object]]
 def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
     """A bar while it integrates, a spinner before and after."""
     from mbsym.simulation import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING
+    from mbsym.simulation.accurate import PLANNING
 
-    said = {COMPILING: "compiling", ESTIMATING: "the same more finely, to see how good it is"}
+    said = {
+        PLANNING: "choosing model, method and tolerance",
+        COMPILING: "compiling",
+        ESTIMATING: "the same more finely, to see how good it is",
+    }
     with_bar = {INTEGRATING: file.name, CERTIFYING: f"{file.name}: enclosing the exact solution"}
     bars: list[Watch] = []
 

@@ -29,7 +29,7 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
     out.print(Text.assemble((run.system.name, "bold"), (f"  {printable(file)}", "dim")))
     for name, text in _lines(run):
         style = "yellow" if name == "warning" else "bold cyan"
-        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
+        out.print(Text.assemble("  ", (f"{name:<{10 if run.plan else 9}} ", style), text))
     names = ", ".join(path.name for path in paths)
     out.print(Text.assemble("  files in ", (printable(paths[0].parent), "bold"), f": {names}"))
 
@@ -39,20 +39,15 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     from mbsym.numerics.simulate import least_pivot
     from mbsym.report.certificate import certificate_lines
     from mbsym.report.events_words import events_lines
+    from mbsym.report.plan_words import plan_lines
     from mbsym.report.simulation_words import conservation_line, error_lines, invariant_line, warnings
 
     found, chosen, request = run.trajectory, run.chosen, run.request
-    setting, work = found.setting, found.work
-    measured = f": {chosen.measured}" if chosen.measured else ""
-    yield "method", f"{chosen.method.traits.title} ({chosen.why}{measured})"
-    if setting.step is None:
-        how = f"tolerance {setting.tolerance:g} per step"
-    else:
-        spacing = float(chosen.times[1] - chosen.times[0])
-        taken = spacing / ceil(spacing / setting.step * (1 - 1e-9))
-        shorter = taken < setting.step * (1 - 1e-6)
-        how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
-    yield "setting", f"{how}, {request.arithmetic}"
+    if run.plan is not None:
+        yield from plan_lines(run.plan, pretty(time_unit(run.system)))
+    work = found.work
+    if run.plan is None:
+        yield from _method_lines(run)
     unit = pretty(time_unit(run.system))
     reached = "" if found.whole else f", reached {with_unit(f'{found.times[-1]:.9g}', unit)}"
     if run.happened is not None and run.happened.ended is not None:
@@ -93,6 +88,21 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     spacing = float(chosen.times[1] - chosen.times[0])
     if chosen.frequency * spacing > pi / 2:
         yield "warning", "fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples"
+
+
+def _method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+    """The method with the reason for it, and its setting."""
+    chosen, request, setting = run.chosen, run.request, run.trajectory.setting
+    measured = f": {chosen.measured}" if chosen.measured else ""
+    yield "method", f"{chosen.method.traits.title} ({chosen.why}{measured})"
+    if setting.step is None:
+        how = f"tolerance {setting.tolerance:g} per step"
+    else:
+        spacing = float(chosen.times[1] - chosen.times[0])
+        taken = spacing / ceil(spacing / setting.step * (1 - 1e-9))
+        shorter = taken < setting.step * (1 - 1e-6)
+        how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
+    yield "setting", f"{how}, {request.arithmetic}"
 
 
 def _rest_line(found: Reduced) -> str:

@@ -13,7 +13,7 @@ motion, nothing is claimed.  A second solution checks it where that is cheap: th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import frexp
@@ -78,8 +78,12 @@ class Propagated(Dynamics):
         self.scenario = _Started(simple.scenario.state)  # type: ignore[assignment]
 
     @cached_property
+    def _specialised(self) -> Specialised:
+        return Specialised()
+
+    @cached_property
     def right_hand_side(self) -> Code:
-        fresh = Specialised()
+        fresh = self._specialised
         n = self._half
         plain = self._rates(fresh, self._simple)
         full = self._rates(fresh, self._rich)
@@ -157,18 +161,16 @@ def model_error(
 def confirmed(estimate: ModelEstimate, rerun: Any, scale: Any, noise: float) -> ModelEstimate:
     """The estimate beside a rerun with the richer model at the same times, ``rerun`` (2n, m).
 
-    The larger of the two counts.  ``noise`` is the relative error of the two runs themselves: below it nothing is
-    told apart.
+    The larger of the two counts; where the equation is not trusted, the rerun alone.  ``noise`` is the relative error
+    of the two runs themselves: below it nothing is told apart.
     """
     scale = np.asarray(scale, dtype=float)
     true = rerun - estimate.states
     measured = np.max(np.abs(true), axis=1) / scale
     apart = np.max(np.abs(true - estimate.difference), axis=1) / scale
     agree = apart <= AGREEMENT * np.maximum(measured, estimate.by_quantity) + noise
-    larger = np.maximum(measured, estimate.by_quantity)
-    return ModelEstimate(
-        larger, estimate.states, estimate.difference, estimate.trusted, bool(np.all(agree)), estimate.trouble
-    )
+    larger = np.maximum(measured, estimate.by_quantity) if estimate.trusted else measured
+    return replace(estimate, by_quantity=larger, difference=true, confirmed=bool(np.all(agree)))
 
 
 def _power_of_two(x: float) -> Fraction:

@@ -46,11 +46,11 @@ class Model:
 def scenario_of(scenario: Scenario, model: Model) -> Scenario:
     """The scenario with the field of a model's order and zero for the parameters that it leaves out."""
     found = changed(scenario, **dict.fromkeys(model.without, Fraction(0))) if model.without else scenario
-    if model.gravity is None:
+    if model.gravity is None or all(load.order == model.gravity for load in _fields(scenario.system)):
         return found
     order = model.gravity
     loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in scenario.system.loads)
-    return replace(found, system=replace(scenario.system, loads=loads, claims=()))
+    return replace(found, system=replace(scenario.system, loads=loads))
 
 
 def modelled(scenario: Scenario, model: Model) -> Dynamics:

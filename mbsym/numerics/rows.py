@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.methods.interface import Method, Setting, Work
+
+#: Where within a step, its end included, and how many places in all.
+SHARES = np.array([0.17, 0.38, 0.61, 0.83, 1.0])
+MOST = 20_000
 
 
 @dataclass(frozen=True)
@@ -23,14 +25,29 @@ class Rows:
     seconds: float
 
 
-def rows(method: Method, dynamics: Dynamics, setting: Setting, times: Sequence[float], scalar: str = "float64") -> Rows:
+def rows(method: Method, dynamics: Dynamics, setting: Setting, times: Any, scalar: str = "float64") -> Rows:
     """The states at increasing times from 0.  Raises Breakdown where they do not reach the last one."""
     run = method.start(dynamics, setting, scalar)
-    states = np.empty((len(times), len(run.state)), dtype=np.longdouble if scalar == EXTENDED else float)
-    states[0] = run.state
+    start = np.array(run.state)[:, np.newaxis]
     started = time.thread_time()
     with np.errstate(all="ignore"):
-        for place, t in enumerate(times[1:], 1):
-            states[place] = run.advance(float(t))
+        states = run.fill(np.asarray(times[1:], dtype=float))
     seconds = time.thread_time() - started
-    return Rows(np.ascontiguousarray(states.T), replace(run.work), seconds)
+    return Rows(np.ascontiguousarray(np.hstack([start, states])), replace(run.work), seconds)
+
+
+def places(method: Method, dynamics: Dynamics, setting: Setting, end: float) -> Any:
+    """Times from 0 to ``end`` that follow the steps of a run, ``SHARES`` of each inside it; at most about ``MOST``.
+
+    Raises Breakdown where the run does not come to the end.
+    """
+    run = method.start(dynamics, setting)
+    found = [np.zeros(1)]
+    with np.errstate(all="ignore"):
+        while run.time < end:
+            piece = run.step(end)
+            found.append(piece.start + SHARES * (piece.end - piece.start))
+    times = np.unique(np.append(np.concatenate(found), end))
+    times = times[times <= end]
+    every = -(-len(times) // MOST)
+    return times if every == 1 else np.union1d(times[::every], [end])

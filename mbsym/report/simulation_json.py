@@ -17,6 +17,7 @@ from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.certificate import certificate_json
 from mbsym.report.events_json import events_json
+from mbsym.report.plan_words import model_json, plan_json
 from mbsym.report.simulation_words import conservation_json, error_json
 from mbsym.simulation import Simulation
 from mbsym.source.meaning import meaning
@@ -35,7 +36,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
     content: dict[str, Any] = {
         "format": FORMAT,
         "system": system.name,
-        "description_sha256": meaning(system),
+        "description_sha256": meaning(run.given.system if run.given is not None else system),
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),
         "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},
@@ -64,6 +65,8 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "resting": _resting(chosen.resting),
         **events_json(run),
         "parts": [{"coordinates": list(part.names), "method": part.method} for part in chosen.parts],
+        "model": model_json(run.request.model),
+        "plan": None if run.plan is None else plan_json(run.plan, run.request),
     }
     if run.certificate is not None:
         content["certificate"] = certificate_json(run.certificate, [*system.coordinates, *system.velocities])

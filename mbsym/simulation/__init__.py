@@ -6,6 +6,7 @@
 ``run``         integrates, judges what is kept (``kept``), estimates the error
 ``watching``    events, conditions that end it, sections: as asked for and as found
 ``result``      what was found
+``accurate``    plans a run for an accuracy, and runs it
 ==============  ====================================================================================
 """
 

@@ -18,7 +18,7 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
     taken = resting if resting is not None and resting.proved else None
     moving = dynamics if taken is None else taken.dynamics
     tolerance = request.tolerance or TOLERANCE[request.arithmetic]
-    parts = () if request.whole else separated(moving)
+    parts = () if request.whole or request.model.linear else separated(moving)
     choices = [_choice(part.dynamics, request, tolerance) for part in parts] or [_choice(moving, request, tolerance)]
     method = choices[0].method
     fixed = method.traits.fixed

@@ -12,6 +12,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.models import Model
 from mbsym.simulation.watching import Watch
 
 #: The local error unless asked for otherwise.
@@ -26,7 +27,7 @@ class Request:
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size;
-    ``events``: what is watched for.
+    ``events``: what is watched for; ``model``: how much of the mechanics is in the equations.
     """
 
     time: float
@@ -42,6 +43,7 @@ class Request:
     whole: bool = False
     certify: float | None = None
     events: Watch = Watch()
+    model: Model = Model()
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:

@@ -13,6 +13,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import Certificate
 from mbsym.numerics.events import Occurrences
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
+from mbsym.numerics.plan import Plan
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.dense import Dense
@@ -68,7 +69,9 @@ class Simulation:
     """The result of ``simulate``.
 
     ``energy`` (T - U) and ``generalized_energy`` (T2 - T0 - U) are one quantity where nothing is prescribed;
-    ``conservation`` is that of the latter and ``energy_conservation`` that of the former.
+    ``conservation`` is that of the latter and ``energy_conservation`` that of the former.  ``scenario`` is that of the
+    model that was integrated, ``given`` the one that was described where that is another; ``plan`` is how an accuracy
+    that was asked for is reached.
     """
 
     scenario: Scenario
@@ -83,6 +86,8 @@ class Simulation:
     no_invariants: str = ""
     certificate: Certificate | None = None
     happened: Happened | None = None
+    given: Scenario | None = None
+    plan: Plan | None = None
 
     @property
     def events(self) -> Occurrences | None:

@@ -21,6 +21,8 @@ from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradi
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
+from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.models import scenario_of
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
@@ -56,13 +58,15 @@ def simulate(
     wrong = list(wrong_with(request))
     if wrong:
         raise ValueError("; ".join(wrong))
+    given, scenario = scenario, scenario_of(scenario, request.model)
     with stage(COMPILING):
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
-        dynamics = Dynamics(scenario, analysis.ring) if analysis is not None and not missing else Dynamics(scenario)
+        ring = analysis.ring if analysis is not None and not missing else None
+        dynamics = LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring)
         if request.certify is not None:
             analytic(dynamics)
-        resting = reduced(dynamics)
+        resting = None if request.model.linear else reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
@@ -86,7 +90,8 @@ def simulate(
         with stage(CERTIFYING):
             certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch)
     return Simulation(
-        *(scenario, dynamics, request, chosen, found, *both, kept, error, missing), certificate, happened=happened
+        *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
+        *(certificate, happened, given),
     )
 
 

@@ -1,0 +1,66 @@
+"""What a digit more or less would cost: by what was measured, else by the slope of the setting that was chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.model_choice import PART, Tried
+from mbsym.numerics.pilot import USUAL_SLOPE, Bench, Trial, finest
+from mbsym.numerics.plan import Accuracy, Alternative
+
+#: How the cost of a method grows with its accuracy: seconds ~ error**(-1/order).
+ORDERS = {"dop853": 8, "rk45": 5, "taylor": 16}
+USUAL_ORDER = 5
+
+
+def alternatives(
+    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
+) -> tuple[Alternative, Alternative]:
+    """(one digit more, one digit less)."""
+    more, less = (_other(bench, found, tried, taken, accuracy.finest, goal, factor) for factor in (0.1, 10.0))
+    return more, less
+
+
+def _other(
+    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, target: float, goal: float, factor: float
+) -> Alternative:
+    wanted = goal * factor
+    model = _model(tried, factor)
+    price = model.operations / max(1, taken.operations)
+    name = "" if model.model == taken.model else model.model.label
+    options: list[tuple[float, str, bool]] = [
+        (trial.seconds * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
+    ]
+    judged = _judged(found, max(found.ratio / wanted, 1e-9), bench.spacing)
+    if judged is not None:
+        options.append((judged[0] * price, judged[1], False))
+    if not options:
+        why = f"{found.scalar} has no finer tolerance"
+        if found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars:
+            why += "; extended arithmetic is needed"
+        return Alternative(target * factor, why=why, model=name)
+    seconds, label, measured = min(options)
+    return Alternative(target * factor, label, seconds, measured, name)
+
+
+def _model(tried: Sequence[Tried], factor: float) -> Tried:
+    """The cheapest model that would be good enough; the faithful one has no error."""
+    return min((one for one in tried if one.ratio <= PART * factor), key=lambda one: one.operations)
+
+
+def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str] | None:
+    """(seconds, label) of the same method with an error ``worse`` times smaller; None beyond its arithmetic.
+
+    A step is no longer than the ``spacing`` of the rows.
+    """
+    traits = found.method.traits
+    if found.setting.step is not None:
+        order = traits.order or USUAL_ORDER
+        growth = max(worse ** (1 / order), found.fineness / spacing)
+        return found.seconds * growth, f"{traits.name} h={found.fineness / growth:.1g}"
+    tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
+    if tolerance < finest(found.method, found.scalar):
+        return None
+    growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
+    return found.seconds * growth, f"{traits.name} {min(tolerance, 1e-2):.0e}"

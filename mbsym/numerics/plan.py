@@ -1,0 +1,175 @@
+"""What was chosen for a run, why, and how wrong the run is then: values; words are made elsewhere.
+
+    error of a quantity  <=  model + integration + arithmetic,      relative to its size in the whole motion
+
+Each share says how it is known.  ``MEASURED`` is the difference from a better run over the whole interval, doubled;
+``ESTIMATED`` comes of the equation of the difference, or of a scaling; ``PROVED`` of a theorem; ``TOGETHER`` means that
+it is part of another share, and was not told apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.models import Model
+
+PROVED, MEASURED, ESTIMATED, TOGETHER = "proved", "measured", "estimated", "together"
+
+MODEL, INTEGRATION, ARITHMETIC = "model", "integration", "arithmetic"
+
+#: The quantity besides coordinates and velocities: T2 - T0 - U, relative to the largest kinetic energy.
+ENERGY = "energy"
+
+#: Kinds of items; those that the ledger has, too, are called as there.
+GRAVITY, LINEARITY, LEFT_OUT, RESTING = (
+    "order of gravity",
+    "linear or nonlinear",
+    "parameters left out",
+    "coordinates that rest",
+)
+PARTS = "separable parts"
+METHOD, FINENESS, SCALAR, KERNEL = "method", "tolerance", "arithmetic", "kernel"
+
+OPERATIONS, SECONDS = "operations", "seconds"
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """The relative errors that are tolerable: of all coordinates and velocities, and of quantities by name.
+
+    A quantity that is not named is held to ``everything``; where that is None, to nothing.
+    """
+
+    everything: float | None = None
+    named: Mapping[str, float] = field(default_factory=dict)
+
+    def targets(self, names: Sequence[str]) -> Any:
+        """The tolerable error of each quantity, inf where any is; the energy counts only where it is named."""
+        rest = inf if self.everything is None else self.everything
+        return np.array([self.named.get(name, inf if name == ENERGY else rest) for name in names])
+
+    @property
+    def finest(self) -> float:
+        """The smallest of them."""
+        return min((*self.named.values(), *([] if self.everything is None else [self.everything])), default=inf)
+
+    def scaled(self, factor: float) -> Accuracy:
+        """The same with every error multiplied."""
+        rest = None if self.everything is None else self.everything * factor
+        return Accuracy(rest, {name: x * factor for name, x in self.named.items()})
+
+
+@dataclass(frozen=True)
+class Refused:
+    """What was not taken: its error, or what it costs, or a word on why it was not even tried."""
+
+    word: str
+    error: float | None = None
+    cost: float | None = None
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Item:
+    """One choice: of ``kind``, about ``what``; ``chosen`` is its word, ``error`` what it adds (None: not told apart).
+
+    ``cost`` is in ``unit``: operations of one right-hand side, or processor seconds of the run.
+    """
+
+    kind: str
+    what: tuple[str, ...]
+    chosen: str
+    why: str
+    error: float | None = None
+    how: str = ESTIMATED
+    cost: float | None = None
+    unit: str = OPERATIONS
+    refused: tuple[Refused, ...] = ()
+
+
+@dataclass(frozen=True)
+class Share:
+    """A part of the bound; ``how`` it is known."""
+
+    name: str
+    error: float
+    how: str
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What the error of one quantity is at most, as far as the shares are known, beside what is tolerable."""
+
+    quantity: str
+    shares: tuple[Share, ...]
+    target: float
+
+    @property
+    def total(self) -> float:
+        return sum(share.error for share in self.shares)
+
+    @property
+    def reached(self) -> bool:
+        return self.total <= self.target
+
+    @property
+    def how(self) -> str:
+        """The weakest of the ways in which its shares are known."""
+        weakest = (ESTIMATED, MEASURED, PROVED)
+        known = [share.how for share in self.shares if share.how != TOGETHER and share.error > 0]
+        return next((how for how in weakest if how in known), PROVED)
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What another accuracy would cost: the setting and seconds, ``measured`` or judged by the slope of those that are.
+
+    ``model`` is its model where that is another; ``seconds`` None: out of reach, ``why``.
+    """
+
+    target: float
+    label: str = ""
+    seconds: float | None = None
+    measured: bool = False
+    model: str = ""
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that is needed to repeat the run, and what it is worth.
+
+    ``bounds`` has one entry for each quantity that an error was named for, else one for the worst; ``seconds`` is what
+    the integration took in the pilot, ``spent`` what choosing took.
+    """
+
+    accuracy: Accuracy
+    time: float
+    items: tuple[Item, ...]
+    bounds: tuple[Bound, ...]
+    model: Model
+    method: str
+    setting: Setting
+    scalar: str
+    seconds: float
+    spent: float
+    more: Alternative | None = None
+    less: Alternative | None = None
+    remarks: tuple[str, ...] = ()
+    contradicted: bool = False
+
+    @property
+    def bound(self) -> Bound:
+        """The one that has least room."""
+        return max(self.bounds, key=lambda one: one.total / one.target)
+
+    @property
+    def reached(self) -> bool:
+        """Whether every quantity is within its error, and the run's own estimate has not said otherwise."""
+        return not self.contradicted and all(one.reached for one in self.bounds)

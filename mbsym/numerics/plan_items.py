@@ -1,0 +1,176 @@
+"""The items of a plan: what was chosen of each kind, what was refused, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import isfinite
+
+from mbsym.model.system import GRAVITY_ORDERS
+from mbsym.numerics.choice import Choice
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
+from mbsym.numerics.models import Model, described
+from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
+from mbsym.numerics.plan import (
+    FINENESS,
+    GRAVITY,
+    KERNEL,
+    LEFT_OUT,
+    LINEARITY,
+    MEASURED,
+    METHOD,
+    PARTS,
+    PROVED,
+    RESTING,
+    SCALAR,
+    SECONDS,
+    Item,
+    Refused,
+)
+from mbsym.numerics.reduced import Reduced
+from mbsym.numerics.separable import Part
+from mbsym.numerics.yardstick import Yardstick
+
+#: Arithmetic by its digits.
+DIGITS = (FLOAT32, FLOAT64, EXTENDED)
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Everything that was found out; ``pinned`` names the kinds that the user settled."""
+
+    scene: Scene
+    model: ModelChoice
+    choice: Choice
+    resting: Reduced | None
+    parts: tuple[Part, ...]
+    bench: Bench
+    stick: Yardstick
+    found: Trial
+    pinned: frozenset[str]
+
+
+def items_of(settled: Settled) -> tuple[Item, ...]:
+    """In the order of the choices."""
+    return (*_models(settled), *_resting(settled), *_parts(settled), *_settings(settled))
+
+
+def _models(settled: Settled) -> Iterator[Item]:
+    scene, model = settled.scene, settled.model
+    taken = model.taken
+    given = described(scene.scenario)
+    why = "as asked for" if GRAVITY in settled.pinned else _why_model(model)
+    if given.gravity is not None:
+        refused = tuple(_refused(one) for one in model.tried if _other_order(one.model, taken.model))
+        richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
+            given.gravity
+        )
+        why = f"{why}; richer than described (order {given.gravity})" if richer else why
+        alone = not (taken.model.linear or taken.model.without)
+        error = taken.worst if alone else None
+        yield Item(GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
+    lines = [one for one in model.tried if one.model.linear]
+    if lines or taken.model.linear:
+        chosen = "linear" if taken.model.linear else "nonlinear"
+        refused = tuple(_refused(one) for one in lines if one.model != taken.model)
+        error = taken.worst if taken.model.linear else None
+        why = "as asked for" if LINEARITY in settled.pinned else _why_model(model)
+        yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
+    if taken.model.without:
+        why = "as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them"
+        left = taken.model.without
+        yield Item(LEFT_OUT, left, ", ".join(left), why, taken.worst, taken.how, taken.operations)
+
+
+def _why_model(model: ModelChoice) -> str:
+    if model.taken.model == model.faithful:
+        return "nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known"
+    return "the cheapest that is good enough"
+
+
+def _other_order(one: Model, taken: Model) -> bool:
+    return one.gravity != taken.gravity and not one.linear and not one.without
+
+
+def _refused(one: Tried) -> Refused:
+    word = "linear" if one.model.linear else one.model.label
+    error = one.worst if isfinite(one.worst) else None
+    return Refused(word, error, one.operations, one.why)
+
+
+def _resting(settled: Settled) -> Iterator[Item]:
+    found = settled.resting
+    if found is not None:
+        before, after = found.operations
+        why = f"{after} operations a right-hand side instead of {before}"
+        yield Item(RESTING, found.names, "not integrated", why, 0.0, PROVED, after)
+
+
+def _parts(settled: Settled) -> Iterator[Item]:
+    if settled.parts and not settled.found.method.traits.fixed:
+        names = tuple(" ".join(part.names) for part in settled.parts)
+        yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, PROVED)
+
+
+def _settings(settled: Settled) -> Iterator[Item]:
+    found, pinned = settled.found, settled.pinned
+    name = found.method.traits.name
+    others = _cheapest_others(settled)
+    why = "as asked for" if METHOD in pinned else "the cheapest measured here" if others else "none other fits"
+    if FINENESS in pinned:
+        why = f"as asked for{_fitting(found)}"
+    if settled.choice.method.traits.implicit and METHOD not in pinned:
+        why += f"; motions die out at rates up to {settled.choice.decay:.3g}"
+    yield Item(METHOD, (found.method.traits.title,), name, why, None, MEASURED, found.seconds, SECONDS, others)
+    why = "as asked for" if FINENESS in pinned else "the coarsest tried that is good enough"
+    word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
+    yield Item(FINENESS, (), word, why, None, MEASURED, found.seconds, SECONDS)
+    refused = tuple(_other_scalars(settled))
+    why = "as asked for" if SCALAR in pinned else _why_scalar(found)
+    yield Item(SCALAR, (), found.scalar, why, None, MEASURED, found.seconds, SECONDS, refused)
+    yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, PROVED)
+
+
+def _fitting(found: Trial) -> str:
+    if found.ratio > 1:
+        return ", too coarse for this accuracy"
+    return ", finer than this accuracy needs" if found.ratio < WASTEFUL else ""
+
+
+def _why_scalar(found: Trial) -> str:
+    if found.scalar == FLOAT32:
+        return "its rounding stays below the error, and it is quicker here"
+    return "its rounding stays below the error" if found.scalar == FLOAT64 else "float64 does not reach the error"
+
+
+def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
+    """The best of every other method: what it cost where it was good enough, else how wrong it was."""
+    best: dict[str, Trial] = {}
+    for trial in settled.bench.trials:
+        name = trial.method.traits.name
+        known = best.get(name)
+        if trial.scalar == FLOAT64 and (known is None or _rank(trial) < _rank(known)):
+            best[name] = trial
+    own = settled.found.method.traits.name
+    return tuple(Refused(trial.label, _worst(trial), trial.seconds) for name, trial in best.items() if name != own)
+
+
+def _rank(trial: Trial) -> tuple[bool, float]:
+    return (trial.ratio > 1, trial.seconds if trial.ratio <= 1 else trial.ratio)
+
+
+def _worst(trial: Trial) -> float | None:
+    worst = float(max(trial.errors[:-1]))
+    return worst if isfinite(worst) else None
+
+
+def _other_scalars(settled: Settled) -> Iterator[Refused]:
+    best: dict[str, Trial] = {}
+    for trial in settled.bench.trials:
+        known = best.get(trial.scalar)
+        coarser = DIGITS.index(trial.scalar) < DIGITS.index(settled.found.scalar)
+        if coarser and (known is None or _rank(trial) < _rank(known)):
+            best[trial.scalar] = trial
+    for scalar, trial in best.items():
+        yield Refused(scalar, _worst(trial), trial.seconds)

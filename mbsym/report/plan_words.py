@@ -1,0 +1,194 @@
+"""What is said of a plan: lines for the terminal, the options that repeat its run, and its part of simulation.json."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from mbsym.numerics.models import Model
+from mbsym.numerics.plan import (
+    ARITHMETIC,
+    ENERGY,
+    ESTIMATED,
+    FINENESS,
+    GRAVITY,
+    LEFT_OUT,
+    LINEARITY,
+    MEASURED,
+    METHOD,
+    MODEL,
+    OPERATIONS,
+    PARTS,
+    RESTING,
+    SCALAR,
+    TOGETHER,
+    Accuracy,
+    Alternative,
+    Bound,
+    Item,
+    Plan,
+    Refused,
+    Share,
+)
+
+if TYPE_CHECKING:
+    from mbsym.simulation import Request
+
+#: How a share is known, in words.
+HOW = {MEASURED: "difference from a better run, doubled", ESTIMATED: "estimated"}
+
+#: Lines of the plan by kinds of items; the tolerance stands with the method, and one motion needs no word on kernels.
+TITLES = {
+    GRAVITY: "gravity",
+    LINEARITY: "equations",
+    LEFT_OUT: "left out",
+    RESTING: "resting",
+    PARTS: "parts",
+    METHOD: "method",
+    SCALAR: "arithmetic",
+}
+
+
+def duration(seconds: float) -> str:
+    """``91 µs``."""
+    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
+        if seconds < limit:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
+    """(title, text): the accuracy, the bound with its shares, the choices, a digit more or less."""
+    until = f"{plan.time:g}" + (f" {unit}" if unit else "")
+    yield "accuracy", f"{accuracy_words(plan.accuracy)}, from 0 to {until}"
+    for place, bound in enumerate(plan.bounds):
+        yield "" if place else "bound", bound_words(bound)
+        yield "", " + ".join(share_words(share) for share in bound.shares)
+    if not plan.reached:
+        yield "warning", "the accuracy asked for is not reached"
+    for item in plan.items:
+        if item.kind in TITLES:
+            yield TITLES[item.kind], item_words(item, plan)
+    for title, other in (("one digit more", plan.more), ("one digit less", plan.less)):
+        if other is not None and other.target < 1:
+            yield "" if title.endswith("less") else "cost", f"{title}, {alternative_words(other, plan)}"
+    for remark in plan.remarks:
+        yield "note", remark
+
+
+def accuracy_words(accuracy: Accuracy) -> str:
+    """``1e-06 of every coordinate and velocity, energy 1e-09``."""
+    parts = (
+        [] if accuracy.everything is None else [f"{accuracy.everything:g} of every coordinate's and velocity's size"]
+    )
+    return ", ".join([*parts, *(f"{name} {value:g}" for name, value in accuracy.named.items())])
+
+
+def bound_words(bound: Bound) -> str:
+    """``theta2 within 4.8e-07 of its size (measured)``; of a quantity that was not named: the worst."""
+    if not isfinite(bound.total):
+        return f"{bound.quantity}: nothing is known, for no run could be had to measure by"
+    of = "the largest kinetic energy" if bound.quantity == ENERGY else "its size"
+    return f"{bound.quantity} within {bound.total:.1e} of {of} ({bound.how})"
+
+
+def share_words(share: Share) -> str:
+    """``integration 4.8e-07 (difference from a better run, doubled)``."""
+    if share.how == TOGETHER:
+        return f"{share.name} (contained in the integration's)"
+    if share.error == 0:
+        return f"{share.name} 0 (nothing neglected)" if share.name == MODEL else f"{share.name} 0"
+    how = "by a rerun with the richest model" if share.name == MODEL and share.how == MEASURED else HOW[share.how]
+    return f"{share.name} {share.error:.1e} ({how})" if share.name != ARITHMETIC else f"{share.name} {share.error:.1e}"
+
+
+def item_words(item: Item, plan: Plan) -> str:
+    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest measured here; rk45 3.3e-08: error 6.6e-07, 110 µs``."""
+    chosen = item.chosen
+    if item.kind == METHOD:
+        fineness = next(one for one in plan.items if one.kind == FINENESS)
+        chosen = f"{chosen}, {fineness.chosen}, {duration(plan.seconds)} a run"
+    what = f"{', '.join(item.what)} " if item.kind in (RESTING, PARTS) else ""
+    refused = "".join(f"; {refused_words(one, item.unit)}" for one in item.refused)
+    return f"{what}{chosen}: {item.why}{refused}"
+
+
+def refused_words(one: Refused, unit: str) -> str:
+    """``rk45 3.3e-08: error 6.6e-07, 110 µs``."""
+    parts = [f"error {one.error:.1e}"] if one.error is not None else []
+    parts += [one.why] if one.why else []
+    if one.cost is not None:
+        parts.append(f"{one.cost:.0f} operations" if unit == OPERATIONS else duration(one.cost))
+    return f"{one.word}: {', '.join(parts)}" if parts else one.word
+
+
+def alternative_words(other: Alternative, plan: Plan) -> str:
+    """``1e-07: about 110 µs, 1.2 times as much (dop853 5e-09)``."""
+    model = f", {other.model}" if other.model else ""
+    if other.seconds is None:
+        return f"{other.target:.0e}: {other.why}"
+    about = "" if other.measured else "about "
+    times = other.seconds / max(plan.seconds, 1e-9)
+    same = "as much" if 0.95 < times < 1.05 else f"{times:.2g} times as much"
+    return f"{other.target:.0e}: {about}{duration(other.seconds)}, {same} ({other.label}{model})"
+
+
+def repeating_options(request: Request) -> list[str]:
+    """The options after FILE, beside --set and those of the output, that repeat a settled run without choosing."""
+    found = ["--time", _number(request.time)]
+    found += ["--samples", str(request.samples)] if request.samples is not None else []
+    found += ["--every", _number(request.every)] if request.every is not None else []
+    found += ["--method", request.method]
+    found += ["--tolerance", _number(request.tolerance)] if request.tolerance is not None else []
+    found += ["--step", _number(request.step)] if request.step is not None else []
+    found += ["--arithmetic", request.arithmetic] if request.arithmetic != "float64" else []
+    found += ["--gravity", str(request.model.gravity)] if request.model.gravity is not None else []
+    found += ["--linear"] if request.model.linear else []
+    found += [word for name in request.model.without for word in ("--without", name)]
+    found += ["--whole"] if request.whole else []
+    return found
+
+
+def _number(x: float) -> str:
+    """The shortest text that is read as the same number."""
+    return repr(x).removesuffix(".0")
+
+
+def repeating_command(file: str, settings: Sequence[str], request: Request) -> str:
+    """A command to paste."""
+    sets = [word for text in settings for word in ("--set", text)]
+    return shlex.join(["mbsym", "simulate", file, *sets, *repeating_options(request)])
+
+
+# --- simulation.json ---
+
+
+def model_json(model: Model) -> dict[str, Any]:
+    """What is in the equations."""
+    return {"gravity": model.gravity, "linear": model.linear, "without": list(model.without)}
+
+
+def plan_json(plan: Plan, request: Request) -> dict[str, Any]:
+    """The plan without seconds, which no two runs share."""
+    return {
+        "accuracy": {"everything": plan.accuracy.everything, "named": dict(plan.accuracy.named)},
+        "reached": plan.reached,
+        "bounds": [
+            {
+                "quantity": bound.quantity,
+                "target": bound.target,
+                "total": bound.total,
+                "how": bound.how,
+                "shares": [{"name": x.name, "error": x.error, "how": x.how} for x in bound.shares],
+            }
+            for bound in plan.bounds
+        ],
+        "items": [
+            {"kind": x.kind, "what": list(x.what), "chosen": x.chosen, "why": x.why, "error": x.error, "how": x.how}
+            for x in plan.items
+        ],
+        "remarks": list(plan.remarks),
+        "options": repeating_options(request),
+    }

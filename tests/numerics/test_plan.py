@@ -1,0 +1,286 @@
+"""Accuracies become plans: against closed forms over the whole interval, with what is settled by hand, and lies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import ellipj, ellipk
+
+import mbsym
+from mbsym.numerics import pilot, plan_bounds, planning
+from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.models import Model
+from mbsym.numerics.plan import ENERGY, ESTIMATED, MEASURED, PROVED, TOGETHER, Accuracy, Bound, Share
+from mbsym.numerics.planning import Pins, planned
+from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.numerics.yardstick import Yardstick
+from mbsym.simulation import Request, simulate
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+
+PENDULUM = """
+mbsym: 1
+name: Pendulum
+parameters: {m: positive, L: positive, g: positive, c: nonnegative}
+bodies:
+  - name: bob
+    attached to: 0
+    rotation: {axes: [3], angles: [theta]}
+    mass centre: [0, -L, 0]
+    mass: m
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - damper: {coordinate: theta, coefficient: c}
+motion: {theta: 0}
+values: {m: 1, L: 1, g: 1, c: 0}
+initial: {theta: 2}
+"""
+
+KEPLER = """
+mbsym: 1
+name: Kepler orbit of eccentricity 0.9
+parameters: {m: positive, k: positive}
+bodies:
+  - name: planet
+    attached to: 0
+    coordinates: [x, y]
+    connection point: [x, y, 0]
+    mass: m
+loads:
+  - force function: k*m/sqrt(x**2 + y**2)
+values: {m: 1, k: 1}
+initial:
+  x: {position: 1/10, velocity: 0}
+  y: {position: 0, velocity: 4.358898943540674}
+"""
+
+
+def described(text: str, **values: str) -> Scenario:
+    from mbsym.simulation import read_values
+
+    system = mbsym.loads(text, ()).system
+    return scenario(system, read_values(system, values))
+
+
+def run_of(given: Scenario, plan: Any, times: Any) -> Any:
+    """The states that the plan's run shows."""
+    request = Request(
+        float(times[-1]),
+        samples=len(times),
+        method=plan.method,
+        tolerance=plan.setting.tolerance,
+        step=plan.setting.step,
+        arithmetic=plan.scalar,
+        model=plan.model,
+        estimate=False,
+    )
+    found = simulate(given, request)
+    assert found.whole
+    return found.trajectory.states.astype(float)
+
+
+def pendulum_angle(times: Any, start: float) -> Any:
+    """sin(theta/2) = k cd(t | k^2)."""
+    k = np.sin(start / 2)
+    sn, _, _, _ = ellipj(ellipk(k * k) - times, k * k)
+    return 2 * np.arcsin(k * sn)
+
+
+def kepler_positions(times: Any, e: float) -> Any:
+    """x = cos E - e (from the far focus turned round), E - e sin E = t, with a = k = 1."""
+    found = times.copy()
+    for _ in range(200):
+        found = found - (found - e * np.sin(found) - times) / (1 - e * np.cos(found))
+    return np.vstack([np.cos(found) - e, np.sqrt(1 - e * e) * np.sin(found)])
+
+
+def within(plan: Any, error: float, name: str) -> bool:
+    """Whether a true error is below the bound, and above a thousandth of it."""
+    bound = plan.bound
+    return bool(error <= bound.total and (bound.quantity != name or error >= bound.total / 1000))
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-10])
+def test_a_pendulum_is_as_accurate_as_asked_and_as_said(accuracy: float) -> None:
+    given, times = described(PENDULUM), np.linspace(0, 30, 2001)
+    plan = planned(given, Accuracy(accuracy), times)
+    assert plan.reached
+    assert plan.bound.total <= accuracy
+    true = pendulum_angle(times, 2.0)
+    error = float(np.max(np.abs(run_of(given, plan, times)[0] - true)) / np.max(np.abs(true)))
+    assert within(plan, error, "theta")
+
+
+def test_a_kepler_orbit_of_high_eccentricity_reaches_its_accuracy_over_whole_periods() -> None:
+    """Rows at whole periods show little: the bound is of the whole interval."""
+    given, end = described(KEPLER), 6 * np.pi
+    few = np.linspace(0, end, 4)
+    plan = planned(given, Accuracy(1e-7), few)
+    assert plan.reached
+    times = np.linspace(0, end, 5001)
+    true = kepler_positions(times, 0.9)
+    error = np.max(np.abs(run_of(given, plan, times)[:2] - true), axis=1) / np.max(np.abs(true), axis=1)
+    assert np.max(error) <= plan.bound.total <= 1e-7
+
+
+def test_a_small_swing_is_linear_and_a_large_one_is_not() -> None:
+    times = np.linspace(0, 20, 1001)
+    small = planned(described(PENDULUM, theta="0.01"), Accuracy(1e-3), times)
+    assert small.model == Model(linear=True)
+    assert small.bound.shares[0].error > 0
+    states = run_of(described(PENDULUM, theta="0.01"), small, times)
+    error = float(np.max(np.abs(states[0] - pendulum_angle(times, 0.01))) / 0.01)
+    assert small.bound.total / 1000 <= error <= small.bound.total
+    large = planned(described(PENDULUM, theta="1"), Accuracy(1e-3), times)
+    assert not large.model.linear
+    refused = [one for item in large.items if item.kind == "linear or nonlinear" for one in item.refused]
+    assert [one.word for one in refused] == ["linear"]
+
+
+def test_damping_that_nobody_feels_is_left_out_and_damping_that_counts_is_not() -> None:
+    times = np.linspace(0, 10, 1001)
+    faint = planned(described(PENDULUM, c="1e-7"), Accuracy(1e-3), times)
+    assert faint.model.without == ("c",)
+    true = pendulum_angle(times, 2.0)
+    states = run_of(described(PENDULUM, c="1e-7"), faint, times)
+    assert np.max(np.abs(states[0] - true)) / 2 <= faint.bound.total
+    felt = planned(described(PENDULUM, c="0.01"), Accuracy(1e-3), times)
+    assert felt.model.without == ()
+
+
+def test_the_richer_field_is_taken_where_the_described_one_is_not_good_enough() -> None:
+    given = scenario(mbsym.load(SYSTEMS / "satellite.yaml", ()).system)
+    times = np.linspace(0, 3, 1001)
+    plan = planned(given, Accuracy(1e-2), times)
+    (item,) = (one for one in plan.items if one.kind == "order of gravity")
+    assert item.chosen == "exact"
+    assert "richer than described" in item.why
+    kept = planned(given, Accuracy(1e-2), times, Pins(model=Model(2)))
+    assert not kept.reached
+    assert kept.bound.shares[0].error > 1e-2
+    # No tolerance finer than the model is worth.
+    assert kept.bound.shares[1].error > 1e-2 * kept.bound.shares[0].error
+    assert any("wrong, however it is integrated" in text for text in kept.remarks)
+
+
+def test_a_tolerance_that_was_asked_for_is_kept_and_judged() -> None:
+    given, times = described(PENDULUM), np.linspace(0, 10, 1001)
+    fine = planned(given, Accuracy(1e-3), times, Pins(tolerance=1e-12))
+    assert fine.setting.tolerance == 1e-12
+    (method,) = (one for one in fine.items if one.kind == "method")
+    assert method.why == "as asked for, finer than this accuracy needs"
+    coarse = planned(given, Accuracy(1e-9), times, Pins(tolerance=1e-3))
+    assert not coarse.reached
+    true = pendulum_angle(times, 2.0)
+    error = float(np.max(np.abs(run_of(given, coarse, times)[0] - true)) / 2)
+    assert error <= coarse.bound.total
+
+
+def test_more_digits_are_taken_where_float64_does_not_reach() -> None:
+    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    plan = planned(given, Accuracy(1e-9), np.linspace(0, 100, 2001), Pins(method="dop853"))
+    assert plan.scalar == "extended"
+    assert plan.reached
+
+
+def test_what_cannot_be_reached_is_said_not_to_be() -> None:
+    """At t = 200 rounding of 64 bits has grown by thirteen digits."""
+    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    plan = planned(given, Accuracy(1e-9), np.linspace(0, 150, 1001), Pins(method="dop853"))
+    assert not plan.reached
+    assert plan.bound.total > 1e-7
+
+
+def test_quantities_by_name_have_errors_of_their_own() -> None:
+    given, times = described(PENDULUM), np.linspace(0, 10, 1001)
+    loose = planned(given, Accuracy(None, {"theta": 1e-2}), times)
+    assert [bound.quantity for bound in loose.bounds] == ["theta"]
+    both = planned(given, Accuracy(1e-2, {ENERGY: 1e-11}), times)
+    assert {bound.quantity for bound in both.bounds} >= {ENERGY}
+    assert both.reached
+    found = simulate(
+        given, Request(10.0, 1001, None, both.method, both.setting.tolerance, both.setting.step, both.scalar)
+    )
+    assert np.max(np.abs(found.trajectory.drift)) <= 1e-11
+
+
+# --- planted lies ---
+
+
+def test_a_cost_table_turned_over_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the dearest taken for the cheapest the plan says so itself: what it refused costs less."""
+    given, times = described(PENDULUM), np.linspace(0, 30, 2001)
+
+    def cheaper_refused(plan: Any) -> bool:
+        (method,) = (one for one in plan.items if one.kind == "method")
+        fit = [one for one in method.refused if one.error is not None and one.error <= 0.4e-5]
+        return any(one.cost is not None and one.cost < plan.seconds / 1.5 for one in fit)
+
+    assert not cheaper_refused(planned(given, Accuracy(1e-5), times))
+    original = pilot.Bench.run
+
+    def turned(self: Any, *arguments: Any, **options: Any) -> Any:
+        trial = original(self, *arguments, **options)
+        return replace(trial, seconds=1e-9 / trial.seconds)
+
+    monkeypatch.setattr(pilot.Bench, "run", turned)
+    found = planned(given, Accuracy(1e-5), times)
+    honest = METHODS[found.method]
+    monkeypatch.undo()
+    bench = pilot.Bench(planning.Dynamics(given), times, times, np.full(3, 1e-5), lambda method: method, np.ones(3))
+    taken = bench.run(honest, found.scalar, found.setting, often=True).seconds
+    best = bench.run(METHODS["dop853"], "float64", Setting(1e-7), often=True).seconds
+    assert taken > 1.5 * best
+
+
+def test_a_reference_with_a_wrong_digit_is_noticed_by_the_run_s_own_estimate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The yardstick lies: a coarse run passes for good, and the estimate after the run finds it out."""
+    from mbsym.simulation.accurate import simulate_accurately
+
+    def lying(bench: Any, method: Any, tolerance: float, goal: float) -> Any:
+        coarse = bench.run(method, "float64", Setting(1e-4))
+        return Yardstick(coarse.states, 1e-9, "dop853", "float64", coarse.setting, coarse.seconds, 1e-4)
+
+    monkeypatch.setattr(planning, "yardstick", lying)
+    found = simulate_accurately(described(PENDULUM), Request(30.0), Accuracy(1e-8), Pins(method="dop853"))
+    assert found.plan is not None
+    assert any("repeated more finely" in text for text in found.plan.remarks)
+
+
+def test_a_run_is_never_judged_by_itself() -> None:
+    """A setting that happens to be the reference's has the reference's own error, not zero."""
+    given, times = described(PENDULUM), np.linspace(0, 10, 501)
+    bench = pilot.Bench(planning.Dynamics(given), times, times, np.full(3, 1e-6), lambda method: method, np.ones(3))
+    stick = planning.yardstick(bench, METHODS["dop853"], 1e-8, 0.4)
+    bench.reference, bench.known = stick.quantities, stick.known
+    again = bench.run(METHODS["dop853"], stick.scalar, stick.setting)
+    assert again.ratio >= stick.known > 0
+
+
+# --- laws of the types ---
+
+
+def test_laws_of_bounds() -> None:
+    shares = (Share("model", 1e-3, ESTIMATED), Share("integration", 2e-3, MEASURED), Share("arithmetic", 0.0, TOGETHER))
+    bound = Bound("theta", shares, 4e-3)
+    assert bound.total == pytest.approx(3e-3)
+    assert bound.reached
+    assert not replace(bound, target=2e-3).reached
+    assert bound.how == ESTIMATED
+    assert replace(bound, shares=shares[1:]).how == MEASURED
+    assert replace(bound, shares=(Share("model", 0.0, PROVED),)).how == PROVED
+
+
+def test_laws_of_accuracies() -> None:
+    names = ("theta", "theta_dot", ENERGY)
+    assert list(Accuracy(1e-3).targets(names)) == [1e-3, 1e-3, inf]
+    assert list(Accuracy(None, {"theta": 1e-3}).targets(names)) == [1e-3, inf, inf]
+    assert list(Accuracy(1e-2, {ENERGY: 1e-9}).targets(names)) == [1e-2, 1e-2, 1e-9]
+    assert Accuracy(1e-2, {ENERGY: 1e-9}).finest == 1e-9
+    assert plan_bounds.DOUBLED >= 2
