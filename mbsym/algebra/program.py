@@ -19,6 +19,10 @@ from mbsym.expressions.angles import LinearForm
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
 MOST_BITS = 1_000
 
+#: What rounding takes away, exactly: 0 over every exact algebra (``mbsym.algebra.compensated``).
+SUM_ROUNDING, PRODUCT_ROUNDING = "rounding of sum", "rounding of product"
+ROUNDINGS = (SUM_ROUNDING, PRODUCT_ROUNDING)
+
 
 class Node:
     """One value of a program: ``number`` in the program's list of instructions."""
@@ -218,6 +222,29 @@ class Program(Algebra):
             return self.number(abs(value) if name == "abs" else (value > 0) - (value < 0))
         return self._node(name, (x.number,))
 
+    def rounding(self, operation: str, a: Node, b: Node) -> Node:
+        """What rounding takes away from a sum or a product (``mbsym.algebra.compensated``): 0 in exact arithmetic.
+
+        Signs are moved outwards as they are from the sum or product itself.
+        """
+        if self._constant(a) is not None and self._constant(b) is not None:
+            return self.zero
+        minus_a, minus_b = self._opposite(a), self._opposite(b)
+        if operation == PRODUCT_ROUNDING and (minus_a is not None or minus_b is not None):
+            inner = self.rounding(operation, a if minus_a is None else minus_a, b if minus_b is None else minus_b)
+            return self.minus(inner) if (minus_a is None) != (minus_b is None) else inner
+        i, j = a.number, b.number
+        if i == 0 or j == 0:
+            return self.zero
+        return self._node(operation, (i, j) if i < j else (j, i))
+
+    def _opposite(self, node: Node) -> Node | None:
+        """-a where a is negative as it is written."""
+        value = self._constant(node)
+        if value is not None:
+            return self.number(-value) if value < 0 else None
+        return self._opposites[node.number]
+
     def sin_cos(self, angle: LinearForm) -> tuple[Node, Node]:
         turns = angle.turns % 2
         if not angle.coefficients and turns.denominator in (1, 2):
@@ -310,6 +337,8 @@ class Program(Algebra):
                 pair = algebra.sin_cos(angle) if angle is not None else algebra.sin_cos_of(argument)
                 return pair[0 if which == "sin" else 1]
         arguments = [values[operand] for operand in instruction.operands]
+        if instruction.operation in ROUNDINGS:
+            return algebra.zero
         match instruction.operation, arguments:
             case "add", [a, b]:
                 return a + b

@@ -33,12 +33,14 @@ from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
-from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code, Kernel
+from mbsym.numerics.compensation import Compensation, compensated_code
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.kernels.stepwise import stepwise
 from mbsym.numerics.scales import kinds, scales
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.specialise import Specialised, bound, substituted
 
 #: Digits of a number in each arithmetic, -log10 of its unit roundoff.
 FULL = {FLOAT32: 7.22, FLOAT64: 15.95}
@@ -209,53 +211,42 @@ class Arithmetic:
     """
 
     def __init__(self, scenario: Scenario, found: Sequence[Quantity], compiled: bool = True) -> None:
-        self.found = tuple(found)
+        self.found, self.scenario = tuple(found), scenario
+        self.slopes_of: Sequence[Node] | None = None
         fresh = bound(scenario)
         names = ("t", *scenario.system.coordinates, *scenario.system.velocities)
         codes: dict[str, Code] = {}
+        self.compensations: dict[str, Compensation] = {}
         for q in found:
-            nodes: list[Node] = substituted(q.code.program, q.code.outputs, fresh)
-            codes[q.name.replace(" ", "_")] = Code(fresh, names, tuple(stabilised(fresh, nodes, q.name == "energy")))
+            codes[q.name.replace(" ", "_")] = self._code(q, fresh, names)
+        better = {**codes, **{name: one.code for name, one in self.compensations.items()}}
+        chosen = {FLOAT32: codes, FLOAT64: better}
         if compiled:
-            self._kernels = {scalar: kernels(codes, scalar) for scalar in FULL}
+            self._kernels = {scalar: kernels(chosen[scalar], scalar) for scalar in FULL}
         else:
-            self._kernels = {s: {name: _stepwise(code, s) for name, code in codes.items()} for s in FULL}
+            self._kernels = {s: {name: stepwise(code, s) for name, code in chosen[s].items()} for s in FULL}
+
+    def _code(self, q: Quantity, fresh: Specialised, names: tuple[str, ...]) -> Code:
+        """As ``mbsym.numerics.dynamics`` makes it; the kernels of simulations carry accelerations in pairs where that
+        keeps digits, and so do these."""
+        if q.name == "Jacobian" and self.slopes_of is not None:
+            states = [fresh.input(name) for name in names[1:]]
+            nodes = [x for row in jacobian(fresh, self.slopes_of, states) for x in row]
+            return Code(fresh, names, tuple(stabilised(fresh, nodes)))
+        nodes = stabilised(fresh, substituted(q.code.program, q.code.outputs, fresh), q.name == "energy")
+        code = Code(fresh, names, tuple(nodes))
+        if q.name == "accelerations":
+            self.slopes_of = nodes
+        if q.name in ("accelerations", "pivots"):
+            better = compensated_code(self.scenario, code, range(len(nodes)))
+            if better is not None:
+                self.compensations[q.name] = better
+        return code
 
     def values(self, name: str, scalar: str, inputs: Any) -> Any:
         """Results for one state (t, q, q'), as float64 numbers."""
         with np.errstate(all="ignore"):
             return np.asarray(self._kernels[scalar][name.replace(" ", "_")](inputs), dtype=float)
-
-
-def _stepwise(code: Code, scalar: str) -> Kernel:
-    """A kernel that takes one instruction after another, with numbers of one type."""
-    kind, program = (np.float32 if scalar == FLOAT32 else np.float64), code.program
-    binary = {"add": np.add, "subtract": np.subtract, "multiply": np.multiply, "divide": np.divide}
-    named = {"log": np.log, "atan": np.arctan}
-    slots = {name: place for place, name in enumerate(code.inputs)}
-    steps: list[tuple[int, Any, tuple[int, ...]]] = []
-    given: dict[int, Any] = {}
-    entries: list[tuple[int, int]] = []
-    for number in program.live(code.outputs):
-        operation, operands, payload = program.instructions[number]
-        if operation == "constant":
-            assert isinstance(payload, Fraction)
-            given[number] = kind(float(payload))
-        elif operation == "input":
-            entries.append((number, slots[str(payload)]))
-        else:
-            function = binary.get(operation) or named.get(operation) or getattr(np, operation)
-            steps.append((number, function, operands))
-
-    def kernel(inputs: Any) -> Any:
-        values = dict(given)
-        for number, place in entries:
-            values[number] = kind(inputs[place])
-        for number, function, operands in steps:
-            values[number] = function(*(values[k] for k in operands))
-        return np.array([values[node.number] for node in code.outputs])
-
-    return kernel
 
 
 def measured(

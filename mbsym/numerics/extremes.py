@@ -23,6 +23,7 @@ from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
+from mbsym.numerics.compensation import Compensation
 from mbsym.numerics.digits import Arithmetic, Digits, Quantity, Truth, Watch, measured, quantities
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.probes import RATIO, Ladder, Probe, ladders
@@ -66,6 +67,16 @@ class VerdictRow:
 
 
 @dataclass(frozen=True)
+class Compensated:
+    """The accelerations on one rung are computed with pairs, as simulations do there; ``kind`` is empty as given."""
+
+    kind: str
+    subject: str
+    size: float
+    found: Compensation
+
+
+@dataclass(frozen=True)
 class Extremes:
     """All rows in the order measured; ``left_out`` says what was not, and why.
 
@@ -79,6 +90,7 @@ class Extremes:
     seconds: float
     falling: Falling | None = None
     singularities: Singularities | None = None
+    compensated: tuple[Compensated, ...] = ()
 
     @property
     def ladders(self) -> tuple[tuple[str, str], ...]:
@@ -129,7 +141,9 @@ def extremes(
         left_out.append(f"out of time, raise --budget: {', '.join(shown)}")
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
-    return Extremes(given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined, where)
+    return Extremes(
+        given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined, where, rungs.pairs
+    )
 
 
 class _Rungs:
@@ -143,6 +157,12 @@ class _Rungs:
         self.lean = tuple(q for q in self.found if q.name != "Jacobian")
         self.rows: list[Row] = []
         self.verdicts: list[VerdictRow] = []
+        self.compensated = [Compensated("", "", 1.0, one) for one in _rates(usual)]
+
+    @property
+    def pairs(self) -> tuple[Compensated, ...]:
+        """Where kernels carry operations in pairs."""
+        return tuple(self.compensated)
 
     @property
     def late(self) -> bool:
@@ -165,6 +185,9 @@ class _Rungs:
             arithmetic = self.usual if usual else Arithmetic(probe.scenario, self.lean, compiled=False)
         except Failure:  # a division by zero in the parameters alone: nothing to evaluate
             return
+        if not usual:
+            place = (ladder.kind, ladder.subject, probe.size)
+            self.compensated += [Compensated(*place, one) for one in _rates(arithmetic)]
         for q in self.found if usual else self.lean:
             digits = measured(self.truth, arithmetic, q.name, probe.scenario, probe.state)
             self.rows.append(Row(ladder.kind, ladder.subject, probe.size, q.name, digits))
@@ -174,6 +197,11 @@ class _Rungs:
         self.rows += [Row(*place, name, digits) for name, digits in linear.digits(probe.scenario).items()]
         if probe.assumed:
             self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
+
+
+def _rates(arithmetic: Arithmetic) -> list[Compensation]:
+    """What was done to the accelerations; pivots follow them."""
+    return [one for name, one in arithmetic.compensations.items() if name == "accelerations"]
 
 
 def _all(

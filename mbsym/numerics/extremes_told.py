@@ -7,7 +7,7 @@ from math import isfinite
 
 from mbsym.numerics.borders import BORDER
 from mbsym.numerics.digits import FEW, FULL
-from mbsym.numerics.extremes import LISTED, Extremes, Row, VerdictRow
+from mbsym.numerics.extremes import LISTED, Compensated, Extremes, Row, VerdictRow
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR
 from mbsym.numerics.singular import Singularities, SingularSet
@@ -34,6 +34,7 @@ def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
     if found.singularities is not None:
         yield from _where(found.singularities, file)
     yield from _near(found)
+    yield from _pairs(found)
     yield from _range(found, RATES, "Rates")
     yield from _range(found, EQUILIBRIUM, "States at distances from the unperturbed motion")
     yield from _ratios(found)
@@ -52,6 +53,24 @@ def _onward(sizes: Iterable[float], bad: Iterable[float]) -> str:
 def _short(size: float) -> str:
     """``1e-8``, ``1e8``."""
     return f"{size:.0e}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+
+
+def _pairs(found: Extremes) -> Iterator[str]:
+    """Where kernels carry operations in pairs: what that keeps, and what it costs."""
+    said: dict[str, list[Compensated]] = {}
+    for one in found.compensated:
+        said.setdefault(one.subject, []).append(one)
+    for subject, places in said.items():
+        where = (
+            f"{subject} times {', '.join(f'{one.size:.0e}' for one in places)}" if subject else "At the given values"
+        )
+        worst = min(places, key=lambda one: one.found.after)
+        dearest = max(one.found.cost for one in places)
+        yield (
+            f"{where}: float64 kernels carry {worst.found.sensitive} operations of the accelerations in pairs of "
+            f"numbers and keep {worst.found.after:.1f} digits there, where plain ones keep "
+            f"{worst.found.before:.1f}; they take up to {dearest:.1f} times as many operations."
+        )
 
 
 def _where(found: Singularities, file: str) -> Iterator[str]:

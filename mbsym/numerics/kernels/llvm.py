@@ -27,6 +27,7 @@ import llvmlite.binding as llvm
 import numpy as np
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
 from mbsym.numerics.kernels import sine_cosine
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.sine_cosine import splat, vector
@@ -231,12 +232,15 @@ def _fused(code: Code, live: Sequence[int]) -> dict[int, Fused]:
     instructions = code.program.instructions
     uses = Counter(operand for number in live for operand in instructions[number].operands)
     uses.update(node.number for node in code.outputs)
+    # A product of which the rounding is taken has to be rounded.
+    rounded = {instructions[number].operands for number in live if instructions[number].operation == PRODUCT_ROUNDING}
     found = {}
     for number in live:
         operation, operands, _ = instructions[number]
         if operation not in ("add", "subtract"):
             continue
         products = [one for one in operands if instructions[one].operation == "multiply" and uses[one] == 1]
+        products = [one for one in products if instructions[one].operands not in rounded]
         if products:
             product = max(products)
             first = operands[0] == product
@@ -370,9 +374,32 @@ class _Form:
                 yield f"  {local} = call {kind} @llvm.sqrt.{suffix(self.scalar, self.lanes)}({kind} {a})"
             case [a]:
                 yield from self._function(f"{operation}{self.scalar.suffix}", local, a)
+            case [a, b] if operation in ROUNDINGS:
+                yield from self._rounding(operation, local, a, b)
+                if self.scalar.name == EXTENDED:
+                    self._constant(number, Fraction(0))
+                    return
             case [a, b]:
                 yield f"  {local} = {_ARITHMETIC[operation]} {kind} {a}, {b}"
         self.values[number] = local
+
+    def _rounding(self, operation: str, local: str, a: str, b: str) -> Iterator[str]:
+        """(a + b) - fl(a + b) by two-sum, a b - fl(a b) by a fused operation; extended arithmetic does without."""
+        kind = self.kind
+        if self.scalar.name == EXTENDED:
+            return
+        if operation == PRODUCT_ROUNDING:
+            yield f"  {local}.p = fmul {kind} {a}, {b}"
+            yield f"  {local}.n = fneg {kind} {local}.p"
+            function = f"llvm.fma.{suffix(self.scalar, self.lanes)}"
+            yield f"  {local} = call {kind} @{function}({kind} {a}, {kind} {b}, {kind} {local}.n)"
+            return
+        yield f"  {local}.s = fadd {kind} {a}, {b}"
+        yield f"  {local}.b = fsub {kind} {local}.s, {a}"
+        yield f"  {local}.a = fsub {kind} {local}.s, {local}.b"
+        yield f"  {local}.e = fsub {kind} {b}, {local}.b"
+        yield f"  {local}.d = fsub {kind} {a}, {local}.a"
+        yield f"  {local} = fadd {kind} {local}.d, {local}.e"
 
     def _kinked(self, operation: str, local: str, a: str) -> Iterator[str]:
         """sign: 1, -1, or what it is given, 0 or no number; abs: 0 - a up to 0, which has no sign there."""
@@ -538,11 +565,12 @@ def many_text(name: str, code: Code, scalar: Scalar) -> str:
 
 def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
     """What the codes call, for one state or several: declarations of library functions, sine and cosine."""
-    called, counts, fused = set(), set(), False
+    called, counts, fused, exactly = set(), set(), False, False
     for code in codes:
         live = code.program.live(code.outputs)
         for number in live:
             instruction = code.program.instructions[number]
+            exactly = exactly or instruction.operation == PRODUCT_ROUNDING
             if len(instruction.operands) == 1 and instruction.operation not in ("negative", *_KINKED):
                 called.add(instruction.operation)
         for step in _steps(code, live, scalar):
@@ -553,6 +581,8 @@ def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
     kind, lines = vector(lanes, scalar.type), []
     if fused and not (counts and kind in {vector(count, "double") for count in counts}):
         lines.append(f"declare {kind} @llvm.fmuladd.{suffix(scalar, lanes)}({kind}, {kind}, {kind})\n")
+    if exactly and scalar.name != EXTENDED:
+        lines.append(f"declare {kind} @llvm.fma.{suffix(scalar, lanes)}({kind}, {kind}, {kind})\n")
     if counts:
         called -= {"sin", "cos"}
         lines.append("declare double @sin(double) #1\ndeclare double @cos(double) #1\n")

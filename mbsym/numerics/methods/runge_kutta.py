@@ -32,7 +32,7 @@ from mbsym.numerics.methods.interface import (
     Unusable,
     Work,
 )
-from mbsym.numerics.methods.kept import compiled_kernel, once
+from mbsym.numerics.methods.kept import code_of, compiled_kernel, once
 from mbsym.numerics.methods.marching import adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.rows import dense_text, terms_of
@@ -87,7 +87,7 @@ def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
     """The compiled method on the compiled right-hand side."""
 
     def make() -> Library:
-        chosen, code = SCALARS[scalar], dynamics.right_hand_side
+        chosen, code = SCALARS[scalar], code_of(dynamics, "right_hand_side", scalar)
         size = 2 * dynamics.size
         march = adaptive_text if tableau.errors else fixed_text
         text = march(tableau, size, chosen) + dense_text(tableau, size, chosen)

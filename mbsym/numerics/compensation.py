@@ -1,0 +1,267 @@
+"""Which operations of a kernel lose digits that another way of computing keeps, and whether it pays.
+
+An operation k with value v_k is rounded by a relative u; that moves output i by at most
+
+    c_ik = u |df_i/dv_k v_k|,     in parts of s_i, the largest |f_i| over the states looked at
+
+(one reverse sweep over the program for each output, with values of 300 bits).  Operations with c_ik beyond
+``SENSITIVE`` are carried as pairs (``mbsym.algebra.compensated``).  That is kept where it is measured to be better:
+both kernels against balls of 300 bits, at the initial state and at others about it.
+
+Most scenes lose nothing: a running error bound (Higham, section 3.3) in plain floats sees that first, in one pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import cos, inf, isfinite, log10, sin, sqrt
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.compensated import compensated
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.point import Balls
+from mbsym.algebra.program import Program
+from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.system import velocity_name
+from mbsym.numerics.kernels.interface import FLOAT64, Code
+from mbsym.numerics.kernels.stepwise import stepwise
+from mbsym.numerics.scenario import Scenario
+
+#: The unit roundoff of float64, and digits of it.
+UNIT, FULL = 2.0**-53, 15.95
+
+#: Parts of an output that a loss may be before it is looked at (a bound), and an operation's share that makes it
+#: sensitive.
+WORTH_LOOKING, SENSITIVE = 1e-9, 2e-14
+
+#: A kernel that keeps so many digits is good enough; otherwise so many have to be gained.
+ENOUGH, GAIN = 11.0, 1.0
+
+#: Longer programs are not looked at.
+MOST_OPERATIONS = 30_000
+
+BITS = 300
+
+
+@dataclass(frozen=True)
+class Compensation:
+    """A kernel with some operations in pairs: what it keeps and costs, against the plain one.
+
+    ``before`` and ``after`` are the fewest digits of any output at the states looked at, ``sensitive`` counts
+    operations, ``cost`` is the ratio of operations.
+    """
+
+    code: Code
+    before: float
+    after: float
+    sensitive: int
+    cost: float
+
+
+def states_about(given: Scenario, inputs: Sequence[str]) -> list[list[float]] | None:
+    """Values of the inputs (t, q, q') at the start and at two places about it, where everything moves.
+
+    Positions are shifted by parts of a radian or of themselves, velocities by parts of the largest there is.
+    None for inputs that a scenario does not have.
+    """
+    system = given.system
+    start = dict(zip((*system.coordinates, *system.velocities), map(float, given.state), strict=True)) | {"t": 0.0}
+    if any(name not in start for name in inputs):
+        return None
+    angles = angle_denominators(system)
+    fastest = max((abs(float(x)) for x in given.velocities), default=0.0)
+    rate = fastest or max((abs(float(x)) for _, x in given.prescribed.values()), default=0.0) or 1.0
+    found = []
+    for turn in (0, 1, 2):
+        moved = dict(start)
+        for k, name in enumerate(system.coordinates):
+            size = 1.0 if name in angles else abs(start[name]) or 1.0
+            part = 0.61 * turn * (1 + 0.37 * k)
+            moved[name] += size * part
+            moved[velocity_name(name)] += size * rate * part * 0.7
+        found.append([moved[name] for name in inputs])
+    return found
+
+
+def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequence[int]) -> Compensation | None:
+    """A better kernel for a code, judged by its ``outputs``; None where there is nothing to gain."""
+    program = code.program
+    live = program.live(code.outputs)
+    if len(live) > MOST_OPERATIONS:
+        return None
+    wanted = [code.outputs[i].number for i in outputs]
+    if all(_bounded(program, live, code.inputs, state, wanted) for state in states):
+        return None
+    try:
+        looked = [_values(code, live, state) for state in states]
+    except Failure:
+        return None
+    values = [known for known in looked if known is not None]
+    if not values:
+        return None
+    chosen = _sensitive(program, live, values, wanted)
+    if not chosen:
+        return None
+    better = Code(program, code.inputs, tuple(compensated(program, code.outputs, chosen)))
+    kept = [state for state, known in zip(states, looked, strict=True) if known is not None]
+    before, after = (_digits(one, kept, values, wanted, outputs) for one in (code, better))
+    if before >= ENOUGH or after < before + GAIN:
+        return None
+    return Compensation(better, before, after, len(chosen), better.operations / max(1, code.operations))
+
+
+def compensated_code(given: Scenario, code: Code, outputs: Sequence[int]) -> Compensation | None:
+    """``compensation`` at the states about a scenario's start."""
+    states = states_about(given, code.inputs)
+    return None if states is None else compensation(code, states, outputs)
+
+
+# --- in plain floats -------------------------------------------------------------------------------------------------
+
+
+def _bounded(
+    program: Program, live: Sequence[int], inputs: Sequence[str], state: Sequence[float], wanted: Sequence[int]
+) -> bool:
+    """Whether a running error bound shows every output to keep its digits at a state; no number is no reason."""
+    place = {name: i for i, name in enumerate(inputs)}
+    v: dict[int, float] = {}
+    e: dict[int, float] = {}
+    try:
+        for number in live:
+            operation, operands, payload = program.instructions[number]
+            if operation == "input":
+                v[number], e[number] = state[place[str(payload)]], 0.0
+                continue
+            if operation == "constant":
+                v[number] = float(payload)  # type: ignore[arg-type]
+                e[number] = UNIT * abs(v[number])
+                continue
+            a, ea = v[operands[0]], e[operands[0]]
+            if len(operands) == 2:
+                b, eb = v[operands[1]], e[operands[1]]
+                if operation == "multiply":
+                    x, error = a * b, abs(a) * eb + abs(b) * ea
+                elif operation == "divide":
+                    x = a / b
+                    error = (ea + abs(x) * eb) / abs(b)
+                else:
+                    x, error = (a + b if operation == "add" else a - b), ea + eb
+            elif operation == "sin":
+                x, error = sin(a), ea * abs(cos(a))
+            elif operation == "cos":
+                x, error = cos(a), ea * abs(sin(a))
+            elif operation == "sqrt":
+                x = sqrt(a)
+                error = ea / (2 * x)
+            elif operation == "negative":
+                v[number], e[number] = -a, ea
+                continue
+            else:
+                return True  # other functions: not looked at
+            v[number], e[number] = x, error + UNIT * abs(x)
+    except (ArithmeticError, ValueError):
+        return False
+    largest = max((abs(v[k]) for k in wanted), default=0.0)
+    return isfinite(largest) and all(e[k] <= WORTH_LOOKING * max(abs(v[k]), 1e-3 * largest) for k in wanted)
+
+
+# --- with many bits --------------------------------------------------------------------------------------------------
+
+
+def _values(code: Code, live: Sequence[int], state: Sequence[float]) -> dict[int, Any] | None:
+    """Every instruction's value as a ball; None where one is not finite."""
+    program = code.program
+    with ctx.workprec(BITS):
+        inputs = {name: _ball(x) for name, x in zip(code.inputs, state, strict=True)}
+        nodes = [program.node(number) for number in live]
+        found = program.evaluate(nodes, inputs, Balls(inputs))
+        if not all(x.is_finite() for x in found):
+            return None
+        return dict(zip(live, found, strict=True))
+
+
+def _ball(x: float) -> Any:
+    exact = Fraction(x)
+    return arb(fmpq(exact.numerator, exact.denominator))
+
+
+def _sensitive(
+    program: Program, live: Sequence[int], values: Sequence[Mapping[int, Any]], wanted: Sequence[int]
+) -> set[int]:
+    """Operations whose rounding moves an output by more than ``SENSITIVE`` parts of its size."""
+    chosen: set[int] = set()
+    floats = [{number: float(x.mid()) for number, x in known.items()} for known in values]
+    for output in wanted:
+        size = max(abs(known[output]) for known in floats)
+        if not size > 0:
+            continue
+        for known in floats:
+            for number, slope in _slopes(program, live, known, output).items():
+                if UNIT * abs(slope * known[number]) > SENSITIVE * size:
+                    chosen.add(number)
+    return {number for number in chosen if program.instructions[number].operation not in ("input", "negative")}
+
+
+def _slopes(program: Program, live: Sequence[int], v: Mapping[int, float], output: int) -> dict[int, float]:
+    """df/dv_k of one output by every instruction, backwards."""
+    slope = {output: 1.0}
+    for number in reversed(live):
+        outer = slope.get(number, 0.0)
+        if number > output or not outer:
+            continue
+        operation, operands, _ = program.instructions[number]
+        for operand, inner in zip(operands, _partials(operation, [v[k] for k in operands], v[number]), strict=True):
+            slope[operand] = slope.get(operand, 0.0) + outer * inner
+    return slope
+
+
+def _partials(operation: str, x: Sequence[float], value: float) -> tuple[float, ...]:
+    match operation:
+        case "add":
+            return (1.0, 1.0)
+        case "subtract":
+            return (1.0, -1.0)
+        case "negative":
+            return (-1.0,)
+        case "multiply":
+            return (x[1], x[0])
+        case "divide":
+            return (1 / x[1], -value / x[1]) if x[1] else (0.0, 0.0)
+        case "sqrt":
+            return (0.5 / value if value else 0.0,)
+        case "sin":
+            return (cos(x[0]),)
+        case "cos":
+            return (-sin(x[0]),)
+    return tuple(0.0 for _ in x)  # functions are not carried further
+
+
+def _digits(
+    code: Code,
+    states: Sequence[Sequence[float]],
+    values: Sequence[Mapping[int, Any]],
+    wanted: Sequence[int],
+    outputs: Sequence[int],
+) -> float:
+    """The fewest digits of any output, in parts of its size over the states."""
+    run, fewest = stepwise(code, FLOAT64), FULL
+    sizes = {k: max(abs(float(known[k].mid())) for known in values) for k in wanted}
+    for state, known in zip(states, values, strict=True):
+        with np.errstate(all="ignore"):
+            found = np.asarray(run(np.array(state)), dtype=float)
+        for i, k in zip(outputs, wanted, strict=True):
+            error = _apart(float(found[i]), known[k]) / sizes[k] if sizes[k] > 0 else 0.0
+            fewest = min(fewest, -log10(error) if 0 < error < inf else (FULL if error == 0 else 0.0))
+    return max(0.0, fewest)
+
+
+def _apart(value: float, exact: Any) -> float:
+    if not isfinite(value):
+        return inf
+    with ctx.workprec(BITS):
+        return float(abs(_ball(value) - exact).mid())
