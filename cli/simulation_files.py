@@ -77,7 +77,10 @@ def _happened(run: Simulation) -> dict[str, str]:
 
     if run.happened is None:
         return {}
-    found = {"events": events_csv(run.happened.occurrences, run.system)} if run.happened.occurrences.events else {}
+    radii = run.certificate.passages or None if run.certificate is not None else None
+    found = (
+        {"events": events_csv(run.happened.occurrences, run.system, radii)} if run.happened.occurrences.events else {}
+    )
     return found | ({} if run.section is None else {"section": section_csv(run.section, run.system)})
 
 

@@ -41,6 +41,13 @@ def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator
         )
         steps = counted(len(found.enclosure.segments), "step", "steps")
         yield f"the exact solution is known to {at_most(found.width)} there: {steps} of {found.enclosure.bits} bits"
+    if found.passages:
+        proved = [radius for radius in found.passages if radius is not None]
+        which = f"{len(proved)} of the run's {counted(len(found.passages), 'event', 'events')}"
+        if proved:
+            yield f"the exact solution has {which}, each once within {at_most(max(proved))} of its time (proved)"
+        else:
+            yield "of the run's events none is proved to be one of the exact solution"
     if not found.whole:
         reached = with_unit(f"{found.enclosure.reached:.6g}", pretty(time_unit(system)))
         yield f"nothing is proved beyond t = {reached}: {WHY[found.ended]}"
@@ -57,6 +64,8 @@ def certificate_json(found: Certificate, names: list[str]) -> dict[str, Any]:
         "steps": len(found.enclosure.segments),
         "largest_radius": found.width,
         "largest_error": found.largest_error,
+        "events_proved": sum(radius is not None for radius in found.passages),
+        "largest_event_radius": max((radius for radius in found.passages if radius is not None), default=None),
         "quantities": {
             name: {
                 "largest_radius": float(found.radius[i].max(initial=0.0)),

@@ -2,7 +2,8 @@
 
 Columns of events: ``t``, ``event`` (its title, or the condition as it was written), ``direction`` (1: the left side
 grew beyond the right one, -1: fell below it, 0: touched it, so that there were two passages or none), the coordinates
-and velocities then.  Of a section: ``t``, ``direction``, its axes, coordinates and velocities.
+and velocities then; with a certificate ``t_radius``: the exact solution has the event, once, within that of ``t``
+(nothing: not proved).  Of a section: ``t``, ``direction``, its axes, coordinates and velocities.
 """
 
 from __future__ import annotations
@@ -16,13 +17,18 @@ from mbsym.numerics.events import Occurrences
 from mbsym.simulation.watching import SectionPoints
 
 
-def events_csv(found: Occurrences, system: System) -> str:
-    """The text of events.csv."""
+def events_csv(found: Occurrences, system: System, radii: Sequence[float | None] | None = None) -> str:
+    """The text of events.csv; ``radii`` of a certificate stand in a column of their own."""
     names = [cell(event.name) for event in found.events]
-    header = [marked("t", unit_of(system, "t")), "event", "direction", *_states(system)]
+    time_unit = unit_of(system, "t")
+    proved = [] if radii is None else [marked("t_radius", time_unit)]
+    header = [marked("t", time_unit), *proved, "event", "direction", *_states(system)]
+    columns = [[]] * len(found) if radii is None else [["" if x is None else _number(x)] for x in radii]
     rows = (
-        [_number(time), names[which], str(turn), *map(_number, state)]
-        for time, which, turn, state in zip(found.times, found.which, found.turns, found.states.T, strict=True)
+        [_number(time), *radius, names[which], str(turn), *map(_number, state)]
+        for time, radius, which, turn, state in zip(
+            found.times, columns, found.which, found.turns, found.states.T, strict=True
+        )
     )
     return "\n".join([",".join(map(cell, header)), *map(",".join, rows), ""])
 

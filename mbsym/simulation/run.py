@@ -88,7 +88,8 @@ def simulate(
     certificate = None
     if request.certify is not None:
         with stage(CERTIFYING):
-            certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch)
+            seen = None if happened is None else happened.occurrences
+            certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch, happened=seen)
     return Simulation(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
         *(certificate, happened, given),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import mpmath
@@ -257,3 +258,39 @@ def test_a_disc_knows_the_singularity() -> None:
         found = discs.disc(field, arb(0), coefficients, 3.0)
     assert found is not None
     assert 0.4 < found.radius < 1
+
+
+# --- events ---
+
+
+def test_events_of_the_exact_solution_are_proved() -> None:
+    """cos t = 0 at odd multiples of pi/2, cos t = -1/2 at 2 pi/3 and so on."""
+    run = mbsym.simulate(mbsym.loads(OSCILLATOR), 20.0, tolerance=1e-6, certify=1e-12, events=["x = 0", "x = -1/2"])
+    assert run.certificate is not None
+    assert run.events is not None
+    radii, found = run.certificate.passages, run.events
+    assert len(found) == 12
+    assert all(radius is not None and radius < 1e-3 for radius in radii)
+    with mpmath.workdps(30):
+        zeros = [mpmath.pi / 2 + k * mpmath.pi for k in range(6)]
+        halves = [turn * 2 * mpmath.pi + side * 2 * mpmath.pi / 3 for turn in range(4) for side in (1, -1)]
+        for time, which, radius in zip(found.times, found.which, radii, strict=True):
+            near = [t for t in (zeros, halves)[which] if abs(t - mpmath.mpf(float(time))) <= radius]
+            assert len(near) == 1
+
+
+def test_events_that_are_none_are_not_proved() -> None:
+    """Planted: an event where nothing passes, one in the wrong direction, one that touches."""
+    run = mbsym.simulate(mbsym.loads(OSCILLATOR), 3.0, events=["x = 0"])
+    assert run.events is not None
+    honest = run.events
+    found = certified(run.dynamics, run.times, run.trajectory.states, 1e-12, happened=honest)
+    assert [radius is not None for radius in found.passages] == [True]
+    for change in (
+        {"times": honest.times + 1.0},
+        {"turns": -honest.turns},
+        {"turns": 0 * honest.turns},
+    ):
+        wrong = replace(honest, **change)
+        lied = certified(run.dynamics, run.times, run.trajectory.states, 1e-12, happened=wrong)
+        assert lied.passages == (None,)

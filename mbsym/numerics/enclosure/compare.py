@@ -13,6 +13,11 @@ from flint import arb, ctx, fmpq
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import function_of
+from mbsym.numerics.enclosure.passages import passage_radii
+from mbsym.numerics.events import Occurrences
+
+#: How much further than the last row the solution is enclosed where events are looked at.
+AFTER = 1 + 1e-6
 
 #: What a float bound is multiplied by, so that it stays one after its own rounding.
 LARGER = 1 + 1e-15
@@ -24,7 +29,8 @@ class Certificate:
     ``centre[i, k]`` (floats, as they are printed), and within ``error[i, k]`` of what the run has there.
 
     ``scale`` is what each component is measured by; only the first ``rows`` rows are enclosed, up to ``reached``, and
-    ``ended`` says why they are not all ("": they are).
+    ``ended`` says why they are not all ("": they are).  ``passages`` has a radius for every event of the run: the exact
+    solution has it once within that of its time; None where that is not proved.
     """
 
     enclosure: Enclosure
@@ -33,6 +39,7 @@ class Certificate:
     error: Any
     scale: Any
     ended: str
+    passages: tuple[float | None, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -71,6 +78,7 @@ def certified(
     width: float,
     seconds: float = inf,
     watch: Callable[[float], None] = lambda t: None,
+    happened: Occurrences | None = None,
 ) -> Certificate:
     """The solution of the scenario's equations enclosed to ``width``, and the distance of ``states`` (n, m) from it.
 
@@ -79,7 +87,8 @@ def certified(
     """
     sizes = np.max(np.abs(states), axis=1).astype(float)
     scale = np.where(sizes > 0, sizes, 1.0)
-    end = float(times[-1])
+    # An event at the end needs a little of what comes after it.
+    end = float(times[-1]) * (1.0 if happened is None else AFTER)
     state = dynamics.scenario.state
     found = enclosed(dynamics.right_hand_side, dynamics.jacobian, state, end, width, scale.tolist(), seconds, watch)
     rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
@@ -92,7 +101,9 @@ def certified(
                 # What is printed of a float is within half a unit in its last place of it.
                 radius[i, k] = _above(value - arb(middle)) + 2.0**-52 * abs(middle)
                 error[i, k] = _above(value - _exact(states[i, k]))
-    return Certificate(found, centre, radius, error, scale, found.ended)
+    passages = passage_radii(found, dynamics, happened) if happened is not None and found.segments else ()
+    ended = found.ended if rows < len(times) else ""
+    return Certificate(found, centre, radius, error, scale, ended, passages)
 
 
 def _above(value: arb) -> float:
