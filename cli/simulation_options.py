@@ -42,6 +42,7 @@ class Way:
     method: str
     tolerance: str | None
     step: str | None
+    max_step: str | None
     arithmetic: str
     step_limit: str
     invariants: bool
@@ -83,6 +84,7 @@ way_options = group(
         "--tolerance", metavar="X", help="Error of one step, relative and absolute.  [default: 1e-10 in float64]"
     ),
     click.option("--step", metavar="H", help="Length of a step, for methods of fixed step."),
+    click.option("--max-step", metavar="H", help="No step is longer (0.01), so that nothing short is stepped over."),
     click.option("--arithmetic", metavar=f"[{'|'.join(ARITHMETIC)}]", default="float64", show_default=True),
     click.option("--step-limit", metavar="N", default="10000000", show_default=True),
     click.option("--invariants", is_flag=True, help="Add the first integrals of problem 7 as columns."),
@@ -114,6 +116,7 @@ def typed(span: Span, way: Way, output: Output) -> dict[str, str | None]:
         "--method": way.method,
         "--tolerance": way.tolerance,
         "--step": way.step,
+        "--max-step": way.max_step,
         "--arithmetic": way.arithmetic,
         "--step-limit": way.step_limit,
         "--format": output.wanted,

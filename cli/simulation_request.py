@@ -56,6 +56,7 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
     every = asked.number("--every", texts["--every"])
     tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
     step = asked.number("--step", texts["--step"])
+    longest = asked.number("--max-step", texts["--max-step"])
     why = ", the start and the end of a trajectory"
     samples = asked.whole("--samples", texts["--samples"], 2, 10**18, why)
     method = asked.word("--method", (texts["--method"] or "").lower(), ("auto", *METHODS), "method")
@@ -80,6 +81,7 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
         invariants=flags.invariants,
         estimate=flags.estimate,
         whole=flags.whole,
+        longest=longest,
     )
     if method is not None:
         _check_method(system, request, texts, asked)
@@ -131,6 +133,9 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, s
         many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
         hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
         asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
+    if traits.fixed and texts["--max-step"] is not None:
+        hint = f"give a shorter --step in its place, for example --step {request.longest or 0.01:g}"
+        asked.complain("--max-step", "conflicting-options", f"{name} takes steps of one length", hint)
     if not traits.fixed and has_step and not has_tolerance:
         hint = f"leave --step out, give a --tolerance, or take a method of fixed step: {fixed}"
         asked.complain("--step", "conflicting-options", f"{name} chooses its steps by a --tolerance", hint)

@@ -27,16 +27,17 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
 
     out = console()
     out.print(Text.assemble((run.system.name, "bold"), (f"  {printable(file)}", "dim")))
-    for name, text in _lines(run):
+    for name, text in _lines(run, file):
         style = "yellow" if name == "warning" else "bold cyan"
         out.print(Text.assemble("  ", (f"{name:<{10 if run.plan else 9}} ", style), text))
     names = ", ".join(path.name for path in paths)
     out.print(Text.assemble("  files in ", (printable(paths[0].parent), "bold"), f": {names}"))
 
 
-def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
+def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
     from mbsym.numerics.simulate import least_pivot
+    from mbsym.report.between_steps import passed_over, switch_line
     from mbsym.report.certificate import certificate_lines
     from mbsym.report.events_words import events_lines
     from mbsym.report.plan_words import plan_lines
@@ -65,6 +66,8 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
     yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
     yield from events_lines(run)
+    if switches := switch_line(found.passed):
+        yield "switches", switches
     if run.dynamics.natural:
         yield "energy", conservation_line(run.conservation)
     else:
@@ -77,7 +80,7 @@ def _lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if run.certificate is not None:
         for place, text in enumerate(certificate_lines(run.certificate, run.system, len(found.times))):
             yield "" if place else "certified", text
-    for text in warnings(run.conservation, run.error):
+    for text in (*warnings(run.conservation, run.error), *passed_over(run, printable(file))):
         yield "warning", text
     ratio, at = least_pivot(run.dynamics, found)
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
@@ -102,7 +105,8 @@ def _method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
         taken = spacing / ceil(spacing / setting.step * (1 - 1e-9))
         shorter = taken < setting.step * (1 - 1e-6)
         how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
-    yield "setting", f"{how}, {request.arithmetic}"
+    longest = f", steps up to {setting.longest:g}" if setting.longest is not None else ""
+    yield "setting", f"{how}{longest}, {request.arithmetic}"
 
 
 def _rest_line(found: Reduced) -> str:

@@ -76,6 +76,7 @@ def simulate(
     step: float | None = None,
     arithmetic: str = "float64",
     step_limit: int = 10_000_000,
+    max_step: float | None = None,
     invariants: bool = False,
     estimate: bool | None = None,
     whole: bool = False,
@@ -115,6 +116,7 @@ def simulate(
     request = simulation.Request(
         *(time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify),
         events=simulation.read_watch(system, _several(events), _several(stop), section, axes),
+        longest=max_step,
     )
     return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
 

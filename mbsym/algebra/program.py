@@ -220,6 +220,13 @@ class Program(Algebra):
         value = self._constant(x)
         if value is not None and name in ("abs", "sign"):
             return self.number(abs(value) if name == "abs" else (value > 0) - (value < 0))
+        if name in ("abs", "sign"):  # of x and -x one is taken, so that both have one switch
+            inner, difference = self._opposites[x.number], self.instructions[x.number]
+            if inner is None and difference.operation == "subtract" and difference.operands[0] > difference.operands[1]:
+                inner = self._node("subtract", difference.operands[::-1])
+            if inner is not None:
+                found = self._node(name, (inner.number,))
+                return found if name == "abs" else self.minus(found)
         return self._node(name, (x.number,))
 
     def rounding(self, operation: str, a: Node, b: Node) -> Node:

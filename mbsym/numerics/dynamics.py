@@ -24,6 +24,7 @@ from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
+from mbsym.numerics.features import SLIDING, Features, features, held, sign_that_holds
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, bound, substituted
@@ -38,6 +39,7 @@ class Dynamics:
         self.ring = ring if ring is not None else ring_of(self.system)
         self.inputs = ("t", *self.system.coordinates, *self.system.velocities)
         self.size = len(self.system.coordinates)
+        self._on_sides: dict[tuple[int, ...], Dynamics] = {}
 
     @cached_property
     def _programs(self) -> Programs:
@@ -57,6 +59,22 @@ class Dynamics:
         fresh = self._specialised
         accelerations = substituted(found.program, found.accelerations, fresh)
         return self._code([*(fresh.input(name) for name in self.system.velocities), *accelerations])
+
+    @cached_property
+    def features(self) -> Features:
+        """What is not smooth, or narrow, in the rates."""
+        return features(self.right_hand_side)
+
+    @property
+    def switches(self) -> Code:
+        """(t, q, q') -> what stands under signs and moduli in the rates: where one is 0 they are not smooth."""
+        return self.features.switches
+
+    def on_sides(self, sides: tuple[int, ...]) -> Dynamics:
+        """The same with the signs of its switches held, each -1 or 1, or 0 for one that stays where it changes."""
+        if sides not in self._on_sides:
+            self._on_sides[sides] = Frozen(self, sides)
+        return self._on_sides[sides]
 
     @cached_property
     def pivots(self) -> Code:
@@ -167,3 +185,36 @@ class Dynamics:
             pairs[name] = Increment(fresh, base, fresh.difference(fresh.input(name), base))
         found = fresh.evaluate(self.relative_energy.outputs[:1], pairs, Increments(fresh, pairs))
         return self._code([found[0].change], thorough=True)
+
+
+class Frozen(Dynamics):
+    """A scenario's dynamics with the signs of its switches held: smooth, and right on that side of every switch."""
+
+    def __init__(self, whole: Dynamics, sides: tuple[int, ...]) -> None:
+        super().__init__(whole.scenario, whole.ring)
+        self.whole, self.sides = whole, sides
+        # One program: what stands under a sign is known by its number there.
+        self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
+
+    def _code(self, nodes: list[Node], thorough: bool = False) -> Code:
+        found = super()._code(nodes, thorough)
+        return Code(found.program, found.inputs, held(found, self._signs))
+
+    @cached_property
+    def right_hand_side(self) -> Code:
+        """(t, q, q') -> (q', q'') on this side of every switch."""
+        found = self.whole.right_hand_side
+        return Code(found.program, found.inputs, held(found, self._signs))
+
+    @cached_property
+    def holding(self) -> Code:
+        """(t, q, q') -> (s, 0 where that is a solution); see ``sign_that_holds``."""
+        return sign_that_holds(self.whole.right_hand_side, self.whole.switches, self.sides)
+
+    @cached_property
+    def _signs(self) -> dict[int, Node]:
+        program, places = self._specialised, enumerate(self.whole.switches.outputs)
+        return {
+            node.number: self.holding.outputs[0] if self.sides[k] == SLIDING else program.number(self.sides[k])
+            for k, node in places
+        }

@@ -11,7 +11,7 @@ Energy, pivots of the mass matrix and states at a breakdown are those of the who
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.methods.stages import exact_number
 from mbsym.numerics.reduction import PROVED, Reduction, resting
 
@@ -153,6 +154,14 @@ class _Whole:
 
     def _show(self) -> None:
         self.time, self.state = self._inner.time, self._completed(self._inner.state)
+
+    @property
+    def passed(self) -> Passed | None:
+        """What the run has met on its way."""
+        found = met_by(self._inner)
+        if found is None:
+            return None
+        return Passed(found.switches, [replace(one, place=None) for one in found.narrow], found.unresolved)
 
     def advance(self, until: float) -> Any:
         self._guarded(lambda: self._inner.advance(until))

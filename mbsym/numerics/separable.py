@@ -16,6 +16,7 @@ import numpy as np
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting, Traits, Work
+from mbsym.numerics.methods.passed import Passed, together
 from mbsym.numerics.reduction import without
 from mbsym.numerics.scenario import Scenario
 
@@ -133,6 +134,11 @@ class _Beside:
         self.time = self.runs[0].time
         self.ahead = [None] * len(self.runs)
         self.state = self._joined([run.state for run in self.runs])
+
+    @property
+    def passed(self) -> Passed | None:
+        """What the parts have met on their way."""
+        return together(self.runs)
 
     def _count(self) -> None:
         """The work of all parts together."""

@@ -30,6 +30,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.passed import Passed, met_by
 
 #: No initial state is beyond this: the world measures 1e27 metres.
 LARGEST_START = 1e30
@@ -56,7 +57,7 @@ class Trajectory:
     ``change`` h(t) - h(0) in all its digits, and ``kinetic`` the kinetic energy that it is measured by, each of shape
     (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
     stopped it.  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole
-    periods seems to rest.
+    periods seems to rest.  ``passed`` is what is not smooth, or narrow, on the way; None where there is no such thing.
     """
 
     system: System
@@ -73,6 +74,7 @@ class Trajectory:
     breakdown: Breakdown | None = None
     interrupted: bool = False
     between: float = 0.0
+    passed: Passed | None = None
 
     @property
     def largest_kinetic(self) -> float:
@@ -106,6 +108,7 @@ class Integrated:
     seconds: float
     breakdown: Breakdown | None
     interrupted: bool
+    passed: Passed | None = None
 
     @property
     def whole(self) -> bool:
@@ -147,6 +150,7 @@ def simulate(
         seconds=run.seconds,
         breakdown=run.breakdown,
         interrupted=run.interrupted,
+        passed=run.passed,
     )
 
 
@@ -160,6 +164,7 @@ def integrated(
 ) -> Integrated:
     """The states alone; see ``simulate``."""
     work, breakdown, interrupted = Work(), None, False
+    run: Run | None = None
     initial = np.array([float(x) for x in dynamics.scenario.state])
     # Room for all states is taken at once, and only touched as they come; one more for the state of a breakdown.
     states = np.empty((len(initial), len(times) + 1), dtype=np.longdouble if scalar == EXTENDED else float)
@@ -192,7 +197,8 @@ def integrated(
         # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
         states[:, reached], kept = breakdown.state, np.append(kept, breakdown.time)
         reached += 1
-    return Integrated(kept, np.ascontiguousarray(states[:, :reached]), replace(work), seconds, breakdown, interrupted)
+    matrix = np.ascontiguousarray(states[:, :reached])
+    return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted, met_by(run))
 
 
 def chunks(run: Run, times: Any, bound: float) -> Iterator[Any]:

@@ -15,6 +15,7 @@ from typing import Any
 from mbsym.model.quantities import energy_unit, units_by_name
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
+from mbsym.report.between_steps import between_steps_json
 from mbsym.report.certificate import certificate_json
 from mbsym.report.events_json import events_json
 from mbsym.report.plan_words import model_json, plan_json
@@ -45,6 +46,8 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "arithmetic": run.arithmetic,
         "tolerance": found.setting.tolerance,
         "step": found.setting.step,
+        "longest_step": found.setting.longest,
+        "between_steps": between_steps_json(found.passed),
         "step_limit": found.setting.step_limit,
         "parameters": {name: float(value) for name, value in scenario.parameters.items()},
         "initial": dict(zip([*system.coordinates, *system.velocities], state, strict=True)),

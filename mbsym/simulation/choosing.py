@@ -24,7 +24,7 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
     fixed = method.traits.fixed
     if len(choices) > 1 and not fixed:
         method = Separate(moving, parts, [choice.method for choice in choices])
-    setting = Setting(None if fixed else tolerance, request.step, request.step_limit)
+    setting = Setting(None if fixed else tolerance, request.step, request.step_limit, request.longest)
     if taken is not None:
         method = taken.method(method)
     frequency = max(choice.frequency for choice in choices)

@@ -27,7 +27,8 @@ class Request:
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size;
-    ``events``: what is watched for; ``model``: how much of the mechanics is in the equations.
+    ``events``: what is watched for; ``model``: how much of the mechanics is in the equations; no step
+    is longer than ``longest``.
     """
 
     time: float
@@ -44,6 +45,7 @@ class Request:
     certify: float | None = None
     events: Watch = Watch()
     model: Model = Model()
+    longest: float | None = None
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -80,6 +82,7 @@ def wrong_with(request: Request) -> Iterator[str]:
     """What of it cannot be done, a sentence each."""
     positive = {"time": request.time, "every": request.every, "tolerance": request.tolerance, "step": request.step}
     positive["certify"] = request.certify
+    positive["max_step"] = request.longest
     for name, value in positive.items():
         if value is not None and not (isfinite(value) and value > 0):
             yield f"{name} must be positive, not {value}"
@@ -101,3 +104,5 @@ def wrong_with(request: Request) -> Iterator[str]:
         yield f"{request.method} chooses its steps by a tolerance, not by a step"
     if fixed and request.tolerance is not None:
         yield f"{request.method} takes steps of one length, no tolerance"
+    if fixed and request.longest is not None:
+        yield f"{request.method} takes steps of one length: give a shorter step in place of max_step"

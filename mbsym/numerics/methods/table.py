@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from mbsym.numerics.methods import library, runge_kutta, symplectic, taylor
 from mbsym.numerics.methods.interface import Method
+from mbsym.numerics.methods.landing import Landing
 
 _FAMILIES: tuple[tuple[Method, ...], ...] = (
     tuple(runge_kutta.METHODS),
@@ -18,4 +19,4 @@ _FAMILIES: tuple[tuple[Method, ...], ...] = (
     tuple(library.METHODS),
 )
 
-METHODS: dict[str, Method] = {method.traits.name: method for family in _FAMILIES for method in family}
+METHODS: dict[str, Method] = {method.traits.name: Landing(method) for family in _FAMILIES for method in family}

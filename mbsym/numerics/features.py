@@ -1,0 +1,117 @@
+"""What is not smooth, or narrow, in the rates of a scenario: found in the program, not by looking at numbers.
+
+    switches   g of every sign(g) and |g|: where g changes its sign the rates jump, or have a kink
+    narrow     u of exp(u), whose peaks are where u is greatest, and which becomes a wall where u rises from far below
+               0; of tanh u, atan u and cosh u, which turn where u = 0;
+               and where u depends on t alone of 1/u and sqrt(u), which are narrow where |u| is least
+
+A step may pass over either without a sign of it: whoever integrates looks at g and u along the step.  Between two
+changes of sign the rates are smooth functions, with the signs as constants (``held``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mbsym.algebra.derivative import gradient
+from mbsym.algebra.program import Instruction, Node, Program
+from mbsym.numerics.kernels.interface import Code
+
+#: Where a function of u is narrow: at a greatest u, at u = 0, or at a least |u|.
+PEAK, TURN, DIP = "peak", "turn", "dip"
+_KINDS = {"exp": PEAK, "tanh": TURN, "atan": TURN, "cosh": TURN, "sinh": TURN, "sqrt": DIP, "divide": DIP}
+
+#: In place of a side of a switch, -1 or 1: the motion stays where it changes.
+SLIDING = 0
+
+
+@dataclass(frozen=True)
+class Features:
+    """``switches`` and ``narrow`` are (t, q, q') -> g and u; ``kinds`` are those of the latter."""
+
+    switches: Code
+    narrow: Code
+    kinds: tuple[str, ...]
+
+    @property
+    def none(self) -> bool:
+        """Whether the rates are smooth and have nothing narrow."""
+        return not self.switches.outputs and not self.kinds
+
+
+def features(code: Code) -> Features:
+    """What is not smooth, or narrow, in the outputs of a code."""
+    program = code.program
+    moving = _moving(program, code)
+    switches: dict[int, None] = {}
+    narrow: dict[int, str] = {}
+    for number in program.live(code.outputs):
+        operation, operands, _ = program.instructions[number]
+        if operation in ("abs", "sign"):
+            switches[operands[0]] = None
+        elif operation in _KINDS:
+            below = operands[-1]
+            if moving[below] and (_KINDS[operation] != DIP or moving[below] == {"t"}):
+                narrow.setdefault(below, _KINDS[operation])
+    return Features(
+        Code(program, code.inputs, tuple(program.node(number) for number in switches)),
+        Code(program, code.inputs, tuple(program.node(number) for number in narrow)),
+        tuple(narrow.values()),
+    )
+
+
+def _moving(program: Program, code: Code) -> dict[int, set[str]]:
+    """The inputs that each live instruction depends on."""
+    found: dict[int, set[str]] = {}
+    for number in program.live(code.outputs):
+        instruction: Instruction = program.instructions[number]
+        if instruction.operation == "input":
+            found[number] = {str(instruction.payload)}
+        else:
+            found[number] = set().union(*(found[operand] for operand in instruction.operands))
+    return found
+
+
+def held(code: Code, signs: Mapping[int, Node]) -> tuple[Node, ...]:
+    """The outputs with ``signs[number of g]`` in place of sign(g), and g times that in place of |g|."""
+    program = code.program
+    values: dict[int, Node] = {}
+
+    def standing(number: int, value: Node) -> Node:
+        operation, operands, _ = program.instructions[number]
+        if operation in ("abs", "sign") and operands[0] in signs:
+            sign = signs[operands[0]]
+            value = sign if operation == "sign" else program.product(sign, values[operands[0]])
+        values[number] = value
+        return value
+
+    inputs = {name: program.input(name) for name in code.inputs}
+    return tuple(program.evaluate(code.outputs, inputs, program, standing))
+
+
+def sign_that_holds(rates: Code, switches: Code, sides: tuple[int, ...]) -> Code:
+    """(t, q, q') -> s and g'(-1) - 2 g'(0) + g'(1), where g of the one sliding switch stays 0 with s for its sign,
+
+        g' = g_t + g_x . x' = a + b s = 0,    s = -a/b,
+
+    g' along the motion being linear in s where the second is 0 (Filippov, Differential equations with discontinuous
+    righthand sides, 1988, section 2.4; it is Utkin's equivalent control).  The other signs are those of ``sides``.
+    """
+    program, sliding = rates.program, switches.outputs[sides.index(SLIDING)]
+    others = {
+        node.number: program.number(side) for node, side in zip(switches.outputs, sides, strict=True) if side != SLIDING
+    }
+    slopes = gradient(program, sliding, [program.input(name) for name in rates.inputs])
+
+    def rate(side: int) -> Node:
+        signs = {**others, sliding.number: program.number(side)}
+        by_time, *by_state = held(Code(program, rates.inputs, slopes), signs)
+        for slope, speed in zip(by_state, held(rates, signs), strict=True):
+            by_time = by_time + program.product(slope, speed)
+        return by_time
+
+    below, at, above = rate(-1), rate(0), rate(1)
+    two = program.number(2)
+    sign = program.divide(program.minus(program.product(two, at)), above - below)
+    return Code(program, rates.inputs, (sign, below + above - program.product(two, at)))

@@ -1,0 +1,102 @@
+"""Narrow smooth features of a step: where a function of u(t) peaks or turns, and within which time.
+
+    exp(u)     at a greatest u, width sqrt(2/|u''|); a wall where u rises from far below 0, width WALL/|u'|
+    tanh(u)    where u = 0, width 1/|u'|; likewise atan, sinh, cosh
+    1/u        at a least |u|, width sqrt(2 |u/u''|); likewise sqrt(u)
+
+u along a step is a smooth function however narrow the feature is: it is taken by interpolation at Chebyshev's points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.crossings import Sign, nodes, passages, resolved, series
+from mbsym.numerics.features import DIP, PEAK, TURN
+from mbsym.numerics.methods.interface import Piece
+
+#: A feature whose width is a smaller part of the step than this is narrow; it is followed so many widths to each side
+#: by steps of at most one width.
+NARROW, BESIDE = 1 / 6, 8.0
+
+#: exp(-SMALL) does nothing, beside numbers of the size of 1 and their rounding; a wall exp(u) is met from there by
+#: steps in which u rises by WALL.
+SMALL, WALL = 36.0, 4.0
+
+#: A piece is halved so often to resolve a u.
+DEPTH = 4
+
+
+def met(kinds: Sequence[str], values: Callable[[Any], Any], piece: Piece) -> list[tuple[float, float, int]]:
+    """(time, width, place among the kinds) of the features that are narrow for a piece, in their order.
+
+    ``values`` maps points (1 + 2n, m) to the u, of shape (kinds, m).
+    """
+    if not kinds:
+        return []
+    found = []
+    whole = along(values, piece, piece.start, piece.end)
+    for k, kind in enumerate(kinds):
+        for start, end, known in _resolved(k, values, piece, (piece.start, piece.end), whole[k], DEPTH):
+            found += [(time, width, k) for time, width in _places(kind, start, end, known)]
+    return sorted(one for one in found if one[1] < NARROW * (piece.end - piece.start))
+
+
+def along(values: Callable[[Any], Any], piece: Piece, start: float, end: float) -> Any:
+    """The values at Chebyshev's points of a part of a piece, shape (functions, NODES)."""
+    times = nodes(start, end)
+    return values(np.vstack([times, np.asarray(piece(times), dtype=float)]))
+
+
+def _resolved(
+    k: int, values: Callable[[Any], Any], piece: Piece, span: tuple[float, float], known: Any, depth: int
+) -> list[tuple[float, float, Any]]:
+    """(start, end, u at the points) of parts in which u is its interpolant."""
+    start, end = span
+    if depth == 0 or not np.all(np.isfinite(known)) or resolved(series(known)):
+        return [(start, end, known)]
+    middle = 0.5 * (start + end)
+    found = []
+    for part in ((start, middle), (middle, end)):
+        found += _resolved(k, values, piece, part, along(values, piece, *part)[k], depth - 1)
+    return found
+
+
+def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[float, float]]:
+    """(time, width) of what a function of u does narrowly, u given at Chebyshev's points from start to end."""
+    if not np.all(np.isfinite(values)):
+        return []
+    polynomial = np.polynomial.chebyshev.Chebyshev(series(values))
+    per = 2.0 / (end - start)  # ds/dt
+    slope, bend = polynomial.deriv(), polynomial.deriv(2)
+    if kind == TURN:
+        passed, _, _ = passages(polynomial.coef, Sign(), 1e-14 * float(np.max(np.abs(values))))
+        zeros = [one.place for one in passed if one.turn]
+        widths = [1.0 / max(abs(float(slope(s))) * per, 1e-300) for s in zeros]
+        return [(float(start + 0.5 * (s + 1) * (end - start)), w) for s, w in zip(zeros, widths, strict=True)]
+    found = []
+    roots = slope.roots() if np.any(slope.coef) else np.empty(0)
+    at = np.clip(roots.real[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) < 1 + 1e-6)], -1, 1)
+    for s in at:
+        # A place at an end of the step is compared with the other end.
+        u, curvature = float(polynomial(s)), float(bend(s)) * per * per
+        time = start + 0.5 * (float(s) + 1) * (end - start)
+        if kind == PEAK and curvature < 0 and u > -SMALL and u - max(_others(values, s)) > 1:
+            found.append((time, (2.0 / -curvature) ** 0.5))
+        if kind == DIP and u * curvature > 0 and abs(u) < 0.3 * min(map(abs, _others(values, s))):
+            found.append((time, (2.0 * u / curvature) ** 0.5))
+    if kind == PEAK and not found and values[0] < -SMALL:  # a wall
+        passed, _, _ = passages(series(values + SMALL), Sign(), 1e-14)
+        for one in passed[:1]:
+            if one.turn > 0:
+                width = WALL / max(abs(float(slope(one.place))) * per, 1e-300)
+                found.append((start + 0.5 * (one.place + 1) * (end - start) + BESIDE * width, width))
+    return [(float(time), float(width)) for time, width in found]
+
+
+def _others(values: Any, s: float) -> list[float]:
+    """The values at the ends of a step, but at the one where s is."""
+    return [float(x) for x, edge in ((values[0], s <= -1 + 1e-6), (values[-1], s >= 1 - 1e-6)) if not edge]

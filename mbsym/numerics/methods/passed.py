@@ -1,0 +1,53 @@
+"""What a run meets on its way that is not smooth, or narrow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from mbsym.numerics.methods.interface import Run
+
+
+@dataclass(frozen=True)
+class Narrow:
+    """A narrow feature at ``time``, of this ``width``; ``step`` is the length of the step that passed it.
+
+    ``place`` is that of its u among ``Features.narrow``; None where a part of the system was integrated by itself.
+    """
+
+    time: float
+    width: float
+    step: float
+    place: int | None
+
+    @property
+    def followed(self) -> bool:
+        """Whether steps were short beside it."""
+        return self.step <= 2 * self.width
+
+
+@dataclass
+class Passed:
+    """What a run has met so far: times of switches, narrow features, steps in which switches may have been missed."""
+
+    switches: list[float] = field(default_factory=list)
+    narrow: list[Narrow] = field(default_factory=list)
+    unresolved: list[float] = field(default_factory=list)
+
+
+def met_by(run: Run | None) -> Passed | None:
+    """What a run has met; None of a run over what is smooth, and has nothing narrow."""
+    found: Passed | None = getattr(run, "passed", None)
+    return found
+
+
+def together(runs: Iterable[Run]) -> Passed | None:
+    """What runs of parts of a system have met."""
+    found = [one for run in runs if (one := met_by(run)) is not None]
+    if not found:
+        return None
+    return Passed(
+        sorted({time for one in found for time in one.switches}),
+        sorted((replace(x, place=None) for one in found for x in one.narrow), key=lambda x: x.time),
+        sorted(time for one in found for time in one.unresolved),
+    )

@@ -1,0 +1,202 @@
+"""Runs over switches and narrow features, by every method, against motions in closed form and independent solutions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import mbsym
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods import landing
+from mbsym.numerics.methods.interface import Breakdown, Setting
+from mbsym.numerics.methods.landing import LandingRun
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.scenario import scenario
+
+LINE = (
+    "mbsym: 1\nname: one\nbodies:\n"
+    "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\nloads:\n"
+)
+SPRING = "  - potential: x**2/2\n"
+#: For systems with forces of any kind, and how far each may be off at a tolerance of 1e-10 or a step of 0.01.
+ALLOWED = {"rk4": 2e-8, "rk45": 2e-9, "dop853": 2e-9, "taylor": 2e-9, "scipy-dop853": 1e-8, "radau": 2e-9, "bdf": 1e-6}
+
+
+def described(force: str, more: str = SPRING, start: str = "position: 0") -> str:
+    return f"{LINE}{more}  - generalized force:\n      x: {force}\ninitial: {{x: {{{start}}}}}\n"
+
+
+def run_of(name: str, text: str, **setting: Any) -> LandingRun:
+    method = METHODS[name]
+    chosen = Setting(None, 0.01) if method.traits.fixed else Setting(1e-10, **setting)
+    found = method.start(Dynamics(scenario(mbsym.loads(text).system)), chosen)
+    assert isinstance(found, LandingRun)
+    return found
+
+
+def push(t: Any) -> Any:
+    """x'' = -x + 500 between t = 5 and 5.002, by Duhamel's integral."""
+    one, other = (np.where(t > a, 1 - np.cos(t - a), 0.0) for a in (5, 5.002))
+    return 500 * (one - other)
+
+
+def bang(t: Any) -> Any:
+    """x'' = -sign x from x = 1: parabolas, a quarter of the period takes sqrt 2."""
+    quarter = math.sqrt(2)
+    s = np.mod(t, 4 * quarter)
+    near = np.where(s < quarter, s, np.where(s < 3 * quarter, s - 2 * quarter, s - 4 * quarter))
+    return np.where(np.abs(s - 2 * quarter) <= quarter, -1, 1) * (1 - near**2 / 2)
+
+
+def rubbed(t: Any) -> Any:
+    """x'' = -x - 3/10 sign x' from x = 2: half periods about +-3/10; where |x| < 3/10 at rest it sticks."""
+    half = np.minimum(np.floor(t / np.pi), 3).astype(int)
+    centre = np.where(half % 2 == 0, 0.3, -0.3)
+    amplitude = np.array([1.7, 1.1, 0.5, 0.0])[half]
+    return np.where(half == 3, -0.2, centre + np.where(half % 2 == 0, 1, -1) * amplitude * np.cos(t - np.pi * half))
+
+
+def belt(t: Any) -> Any:
+    """x'' = -x - sign(x' - 1/10)/2 from rest: slips, sticks at v = 1/10 until x = 1/2, and slips on."""
+    first = math.asin(0.2)
+    x1 = 0.5 * (1 - math.cos(first))
+    leaves = first + (0.5 - x1) / 0.1
+    later = 0.5 + 0.1 * np.sin(t - leaves)
+    return np.where(t < first, 0.5 * (1 - np.cos(t)), np.where(t < leaves, x1 + 0.1 * (t - first), later))
+
+
+def corner(t: Any) -> Any:
+    """x'' = -d|x|/dx by a potential: the same as the bang-bang."""
+    return bang(t)
+
+
+CASES: dict[str, tuple[str, Callable[[Any], Any], float]] = {
+    "a push of 2 ms": (described("500*pulse(t, 5, 5.002)"), push, 20),
+    "bang-bang": (described("-sign(x)", "", "position: 1"), bang, 30),
+    "dry friction": (described("-0.3*sign(x_dot)", SPRING, "position: 2"), rubbed, 20),
+    "stick and slip": (described("-sign(x_dot - 1/10)/2"), belt, 11),
+    "a potential with a kink": (described("0*x", "  - potential: abs(x)\n", "position: 1"), corner, 30),
+}
+
+
+@pytest.mark.parametrize("name", ALLOWED)
+@pytest.mark.parametrize("case", CASES)
+def test_every_method_keeps_its_order_over_switches(case: str, name: str) -> None:
+    text, exact, end = CASES[case]
+    if name == "bdf" and case not in ("a push of 2 ms", "dry friction"):
+        pytest.skip("of first order after every restart, which bends no curve away from a switch")
+    run = run_of(name, text)
+    times = np.linspace(0, end, 400)[1:]
+    assert np.max(np.abs(run.fill(times)[0] - exact(times))) < ALLOWED[name]
+
+
+def test_steps_end_at_switches() -> None:
+    run = run_of("dop853", CASES["a push of 2 ms"][0])
+    run.advance(20.0)
+    assert run.passed.switches == pytest.approx([5, 5.002], abs=1e-14)
+    run = run_of("rk45", CASES["bang-bang"][0])
+    run.advance(30.0)
+    quarter = math.sqrt(2)
+    assert run.passed.switches == pytest.approx([quarter * k for k in range(1, 22, 2)], abs=1e-10)
+
+
+#: A load beside the spring, from rest, and the width that it has.
+NARROW = {
+    "100*exp(-((t - 5.3)/0.001)**2)": 0.001,
+    "100*(tanh((t - 5.3)/0.001) - tanh((t - 5.304)/0.001))": 0.001,
+    "100/(1 + ((t - 5.3)/0.0005)**2)": 0.0005,
+    "30*exp(-((t - 7)/0.0002)**2)": 0.0002,
+}
+
+
+@pytest.mark.parametrize("name", ["dop853", "rk45", "radau", "taylor"])
+@pytest.mark.parametrize("load", NARROW)
+def test_a_narrow_load_is_not_stepped_over(load: str, name: str) -> None:
+    """Against Duhamel's integral x(T) = integral of sin(T - t) F(t)."""
+    run, end = run_of(name, described(load)), 12.0
+    written = load.replace("exp", "math.exp").replace("tanh", "math.tanh")
+    centre = 7 if "(t - 7)" in load else 5.302
+    points = [centre + k * NARROW[load] for k in (-40, -10, -4, 0, 4, 10, 40)]
+
+    def slope(t: float) -> float:
+        force: float = eval(written, {"math": math, "t": t})
+        return math.sin(end - t) * force
+
+    exact = quad(slope, 0, end, points=points, limit=2000, epsabs=1e-13, epsrel=1e-13)[0]
+    assert abs(exact) > 1e-4
+    assert run.advance(end)[0] == pytest.approx(exact, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["dop853", "radau", "taylor"])
+def test_a_wall_is_not_stepped_through(name: str) -> None:
+    """x'' = exp(-1000 x): by the energy v^2/2 + exp(-1000 x)/1000, and by the solution written by hand."""
+    text = described("exp(-1000*x)", "", "position: 1/2, velocity: -1")
+    state = run_of(name, text).advance(2.0)
+    assert state[1] == pytest.approx(1, abs=1e-9)
+    found = solve_ivp(
+        lambda t, y: [y[1], math.exp(-1000 * y[0])], (0, 2), [0.5, -1], method="Radau", rtol=1e-12, atol=1e-13,
+        max_step=1e-3,
+    )  # fmt: skip
+    assert state[0] == pytest.approx(found.y[0, -1], abs=2e-8)
+
+
+def test_fixed_steps_pass_a_narrow_load_and_say_so() -> None:
+    run = run_of("rk4", described("100*exp(-((t - 5.3)/0.001)**2)"))
+    run.advance(20.0)
+    assert {(round(one.time, 9), round(one.width, 9)) for one in run.passed.narrow} == {(5.3, 0.001)}
+    assert not any(one.followed for one in run.passed.narrow)
+    adaptive = run_of("dop853", described("100*exp(-((t - 5.3)/0.001)**2)"))
+    adaptive.advance(20.0)
+    assert [one.followed for one in adaptive.passed.narrow] == [True]
+
+
+def test_a_motion_that_two_frictions_would_hold_ends_by_name() -> None:
+    """Both velocities would stick at once, which one sign cannot tell: no endless loop, no guess."""
+    text = (
+        "mbsym: 1\nname: two\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}\nloads:\n"
+        "  - generalized force:\n      x: -sign(x_dot)\n      y: -sign(y_dot)\n"
+        "initial: {x: {position: 0, velocity: 1}, y: {position: 0, velocity: 2}}\n"
+    )
+    run = run_of("dop853", text)
+    with pytest.raises(Breakdown, match="hold at once") as found:
+        run.advance(5.0)
+    assert found.value.kind == landing.SWITCHING
+    assert found.value.time == pytest.approx(2)
+
+
+def test_a_kernel_of_signs_is_what_the_text_says() -> None:
+    dynamics = Dynamics(scenario(mbsym.loads(CASES["stick and slip"][0]).system))
+    assert len(dynamics.switches.outputs) == 1
+    assert dynamics.features.kinds == ()
+    smooth = Dynamics(scenario(mbsym.load("systems/double-pendulum.yaml", ()).system))
+    assert smooth.features.none
+
+
+# --- planted mistakes ---
+
+
+def test_a_dropped_switch_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(LandingRun, "_first", lambda self, piece: (piece.end, ()))
+    for case in ("a push of 2 ms", "bang-bang", "dry friction"):
+        with pytest.raises(Breakdown, match="a switch was missed"):
+            run_of("dop853", CASES[case][0]).advance(10.0)
+
+
+def test_a_switch_at_the_wrong_time_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = LandingRun._polished
+    monkeypatch.setattr(LandingRun, "_polished", lambda *arguments: right(*arguments) + 1e-3)
+    run = mbsym.simulate(mbsym.loads(CASES["bang-bang"][0]), 10, method="dop853", estimate=True)
+    assert not run.whole or run.error.largest > 1e-6  # type: ignore[union-attr]
+
+
+def test_a_feature_that_is_not_looked_for_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The better run takes no step longer than a two thousandth of the whole."""
+    monkeypatch.setattr(LandingRun, "_window", lambda self, piece: None)
+    run = mbsym.simulate(mbsym.loads(described("100*exp(-((t - 5.3)/0.02)**2)")), 20, method="taylor", estimate=True)
+    assert run.error.largest > 1e-3  # type: ignore[union-attr]
