@@ -84,6 +84,27 @@ def console(stderr: bool = False) -> Console:
     return Console(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
 
 
+#: What rich takes for a terminal though the output is none.
+_FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+#: What it drops from texts: they move a cursor.
+_CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
+
+
+def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
+    """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich."""
+    if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
+        from rich.text import Text
+
+        text = Text.assemble(*parts)
+        if indent:
+            indented(text, indent)
+        else:
+            console().print(text)
+        return
+    words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
+    print("\n".join([line.expandtabs() for line in words.translate(_CONTROLS).split("\n")]))
+
+
 def indented(text: Text, indent: int) -> None:
     """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
     from rich.padding import Padding

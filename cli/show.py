@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.text import Text
-
 from mbsym.expressions.counting import counted
-from mbsym_cli.console import console, indented, printable
+from mbsym_cli.console import printable, tell
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
@@ -23,17 +21,14 @@ _CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
 
 def show(found: Summary, path: Path, seconds: float) -> None:
     """Problems with what they gave and the seconds they took, the self-check, and where the files are."""
-    out = console()
-    out.print(Text.assemble((found.system, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim")))
+    tell((found.system, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
     for line in found.problems:
         _problem(line)
     _claims(found.claims)
     _checks(found.checks)
     if found.files:
         folder = found.files[0].parent
-        out.print(
-            Text.assemble("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
-        )
+        tell("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
 
 
 def _listed(files: Sequence[Path], folder: Path) -> list[str]:
@@ -48,7 +43,7 @@ def _listed(files: Sequence[Path], folder: Path) -> list[str]:
 def show_brief(found: Brief, name: str, width: int) -> None:
     """A run in one line; columns are as wide as they mostly are."""
     colour = _COLOURS.get(found.worst, "")
-    text = Text.assemble(
+    tell(
         (f"{printable(name):<{width}}", "bold"),
         f"  {found.problems:<8}",
         (f"  {found.self_check:<32}", colour),
@@ -56,15 +51,13 @@ def show_brief(found: Brief, name: str, width: int) -> None:
         (f"{found.seconds:7.2f} s", "dim"),
         (f"  {found.missing}" if found.missing else "", "yellow"),
     )
-    console().print(text)
 
 
 def _problem(line: Line) -> None:
-    seconds = (f"  {line.seconds:.3f} s", "dim")
-    console().print(Text.assemble("  ", (f"{line.number} {line.title}", "bold cyan"), seconds))
+    tell("  ", (f"{line.number} {line.title}", "bold cyan"), (f"  {line.seconds:.3f} s", "dim"))
     for text in line.lines:
         indent = 4 + len(text) - len(text.lstrip())
-        indented(Text(text.strip(), style="" if line.available else "yellow"), indent)
+        tell((text.strip(), "" if line.available else "yellow"), indent=indent)
 
 
 def _claims(claims: tuple[ClaimLine, ...]) -> None:
@@ -75,7 +68,7 @@ def _claims(claims: tuple[ClaimLine, ...]) -> None:
 
     words = [claim.word for claim in claims]
     counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]
-    console().print(Text(f"  claims: {', '.join(counts)}", style="bold cyan"))
+    tell((f"  claims: {', '.join(counts)}", "bold cyan"))
     width = min(28, max(len(claim.place) for claim in claims))
     for group in together(claims):
         claim = group[0]
@@ -83,16 +76,16 @@ def _claims(claims: tuple[ClaimLine, ...]) -> None:
         told = (f"{claim.title}: ", claim.outcome)
         if len(group) > 1:
             told = (f"{len(group)} claims ", claim.outcome.replace("holds", "hold", 1))
-        indented(Text.assemble(place + told[0], (told[1], _CLAIM_COLOURS[claim.word])), 4)
+        tell(place + told[0], (told[1], _CLAIM_COLOURS[claim.word]), indent=4)
         for text in claim.lines:
-            indented(Text(text.strip()), 6 + len(text) - len(text.lstrip()))
+            tell(text.strip(), indent=6 + len(text) - len(text.lstrip()))
 
 
 def _checks(checks: tuple[Check, ...]) -> None:
     if not checks:
         return
-    console().print(Text("  self-check: two independent routes each", style="bold cyan"))
+    tell(("  self-check: two independent routes each", "bold cyan"))
     width = max(len(check.name) for check in checks)
     for check in checks:
         outcome = f"{check.outcome} ({check.detail})" if check.detail else check.outcome
-        indented(Text.assemble(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome])), 4)
+        tell(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome]), indent=4)

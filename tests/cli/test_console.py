@@ -1,0 +1,55 @@
+"""What is told into a file or a pipe is what rich would have written there."""
+
+from __future__ import annotations
+
+import io
+import sys
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from rich.console import Console
+from rich.text import Text
+
+from mbsym_cli.console import tell
+
+
+def by_rich(parts: list[str], indent: int) -> str:
+    out = io.StringIO()
+    console = Console(file=out, highlight=False, soft_wrap=True, width=120)
+    text = Text.assemble(*parts)
+    if indent:
+        text = Text(" " * indent) + text
+    console.print(text)
+    return out.getvalue()
+
+
+def told(parts: list[str], indent: int) -> str:
+    out, before = io.StringIO(), sys.stdout
+    sys.stdout = out
+    try:
+        tell(*[(part, "bold") if k % 2 else part for k, part in enumerate(parts)], indent=indent)
+    finally:
+        sys.stdout = before
+    return out.getvalue()
+
+
+@given(
+    st.lists(st.text(st.characters(exclude_categories=["Cs"]), max_size=40), min_size=1, max_size=3), st.integers(0, 6)
+)
+@example(["[bold]no markup[/bold] :smile:", "tab\tand\x07bell", "x" * 300], 4)
+@example(["углы φ, ψ; ½", "", "  "], 0)
+@example(["two\nlines\tapart"], 2)
+def test_plain_lines(parts: list[str], indent: int) -> None:
+    assert told(parts, indent) == by_rich(parts, indent)
+
+
+def test_colours_where_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    from mbsym_cli.console import console
+
+    console.cache_clear()
+    try:
+        assert "\x1b[1m" in told(["a", "b"], 0)
+    finally:
+        console.cache_clear()
