@@ -25,11 +25,13 @@ from mbsym_cli.options import Options
 def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str, out: Path | None, quiet: bool) -> None:
     """Measure how many digits each quantity of FILE keeps at the extremes, and where the model breaks down.
 
-    Extremes are: states near the singularities of the chosen angles, rates from 1e-8 to 1e8, states near the
-    unperturbed motion, every positive parameter times 1e-12 to 1e12, and parameters at a border of stability.  Mass
-    matrix, forcing, accelerations, pivots, energy, Jacobian, linear matrices and eigenvalues are evaluated in float32,
-    float64 and in rigorous balls; the condition tells what no formula could keep.  Verdicts of stability are exact, or
-    "undecided".
+    Extremes are: states near singular configurations (they are found: factors of det M and their real zeros, and it is
+    told whether the coordinates fail there or the model), rates 1e-8 to 1e8 times the usual, states near the
+    unperturbed motion, every positive parameter times 1e-12 to 1e12, and parameters at a border of stability.  Nothing
+    depends on the units of the description, but for the range of float32.  Mass matrix, forcing, accelerations, pivots,
+    energy, Jacobian, linear matrices and eigenvalues are evaluated in float32, float64 and in rigorous balls; the
+    condition tells what no formula could keep.  Verdicts of stability are exact, or "undecided"; eigenvalues at the
+    given values are enclosed.
 
     Written are extremes.csv, extremes.json and extremes.svg/.png.  Exit codes: 0 done, 1 files could not be written,
     2 something is missing or wrong, 130 interrupted.

@@ -15,6 +15,7 @@ from mbsym.expressions.tree import Expression
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System
 from mbsym.numerics.extremes import Extremes
+from mbsym.numerics.singular import SingularSet
 from mbsym.numerics.trade_study import Study
 from mbsym.problems.equilibria import WITHIN, Equilibria
 
@@ -90,10 +91,16 @@ class TradeoffStudy:
 
 @dataclass(frozen=True, repr=False)
 class ExtremesStudy:
-    """Digits kept at extremes.  ``digits``: one row a quantity and rung; ``verdicts``: stability at each rung."""
+    """Digits kept at extremes.  ``digits``: one row a quantity and rung; ``verdicts``: stability at each rung.
+
+    ``singular``: one row a value of a coordinate, or point of a set, at which the mass matrix is singular; ``fails``
+    says whether the coordinates do or the model.  ``singular_complete``: it is proved that there are no others.
+    """
 
     digits: Table
     verdicts: Table
+    singular: Table
+    singular_complete: bool
     sentences: tuple[str, ...]
     left_out: tuple[str, ...]
     study: Extremes
@@ -206,7 +213,22 @@ def extremes(system: System, values: Mapping[str, Fraction | float | str], budge
             for x in found.verdicts
         ),
     )
-    return ExtremesStudy(digits, verdicts, tuple(sentences(found)), found.left_out, found)
+    where = found.singularities
+    singular = Table.of(
+        ("where", "fails", "joint", "proved"),
+        (
+            (" and ".join(f"{name} = {_label(one, number, name)}" for name in place), one.kind, one.joint, one.proved)
+            for one in (where.sets if where is not None else ())
+            for number, place in enumerate(one.places)
+        ),
+    )
+    complete = where is not None and where.complete
+    return ExtremesStudy(digits, verdicts, singular, complete, tuple(sentences(found)), found.left_out, found)
+
+
+def _label(one: SingularSet, number: int, name: str) -> str:
+    """A value of a set's coordinate, exact where it is known."""
+    return one.values[number].label if one.values else f"{float(one.places[number][name]):.12g}"
 
 
 def equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:

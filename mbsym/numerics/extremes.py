@@ -8,9 +8,10 @@ said in sentences follows from the rows and from nothing else.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Program
@@ -40,6 +41,9 @@ STEPS_PER_SECOND = 1_000_000
 
 #: Programs with more operations than this for a second of the budget are not compiled but taken step by step.
 COMPILED_PER_SECOND = 1_000
+
+#: Eigenvalues of larger linear systems are not enclosed.
+MOST_ENCLOSED = 12
 
 #: So many names are listed where time was short.
 LISTED = 8
@@ -80,7 +84,9 @@ class Compensated:
 class Extremes:
     """All rows in the order measured; ``left_out`` says what was not, and why.
 
-    ``falling`` is there where a frame falls in a Newtonian field.
+    ``falling`` is there where a frame falls in a Newtonian field.  ``eigenvalues`` are balls (``flint.acb``) that hold
+    those of the first approximation at the given ``values`` of the parameters, each with its multiplicity; none where
+    there is no first approximation or a value is irrational.
     """
 
     system: System
@@ -91,6 +97,8 @@ class Extremes:
     falling: Falling | None = None
     singularities: Singularities | None = None
     compensated: tuple[Compensated, ...] = ()
+    eigenvalues: tuple[Any, ...] = ()
+    values: Mapping[str, Fraction] = field(default_factory=dict)
 
     @property
     def ladders(self) -> tuple[tuple[str, str], ...]:
@@ -141,9 +149,10 @@ def extremes(
         left_out.append(f"out of time, raise --budget: {', '.join(shown)}")
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
-    return Extremes(
-        given.system, tuple(rungs.rows), tuple(rungs.verdicts), tuple(left_out), seconds, joined, where, rungs.pairs
-    )
+    enclosed = _enclosed(given, linear)
+    rows, verdicts, values = tuple(rungs.rows), tuple(rungs.verdicts), dict(given.parameters)
+    pairs, omitted = tuple(rungs.compensated), tuple(left_out)
+    return Extremes(given.system, rows, verdicts, omitted, seconds, joined, where, pairs, enclosed, values)
 
 
 class _Rungs:
@@ -158,11 +167,6 @@ class _Rungs:
         self.rows: list[Row] = []
         self.verdicts: list[VerdictRow] = []
         self.compensated = [Compensated("", "", 1.0, one) for one in _rates(usual)]
-
-    @property
-    def pairs(self) -> tuple[Compensated, ...]:
-        """Where kernels carry operations in pairs."""
-        return tuple(self.compensated)
 
     @property
     def late(self) -> bool:
@@ -197,6 +201,13 @@ class _Rungs:
         self.rows += [Row(*place, name, digits) for name, digits in linear.digits(probe.scenario).items()]
         if probe.assumed:
             self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
+
+
+def _enclosed(given: Scenario, linear: LinearModel | None) -> tuple[Any, ...]:
+    """The eigenvalues at the given values; nothing where they are too many to be worth it."""
+    if linear is None or linear.size > MOST_ENCLOSED:
+        return ()
+    return tuple(linear.exact_eigenvalues(given) or ())
 
 
 def _rates(arithmetic: Arithmetic) -> list[Compensation]:

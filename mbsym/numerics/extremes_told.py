@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from math import isfinite
 
 from mbsym.numerics.borders import BORDER
@@ -37,7 +39,9 @@ def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
     yield from _pairs(found)
     yield from _range(found, RATES, "Rates")
     yield from _range(found, EQUILIBRIUM, "States at distances from the unperturbed motion")
-    yield from _ratios(found)
+    yield from _ratios(found, file)
+    if found.eigenvalues:
+        yield f"Eigenvalues of the first approximation at the given values, in proved enclosures: {_roots(found)}."
     yield from _verdicts(found)
     yield from _formulas(found)
 
@@ -173,7 +177,7 @@ def _range(found: Extremes, kind: str, title: str) -> Iterator[str]:
     yield f"{places}: float64 keeps at least {worst}, float32 {coarse}."
 
 
-def _ratios(found: Extremes) -> Iterator[str]:
+def _ratios(found: Extremes, file: str) -> Iterator[str]:
     rows = [r for r in found.rows if r.kind == RATIO and r.found.bits]
     poor: dict[str, list[Row]] = {}
     fine: dict[tuple[float, ...], dict[str, float]] = {}
@@ -194,11 +198,41 @@ def _ratios(found: Extremes) -> Iterator[str]:
     for subject, lost in poor.items():
         worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
         names = ", ".join(dict.fromkeys(r.quantity for r in lost))
-        why = "the formula" if worst.found.verdict == "formula" else "the question itself"
         yield (
             f"{subject} times {worst.size:.0e}: {worst.found.digits[FLOAT64]:.1f} digits of the {worst.quantity} are "
-            f"left in float64, lost by {why} (condition {worst.found.condition:.0e}); below {GOOD:.0f} digits: {names}."
+            f"left in float64 (below {GOOD:.0f} digits: {names}), {_blame(found, worst, file)}."
         )
+
+
+def _blame(found: Extremes, row: Row, file: str) -> str:
+    """What loses the digits, and what to do about it."""
+    if row.found.verdict != "formula":
+        return f"the question itself loses them (condition {row.found.condition:.0e}), so that no formula keeps them"
+    text = f"lost by the formula (condition {row.found.condition:.0e})"
+    value = found.values.get(row.subject)
+    if value is None:
+        return text
+    changed = f"--set {row.subject}={value * Fraction(f'{row.size:e}')}"
+    if row.quantity == "eigenvalues":
+        return f"{text}; exact enclosures: mbsym extremes {file} {changed}"
+    if row.quantity == "accelerations":
+        return f"{text}; three more: mbsym simulate {file} {changed} --time 1 --arithmetic extended"
+    return text
+
+
+def _roots(found: Extremes) -> str:
+    """``[-0.25 +/- 3e-13] + [3.13 +/- 2e-13]*i``; of a conjugate pair the upper one, with +-."""
+    shown = []
+    for root in found.eigenvalues:
+        if bool(root.imag < 0):
+            continue
+        real = "" if root.real.is_zero() else root.real.str(13)
+        sign = "+-" if bool(root.imag > 0) else "+"
+        imaginary = "" if root.imag.is_zero() else f"{sign}{root.imag.str(13)}*i"
+        shown.append(f"{real} {imaginary}".strip() or "0")
+    counts = Counter(shown)
+    listed = [text if count == 1 else f"{text} ({count} times)" for text, count in counts.items()]
+    return "; ".join(listed[:LISTED]) + (f"; and {len(listed) - LISTED} more" if len(listed) > LISTED else "")
 
 
 def _verdicts(found: Extremes) -> Iterator[str]:

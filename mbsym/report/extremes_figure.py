@@ -61,7 +61,7 @@ def _drawn(found: Extremes) -> Figure:
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(numticks=8))
         axes.xaxis.set_minor_locator(NullLocator())
-        if kind in ("singular angle", "border of stability", "equilibrium"):
+        if kind in ("singular", "border of stability", "equilibrium"):
             axes.invert_xaxis()
         axes.set_ylim(-0.5, FULL[FLOAT64] + 0.8)
         axes.axhline(FEW, color=GREY, linewidth=0.8, linestyle="--")

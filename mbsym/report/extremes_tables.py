@@ -90,6 +90,25 @@ def extremes_json(found: Extremes) -> str:
         "sentences": list(sentences(found)),
         "left_out": list(found.left_out),
         "singular": _singular(found.singularities),
+        "eigenvalues": [
+            {
+                "real": float(x.real.mid()),
+                "imaginary": float(x.imag.mid()),
+                "radius": float(max(x.real.rad(), x.imag.rad())),
+            }
+            for x in found.eigenvalues
+        ],
+        "compensated": [
+            {
+                "subject": one.subject,
+                "size": one.size,
+                "operations_in_pairs": one.found.sensitive,
+                "digits_without": round(one.found.before, 2),
+                "digits_with": round(one.found.after, 2),
+                "cost": round(one.found.cost, 3),
+            }
+            for one in found.compensated
+        ],
         "rows": rows,
         "stability": verdicts,
     }

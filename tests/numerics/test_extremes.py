@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
-from flint import Ordering, arb, fmpq_mpoly_ctx
+from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx
 from jsonschema import Draft202012Validator
 
 import mbsym
@@ -346,6 +346,71 @@ def test_sentences_and_tables_follow_the_rows(whole: Any) -> None:
     assert len(content["rows"]) == len(whole.rows)
     shown = list(tables(whole))
     assert [columns[0] for columns, _ in shown] == ["extreme", "extreme"]
+
+
+def told(text: str) -> tuple[Any, list[str]]:
+    given = scenario(mbsym.loads(text).system)
+    found = extremes(given, ring_of(given.system), {}, budget=60)
+    return found, list(sentences(found, "arm.yaml"))
+
+
+ELBOW = """
+mbsym: 1
+name: A massless elbow
+bodies:
+  - {name: upper, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: 0}
+  - {name: lower, attached to: upper, rotation: {axes: [3], angles: [b]}, connection point: [1, 0, 0],
+     mass centre: [2, 0, 0], mass: 1}
+initial: {a: 1, b: 1}
+"""
+
+
+def test_the_model_is_told_from_its_coordinates(whole: Any) -> None:
+    """Stretched, a massless elbow moves without moving mass: no other coordinates are advised there."""
+    found, lines = told(ELBOW)
+    (line,) = (line for line in lines if "is singular where" in line)
+    assert line.startswith("The mass matrix is singular where b = 0 or pi, whatever else is: there the model fails")
+    assert "--sequences" not in "".join(lines)
+    (advised,) = (line for line in sentences(whole, "sat.yaml") if "is singular where" in line)
+    assert advised.endswith("mbsym extremes sat.yaml --sequences.")
+    content = json.loads(extremes_json(found))
+    assert list(Draft202012Validator(schema("extremes")).iter_errors(content)) == []
+    assert [one["fails"] for one in content["singular"]["sets"]] == ["model"]
+    assert content["singular"]["complete"]
+
+
+def test_a_search_is_not_called_a_proof(whole: Any) -> None:
+    searched = replace(whole.singularities, sets=(), complete=False, how="multiples of pi/12")
+    text = "\n".join(sentences(replace(whole, singularities=searched)))
+    assert "No singular configuration was found, which is no proof; searched were multiples of pi/12." in text
+    assert "proved" not in text.split("Rates")[0]
+
+
+@pytest.mark.parametrize("ratio", ["1", "1e-12", "1e12"])
+def test_eigenvalues_are_enclosed(ratio: str) -> None:
+    """The double pendulum at rest, by hand: l1 l2 m1 w^4 - (m1 + m2) g (l1 + l2) w^2 + (m1 + m2) g^2 = 0, w^2 > 0."""
+    given = scenario(system("double-pendulum"), {"m1": Number(F(ratio))})
+    found = extremes(given, ring_of(given.system), {}, budget=0.001)
+    found = replace(found, eigenvalues=tuple(LinearModel(Analysis(given.system)).exact_eigenvalues(given) or ()))
+    m1, g = F(ratio), F(981, 100)
+    with ctx.workprec(300):
+        a, b, c = (arb(fmpq(x.numerator, x.denominator)) for x in (m1, (m1 + 1) * g * 2, (m1 + 1) * g * g))
+        root = (b * b - 4 * a * c).sqrt()
+        squares = [(b - root) / (2 * a), (b + root) / (2 * a)]
+        upper = sorted((x.imag for x in found.eigenvalues if x.imag > 0), key=lambda x: float(x.mid()))
+        assert len(upper) == 2
+        for x, square in zip(upper, squares, strict=True):
+            assert (x * x).overlaps(square)
+            assert x.rel_accuracy_bits() > 150
+    assert "in proved enclosures" in "\n".join(sentences(found))
+
+
+def test_advice_ends_in_a_command(whole: Any) -> None:
+    """Where a formula loses digits, the parameter's exact value stands in the command."""
+    given = scenario(system("double-pendulum"))
+    lines = list(sentences(extremes(given, ring_of(given.system), {}, budget=60), "two.yaml"))
+    (line,) = (line for line in lines if line.startswith("l2 times"))
+    assert line.endswith("mbsym extremes two.yaml --set l2=1000000000000.")
 
 
 # --- sequences ---
