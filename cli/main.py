@@ -33,6 +33,7 @@ COMMANDS = {
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "orbit": Listed("orbit", "Find a periodic motion near a guess, with its multipliers."),
     "lyapunov": Listed("lyapunov", "Measure how fast neighbouring motions part."),
+    "floquet": Listed("floquet", "Judge stability where coefficients are periodic in time."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),

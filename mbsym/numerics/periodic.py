@@ -40,7 +40,7 @@ NEARLY, PATIENCE = 1e-8, 3
 SHORTEST, HALVINGS = 0.05, 4
 
 #: How strongly singular values are damped, as multiples of what is left over; tried one after the other.
-DAMPINGS = (0.01, 1e-4, 0.1, 0.0, 1.0, 10.0)
+DAMPINGS = (0.01, 0.1, 1.0, 1e-4, 0.0)
 
 #: Where the motion's speed times its period is this part of the state's size only, it rests.
 RESTING = 1e-6
@@ -158,7 +158,8 @@ def periodic_orbit(
         if here.period < SHORTEST * guess.period:
             raise NotFound(f"the period shrinks to nothing ({here.period:.3g}): near the guess there is rest only")
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
-    raise NotFound(f"no convergence: what is left over after {count + 1} steps is {best.size:.1e} of the state's size")
+    left = min(best.size, here.size)
+    raise NotFound(f"no convergence: what is left over after {count + 1} steps is {left:.1e} of the state's size")
 
 
 @dataclass(frozen=True)

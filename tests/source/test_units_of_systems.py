@@ -51,6 +51,7 @@ UNITS = {
     "satellite": {**ORBIT, "M2": "kg", "m": "kg", "m0": "kg", "l": "m", "r": "m", "Jx": MOMENTS, "Jy": MOMENTS},
     "satellite-with-damper": CARRIER,
     "satellite-with-damper-driven": CARRIER,
+    "shaken-pendulum": {"m": "kg", "l": "m", "g": "m/s^2", "h": "m", "nu": "rad/s", "c": "N*m*s", "phi": "rad"},
     "simple-pendulum": {"m": "kg", "l": "m", "J": MOMENTS, "g": "m/s^2", "b": "N*m*s/rad", "theta": "rad"},
     "spatial-arm": {**LINKS, "g": "m/s^2", "h": "m", "e": "m", "c4": "m", "s": "m"},
     "spherical-pendulum": {"m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s", "theta0": "rad"},

@@ -1,0 +1,389 @@
+"""Time-periodic first approximations: the monodromy matrix in balls, its multipliers, and what they prove.
+
+    y' = J(t) y,    J(t + T) = J(t),    Phi' = J Phi,    Phi(0) = 1,    M = Phi(T)
+
+J is the Jacobian of the equations on the unperturbed motion, as a program in t.  That it is periodic, and with which T,
+is read from the program: t must be in sines and cosines only, of arguments a t + b with rational a.  On each of N steps
+the Taylor series of Phi is summed in balls, with Lagrange's remainder: the coefficient of order K + 1 at every time of
+the step, from the Jacobian's coefficients over the whole step and from  |Phi - 1| <= exp(|J| h) - 1.  M is their
+product, a ball that contains the true matrix; so do its eigenvalues (acb_mat.eig, Rump's and van der Hoeven's methods).
+
+What follows (Lyapunov 1892; Yakubovich & Starzhinskii, Linear Differential Equations with Periodic Coefficients, 1975):
+a multiplier outside the unit circle: unstable, and so is the motion of the whole equations; all inside: asymptotically
+stable, likewise.  Where the equations follow from a Lagrangian, mu and 1/conj(mu) are multipliers together: a simple
+one whose ball meets the mirror image of no other is on the circle exactly; if all are, the first approximation is
+stable, and the whole equations are a critical case.  Anything else is undecided.
+
+Irrational numbers of the description are rounded to 256 bits before all this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from math import ceil, gcd, lcm
+from typing import Any
+
+from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
+
+from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.program import Node
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.methods.symplectic import without_potential
+from mbsym.numerics.probes import motion_state
+from mbsym.numerics.specialise import bound, substituted
+
+#: Order of the series, working precision, and how large |J| h and the fastest frequency times h may be on a step.
+ORDER, BITS, REACH = 24, 192, Fraction(1, 4)
+
+#: More steps than this, or more coordinates and velocities, are refused.
+MOST_STEPS, MOST_STATES = 20_000, 40
+
+#: Accelerations on the unperturbed motion below this are rounding of the description's numbers.
+AT_REST = Fraction(1, 10**50)
+
+
+class NotPeriodic(Exception):
+    """There is no periodic first approximation to judge; the message says why."""
+
+
+class Word(Enum):
+    """What is proved of the motion."""
+
+    UNSTABLE = "unstable"
+    ASYMPTOTICALLY_STABLE = "asymptotically stable"
+    STABLE_FIRST_APPROXIMATION = "stable in the first approximation only"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Multiplier:
+    """A ball that contains a multiplier, and bounds of its absolute value; ``on_circle``: it is 1 exactly."""
+
+    ball: acb
+    least: float
+    greatest: float
+    on_circle: bool
+
+
+@dataclass(frozen=True)
+class Judged:
+    """``monodromy`` is a matrix of balls that contains Phi(T); ``simple``: the multipliers' balls are disjoint.
+
+    ``rests`` says whether the unperturbed motion satisfies the equations as a program, or only to 50 digits.
+    """
+
+    word: Word
+    period: arb
+    frequency: Fraction
+    names: tuple[str, ...]
+    monodromy: arb_mat
+    multipliers: tuple[Multiplier, ...]
+    simple: bool
+    lagrangian: bool
+    rests: bool
+    steps: int
+
+
+def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
+    """The first approximation of the scenario's system about its unperturbed motion.
+
+    Raises NotPeriodic where there is none, where its coefficients are constant or not seen to be periodic, or where the
+    unperturbed motion is none at these values.
+    """
+    code, rests = jacobian_on_motion(dynamics)
+    frequency = common_frequency(code)
+    with ctx.workprec(bits):
+        period = 2 * arb.pi() / _ball(frequency)
+        monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
+        lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
+        multipliers, simple = _multipliers(monodromy, lagrangian)
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    word = _word(multipliers)
+    return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
+
+
+def _word(multipliers: Sequence[Multiplier]) -> Word:
+    if any(one.least > 1 for one in multipliers):
+        return Word.UNSTABLE
+    if all(one.greatest < 1 for one in multipliers):
+        return Word.ASYMPTOTICALLY_STABLE
+    if all(one.on_circle for one in multipliers):
+        return Word.STABLE_FIRST_APPROXIMATION
+    return Word.UNDECIDED
+
+
+# --- the Jacobian as a program in t ---
+
+
+def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
+    """J(t) row by row, 4 n n outputs, and whether the motion satisfies the equations as a program.
+
+    Raises NotPeriodic where the description has no unperturbed motion, or one that is none at these values.
+    """
+    state = motion_state(dynamics.scenario)
+    if state is None:
+        raise NotPeriodic("the description has no unperturbed motion (motion:)")
+    n, rhs, jacobian = dynamics.size, dynamics.right_hand_side, dynamics.jacobian
+    fresh = bound(dynamics.scenario)
+    time = fresh.input("t")
+    for place, (name, velocity) in enumerate(zip(dynamics.system.coordinates, dynamics.system.velocities, strict=True)):
+        rate = fresh.number(state[n + place])
+        fresh.bound[name] = fresh.number(state[place]) + fresh.product(rate, time)
+        fresh.bound[velocity] = rate
+    try:
+        accelerations = substituted(rhs.program, rhs.outputs[n:], fresh)
+        entries = substituted(jacobian.program, jacobian.outputs, fresh)
+    except SingularPoint as reason:
+        raise NotPeriodic(f"the equations are singular on the unperturbed motion: {reason}") from None
+    rests = all(fresh.vanishes(node) for node in accelerations)
+    if not rests:
+        _require_rest(Code(fresh, ("t",), tuple(accelerations)), dynamics)
+    return Code(fresh, ("t",), tuple(entries)), rests
+
+
+def _require_rest(code: Code, dynamics: Dynamics) -> None:
+    with ctx.workprec(BITS):
+        for at in (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7)):
+            for name, value in zip(dynamics.system.coordinates, series(code, arb_series([_ball(at)])), strict=True):
+                size = abs(_coefficient(value, 0))
+                if not size < _ball(AT_REST):
+                    told = f"at t = {float(at):g} {name} is accelerated by {float(size.mid()):.3g}"
+                    raise NotPeriodic(f"the unperturbed motion is none at these values: {told}")
+
+
+def common_frequency(code: Code) -> Fraction:
+    """2 pi/T: the greatest common divisor of the frequencies of all sines and cosines of the time.
+
+    Raises NotPeriodic where the outputs are constant, or where the time is elsewhere than in sines and cosines.
+    """
+    program = code.program
+    slopes: dict[int, Fraction] = {}
+    frequencies: dict[int, frozenset[Fraction]] = {}
+    for number in program.live(code.outputs):
+        operation, operands, _ = program.instructions[number]
+        slope = [slopes[operand] for operand in operands]
+        known = frozenset().union(*(frequencies[operand] for operand in operands)) if operands else frozenset()
+        match operation:
+            case "input" | "constant":
+                found = Fraction(int(operation == "input"))
+            case "add":
+                found = slope[0] + slope[1]
+            case "subtract":
+                found = slope[0] - slope[1]
+            case "negative":
+                found = -slope[0]
+            case "multiply":
+                found = _product_slope(program.instructions, operands, slope)
+            case "sin" | "cos":
+                found = Fraction(0)
+                known = known | ({abs(slope[0])} if slope[0] else set())
+            case _:
+                found = Fraction(0)
+                _require_no_time(any(slope))
+        slopes[number], frequencies[number] = found, known
+    _require_no_time(any(slopes[node.number] for node in code.outputs))
+    all_of_them = frozenset().union(*(frequencies[node.number] for node in code.outputs))
+    if not all_of_them:
+        raise NotPeriodic("its coefficients are constant: problem 6 judges it (mbsym run)")
+    bottom = lcm(*(one.denominator for one in all_of_them))
+    return Fraction(gcd(*(int(one * bottom) for one in all_of_them)), bottom)
+
+
+def _product_slope(instructions: Any, operands: Sequence[int], slope: Sequence[Fraction]) -> Fraction:
+    for first, second in ((0, 1), (1, 0)):
+        factor = instructions[operands[first]].payload
+        if isinstance(factor, Fraction):
+            return factor * slope[second]
+    _require_no_time(any(slope))
+    return Fraction(0)
+
+
+def _require_no_time(there: bool) -> None:
+    if there:
+        raise NotPeriodic("its coefficients are not periodic: the time is in them otherwise than in sines and cosines")
+
+
+def _traceless(code: Code) -> bool:
+    """Whether tr J vanishes as a program."""
+    size = round(len(code.outputs) ** 0.5)
+    total: Node = code.program.zero
+    for place in range(size):
+        total = total + code.outputs[place * (size + 1)]
+    return code.program.vanishes(total)
+
+
+# --- series in balls ---
+
+
+def series(code: Code, time: arb_series) -> list[Any]:
+    """The outputs as power series of balls about ``time``, to as many terms as ``ctx.cap`` allows."""
+    program = code.program
+    values: dict[int, Any] = {}
+    for number in program.live(code.outputs):
+        operation, operands, payload = program.instructions[number]
+        arguments = [values[operand] for operand in operands]
+        match operation, arguments:
+            case "constant", _:
+                assert isinstance(payload, Fraction)
+                values[number] = arb_series([_ball(payload)])
+            case "input", _:
+                values[number] = time
+            case "negative", [a]:
+                values[number] = -a
+            case "add", [a, b]:
+                values[number] = a + b
+            case "subtract", [a, b]:
+                values[number] = a - b
+            case "multiply", [a, b]:
+                values[number] = a * b
+            case "divide", [a, b]:
+                values[number] = a / b
+            case ("sinh" | "cosh" | "tanh") as name, [a]:
+                values[number] = _hyperbolic(name, a)
+            case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
+                values[number] = getattr(a, name)()
+            case name, _:
+                raise NotPeriodic(f"{name} has no power series here")
+    return [values[node.number] for node in code.outputs]
+
+
+def _hyperbolic(name: str, x: arb_series) -> arb_series:
+    up, down = x.exp(), (-x).exp()
+    if name == "tanh":
+        return (up - down) / (up + down)
+    return (up - down) / 2 if name == "sinh" else (up + down) / 2
+
+
+def _coefficient(value: arb_series, place: int) -> arb:
+    return value[place] if place < value.length() else arb(0)
+
+
+def _ball(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _matrices(code: Code, time: arb, size: int, count: int) -> list[arb_mat]:
+    """Taylor coefficients J_0 ... J_count-1 of J about every time in a ball."""
+    entries = series(code, arb_series([time, arb(1)]))
+    return [arb_mat(size, size, [_coefficient(entry, k) for entry in entries]) for k in range(count)]
+
+
+def enclosed(code: Code, period: arb, size: int, order: int = ORDER) -> tuple[arb_mat, int]:
+    """(a matrix of balls that contains Phi(T), how many steps were made), at the present working precision."""
+    if size > MOST_STATES:
+        raise NotPeriodic(f"{size} coordinates and velocities are too many; at most {MOST_STATES}")
+    cap, ctx.cap = ctx.cap, order + 2
+    try:
+        steps = _steps(code, period, size)
+        step = period / steps
+        total = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+        for number in range(steps):
+            total = _one_step(code, number * step, step, size, order) * total
+        return total, steps
+    finally:
+        ctx.cap = cap
+
+
+def _steps(code: Code, period: arb, size: int) -> int:
+    """So many that |J| h is small on each of them."""
+    parts, largest = 8, arb(0)
+    for part in range(parts):
+        (found,) = _matrices(code, (period * part / parts).union(period * (part + 1) / parts), size, 1)
+        largest = arb.max(largest, _norm(found).upper())
+    if not largest.is_finite():
+        largest = arb(64)
+    fastest = max((abs(one) for one in _frequencies(code)), default=Fraction(0))
+    wanted = ceil(float((period * arb.max(largest, _ball(fastest)) / _ball(REACH)).upper()))
+    if wanted > MOST_STEPS:
+        raise NotPeriodic(
+            f"a period would take {wanted} steps; at most {MOST_STEPS}: frequencies far apart, or a long period"
+        )
+    return max(wanted, 8)
+
+
+def _frequencies(code: Code) -> list[Fraction]:
+    """Slopes of arguments of sines and cosines that are linear in t alone."""
+    program = code.program
+    found = []
+    for number in program.live(code.outputs):
+        operation, operands, _ = program.instructions[number]
+        if operation in ("sin", "cos"):
+            inner = program.instructions[operands[0]]
+            factors = [program.instructions[one].payload for one in inner.operands]
+            found += (
+                [factor for factor in factors if isinstance(factor, Fraction)] if inner.operation == "multiply" else []
+            )
+    return found
+
+
+def _norm(matrix: arb_mat) -> arb:
+    """The greatest sum of absolute values of a row."""
+    rows = [sum((abs(entry) for entry in row), arb(0)) for row in matrix.tolist()]
+    total = rows[0]
+    for row in rows[1:]:
+        total = arb.max(total, row)
+    return total
+
+
+def _one_step(code: Code, start: arb, step: arb, size: int, order: int) -> arb_mat:
+    """Phi(start + step, start): the series about the start, and its remainder."""
+    one = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    terms = _coefficients(_matrices(code, start, size, order + 1), one, order)
+    total, power = one, arb(1)
+    for term in terms[1:]:
+        power = power * step
+        total = total + term * power
+    return total + remainder(code, start, step, size, order) * (power * step)
+
+
+def remainder(code: Code, start: arb, step: arb, size: int, order: int) -> arb_mat:
+    """Balls that contain the coefficients of order + 1 of Phi about every time of the step (Lagrange)."""
+    whole = start.union(start + step)
+    jets = _matrices(code, whole, size, order + 1)
+    growth = ((_norm(jets[0]) * step).exp() - 1).upper()
+    around = arb(0, growth)
+    near = [arb(int(i == j)) + around for i in range(size) for j in range(size)]
+    found = _coefficients(jets, arb_mat(size, size, near), order + 1)[-1]
+    if not all(entry.is_finite() for row in found.tolist() for entry in row):
+        raise NotPeriodic("the equations may be singular on the unperturbed motion: no bound over a step was found")
+    return found
+
+
+def _coefficients(jets: Sequence[arb_mat], first: arb_mat, count: int) -> list[arb_mat]:
+    """Phi_0 ... Phi_count of Phi' = J Phi:  (k + 1) Phi_k+1 = sum_i J_i Phi_k-i."""
+    found = [first]
+    for k in range(count):
+        total = jets[0] * found[k]
+        for i in range(1, k + 1):
+            total = total + jets[i] * found[k - i]
+        found.append(total * (arb(1) / (k + 1)))
+    return found
+
+
+# --- multipliers ---
+
+
+def _multipliers(monodromy: arb_mat, lagrangian: bool) -> tuple[tuple[Multiplier, ...], bool]:
+    try:
+        balls = acb_mat(monodromy).eig()
+        simple = True
+    except (ValueError, ArithmeticError):
+        balls, simple = acb_mat(monodromy).eig(multiple=True), False
+    found = []
+    for place, ball in enumerate(balls):
+        size = abs(ball)
+        on_circle = lagrangian and simple and _alone(balls, place)
+        found.append(Multiplier(ball, float(size.lower()), float(size.upper()), on_circle))
+    return tuple(sorted(found, key=lambda one: -one.greatest)), simple
+
+
+def _alone(balls: Sequence[acb], place: int) -> bool:
+    """Whether the mirror image 1/conj(mu) of a simple multiplier can be no other than itself."""
+    if balls[place].contains(0):
+        return False
+    mirrored = 1 / balls[place].conjugate()
+    return not any(mirrored.overlaps(other) for k, other in enumerate(balls) if k != place)

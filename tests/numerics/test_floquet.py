@@ -1,0 +1,151 @@
+"""Periodic first approximations against Mathieu's functions, Kapitza's pendulum and constant coefficients."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED
+from flint import arb, arb_mat, ctx
+from jsonschema import Draft202012Validator
+from scipy.special import mathieu_a, mathieu_b
+
+import mbsym
+from mbsym.numerics import floquet
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.floquet import Judged, NotPeriodic, Word, common_frequency, enclosed, jacobian_on_motion, judged
+from mbsym.numerics.flow import Flow
+from mbsym.numerics.scenario import scenario
+from mbsym.report.schemas import schema
+from mbsym.simulation import read_values
+from mbsym_cli.main import main
+
+FORCED = """
+mbsym: 1
+name: A particle in a field that changes with time
+parameters: {a: real, q: real, d: real}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: FORCE}
+motion: {x: 0}
+values: {a: 1, q: 0.2, d: 0}
+initial: {x: 1}
+"""
+MATHIEU = FORCED.replace("FORCE", "-(a - 2*q*cos(2*t))*x - d*x_dot")
+SHAKEN = SHIPPED / "shaken-pendulum.yaml"
+
+
+def dynamics(text: str | Path, **values: Any) -> Dynamics:
+    system = (mbsym.load(text) if isinstance(text, Path) else mbsym.loads(text)).system
+    exact = {name: Fraction(value) for name, value in values.items()}
+    return Dynamics(scenario(system, read_values(system, exact)))
+
+
+def verdict(text: str | Path, **values: Any) -> Word:
+    return judged(dynamics(text, **values)).word
+
+
+@pytest.mark.parametrize(
+    ("border", "below", "above"),
+    [
+        (mathieu_a(0, 0.2), Word.UNSTABLE, Word.STABLE_FIRST_APPROXIMATION),
+        (mathieu_b(1, 0.2), Word.STABLE_FIRST_APPROXIMATION, Word.UNSTABLE),
+        (mathieu_a(1, 0.2), Word.UNSTABLE, Word.STABLE_FIRST_APPROXIMATION),
+        (mathieu_b(2, 0.2), Word.STABLE_FIRST_APPROXIMATION, Word.UNSTABLE),
+        (mathieu_a(2, 0.2), Word.UNSTABLE, Word.STABLE_FIRST_APPROXIMATION),
+    ],
+)
+def test_the_borders_of_ince_and_strutt(border: float, below: Word, above: Word) -> None:
+    """x'' + (a - 2 q cos 2t) x = 0 changes its stability at Mathieu's characteristic values, at q = 0.2 to 1e-8."""
+    assert verdict(MATHIEU, a=border - 1e-8, q=0.2) is below
+    assert verdict(MATHIEU, a=border + 1e-8, q=0.2) is above
+
+
+def test_damping_moves_the_border() -> None:
+    """Inside the first tongue |a - 1| < q undamped; with damping d it begins where q > d about (a = 1)."""
+    assert verdict(MATHIEU, a=1, q=0.1, d=0.05) is Word.UNSTABLE
+    assert verdict(MATHIEU, a=1, q=0.1, d=0.2) is Word.ASYMPTOTICALLY_STABLE
+    assert verdict(MATHIEU, a=2, q=0.1, d=-0.01) is Word.UNSTABLE
+
+
+def test_the_pendulum_of_kapitza() -> None:
+    """Upright it is held if h nu > about sqrt(2 g l): nu = 44.3 at h = 0.1, l = 1, to within a few percent."""
+    assert verdict(SHAKEN, nu=42) is Word.UNSTABLE
+    assert verdict(SHAKEN, nu=47) is Word.STABLE_FIRST_APPROXIMATION
+    assert verdict(SHAKEN, nu=47, c=0.1) is Word.ASYMPTOTICALLY_STABLE
+
+
+def test_the_enclosure_contains_the_flow() -> None:
+    """The variational equations integrated in floating point: another program, another method."""
+    system = dynamics(MATHIEU, a=3, q=1)
+    found: Judged = judged(system)
+    period = float(found.period.mid())
+    _, phi = Flow(system, 1e-14).passage([0.0, 0.0], 0.0, period)
+    for i, row in enumerate(found.monodromy.tolist()):
+        for j, entry in enumerate(row):
+            assert float(entry.rad()) < 1e-12
+            assert abs(float(entry.mid()) - phi[i, j]) < 1e-11 * np.max(np.abs(phi))
+    assert found.monodromy.det().contains(1)
+
+
+def test_nothing_is_said_without_ground() -> None:
+    """On the border itself; x'' = 0.0 x with a cyclic coordinate; a growth of 1e-40 is beyond the balls' reach."""
+    zero = FORCED.replace("FORCE", "-q*cos(2*t)*x_dot")
+    assert verdict(zero) is Word.UNDECIDED  # x' = exp(-q sin(2t)/2) c: multipliers 1 and 1
+    for force, told in (
+        ("-a*x", "constant"),
+        ("-(a + t*q)*x", "not periodic"),
+        ("-(a + q*cos(t**2))*x", "not periodic"),
+        ("-a*(x - 1)*(2 + cos(t))", "motion is none"),
+    ):
+        with pytest.raises(NotPeriodic, match=told):
+            verdict(FORCED.replace("FORCE", force))
+
+
+def test_periods_are_read_from_the_program() -> None:
+    code, rests = jacobian_on_motion(dynamics(FORCED.replace("FORCE", "-(a + q*cos(3*t/2) + q*exp(sin(t + 1)))*x")))
+    assert rests
+    assert common_frequency(code) == Fraction(1, 2)
+
+
+def low_order(order: int) -> tuple[arb_mat, arb_mat]:
+    """The monodromy matrix with so few terms that the remainder counts, and a good one."""
+    code, _ = jacobian_on_motion(dynamics(MATHIEU, a=3, q=1))
+    with ctx.workprec(192):
+        period = arb.pi()
+        return enclosed(code, period, 2, order)[0], enclosed(code, period, 2)[0]
+
+
+def test_the_remainder_is_what_makes_it_an_enclosure(monkeypatch: pytest.MonkeyPatch) -> None:
+    coarse, good = low_order(3)
+    assert coarse.overlaps(good)
+    assert all(a.contains(b) for a, b in zip(coarse.entries(), good.entries(), strict=True))
+    monkeypatch.setattr(floquet, "remainder", lambda code, start, step, size, order: arb_mat(size, size))
+    coarse, _ = low_order(3)
+    assert not coarse.overlaps(good)
+
+
+def test_a_transposed_jacobian_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    matrices = floquet._matrices
+    monkeypatch.setattr(floquet, "_matrices", lambda *given: [one.transpose() for one in matrices(*given)])
+    with pytest.raises(AssertionError):
+        test_the_enclosure_contains_the_flow()
+
+
+def test_the_command(tmp_path: Path) -> None:
+    done = CliRunner().invoke(main, ["floquet", str(SHAKEN), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert "of the motion itself that proves nothing" in done.output
+    content = json.loads((tmp_path / "floquet.json").read_text())
+    Draft202012Validator(schema("floquet")).validate(content)
+    assert content["verdict"] == "stable_first_approximation"
+    assert content["frequency"] == "60"
+    done = CliRunner().invoke(main, ["floquet", str(SHIPPED / "double-pendulum.yaml"), "--out", str(tmp_path)])
+    assert done.exit_code == 1
+    assert "constant" in done.output
