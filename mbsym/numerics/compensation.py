@@ -70,7 +70,8 @@ def states_about(given: Scenario, inputs: Sequence[str]) -> list[list[float]] | 
     None for inputs that a scenario does not have.
     """
     system = given.system
-    start = dict(zip((*system.coordinates, *system.velocities), map(float, given.state), strict=True)) | {"t": 0.0}
+    state = map(float, (*given.positions, *given.velocities))
+    start = dict(zip((*system.coordinates, *system.velocities), state, strict=True)) | {"t": 0.0}
     if any(name not in start for name in inputs):
         return None
     angles = angle_denominators(system)
