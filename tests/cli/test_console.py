@@ -35,7 +35,7 @@ def told(parts: list[str], indent: int) -> str:
 
 
 @given(
-    st.lists(st.text(st.characters(exclude_categories=["Cs"]), max_size=40), min_size=1, max_size=3), st.integers(0, 6)
+    st.lists(st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=40), min_size=1, max_size=3), st.integers(0, 6)
 )
 @example(["[bold]no markup[/bold] :smile:", "tab\tand\x07bell", "x" * 300], 4)
 @example(["углы φ, ψ; ½", "", "  "], 0)
