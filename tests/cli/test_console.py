@@ -14,6 +14,10 @@ from rich.text import Text
 from mbsym_cli.console import tell
 
 
+#: Without control characters: a tab goes on from how wide things are, which plain text does not know.
+WORDS = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=40)
+
+
 def by_rich(parts: list[str], indent: int) -> str:
     out = io.StringIO()
     console = Console(file=out, highlight=False, soft_wrap=True, width=120)
@@ -34,9 +38,7 @@ def told(parts: list[str], indent: int) -> str:
     return out.getvalue()
 
 
-@given(
-    st.lists(st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=40), min_size=1, max_size=3), st.integers(0, 6)
-)
+@given(st.lists(WORDS, min_size=1, max_size=3), st.integers(0, 6))
 @example(["[bold]no markup[/bold] :smile:", "tab\tand\x07bell", "x" * 300], 4)
 @example(["углы φ, ψ; ½", "", "  "], 0)
 @example(["two\nlines\tapart"], 2)
