@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
     from mbsym.numerics.ensemble import Ensemble
+    from mbsym.numerics.plan import Plan
     from mbsym.simulation import Simulation
     from mbsym.simulation.sensitivities import Sensitivities
     from mbsym.studies import EquilibriaStudy, ExtremesStudy, TradeoffStudy
@@ -38,6 +39,7 @@ __all__ = [
     "extremes",
     "load",
     "loads",
+    "plan",
     "sensitivities",
     "simulate",
     "tradeoff",
@@ -85,6 +87,7 @@ def simulate(
     stop: str | Iterable[str] = (),
     section: str | None = None,
     axes: str = "",
+    accuracy: float | Mapping[str, float] | None = None,
 ) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
@@ -106,6 +109,10 @@ def simulate(
     end the run, ``run.events.ended`` the one that did.  ``section`` is a surface, ``run.section.points`` the states
     there in the ``axes`` (``"q2, q2_dot"``).
 
+    ``accuracy`` is the tolerable relative error, of everything or by quantity (``{"theta": 1e-6, "energy": 1e-9}``):
+    model, method, tolerance and arithmetic are chosen for it (what is given by hand is kept); ``run.plan`` says how, and
+    ``run.plan.bound.total`` what the error is at most.
+
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
@@ -118,7 +125,40 @@ def simulate(
         events=simulation.read_watch(system, _several(events), _several(stop), section, axes),
         longest=max_step,
     )
-    return simulation.simulate(scenario(system, simulation.read_values(system, values or {})), request)
+    given = scenario(system, simulation.read_values(system, values or {}))
+    if accuracy is None:
+        return simulation.simulate(given, request)
+    from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately
+
+    return simulate_accurately(given, request, read_accuracy(system, accuracy), settled_by(request))
+
+
+def plan(
+    source: str | Path | Analysis,
+    time: float,
+    accuracy: float | Mapping[str, float],
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    samples: int | None = None,
+    every: float | None = None,
+) -> Plan:
+    """What ``simulate(..., accuracy=...)`` would choose, and what its error would be at most; nothing else is run.
+
+        >>> import mbsym
+        >>> found = mbsym.plan("systems/simple-pendulum.yaml", 10, 1e-6)
+        >>> found.reached, found.bound.total <= 1e-6, [share.name for share in found.bound.shares]
+        (True, True, ['model', 'integration', 'arithmetic'])
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where the motion does not
+    come to the end.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation.accurate import plan_for, read_accuracy
+
+    system = _system(source)
+    given = scenario(system, simulation.read_values(system, values or {}))
+    return plan_for(given, simulation.Request(time, samples, every), read_accuracy(system, accuracy))[0]
 
 
 def ensemble(

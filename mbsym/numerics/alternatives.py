@@ -13,6 +13,9 @@ from mbsym.numerics.plan import Accuracy, Alternative
 ORDERS = {"dop853": 8, "rk45": 5, "taylor": 16}
 USUAL_ORDER = 5
 
+#: No tolerance is coarser.
+COARSEST = 1e-2
+
 
 def alternatives(
     bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
@@ -33,7 +36,7 @@ def _other(
         (trial.seconds * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
     ]
     judged = _judged(found, max(found.ratio / wanted, 1e-9), bench.spacing)
-    if judged is not None:
+    if judged is not None and not _tried_in_vain(bench, found, judged[2], wanted):
         options.append((judged[0] * price, judged[1], False))
     if not options:
         why = f"{found.scalar} has no finer tolerance"
@@ -49,18 +52,24 @@ def _model(tried: Sequence[Tried], factor: float) -> Tried:
     return min((one for one in tried if one.ratio <= PART * factor), key=lambda one: one.operations)
 
 
-def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str] | None:
-    """(seconds, label) of the same method with an error ``worse`` times smaller; None beyond its arithmetic.
+def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -> bool:
+    """Whether a setting at least as fine was not good enough: what is short is stepped over, whatever slopes say."""
+    same = [one for one in bench.trials if one.method is found.method and one.scalar == found.scalar]
+    return any(one.fineness <= fineness and one.ratio > wanted for one in same)
 
-    A step is no longer than the ``spacing`` of the rows.
+
+def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
+    """(seconds, label, tolerance or step) of the same method with an error ``worse`` times smaller.
+
+    None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows.
     """
     traits = found.method.traits
     if found.setting.step is not None:
         order = traits.order or USUAL_ORDER
         growth = max(worse ** (1 / order), found.fineness / spacing)
-        return found.seconds * growth, f"{traits.name} h={found.fineness / growth:.1g}"
-    tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
+        return found.seconds * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
+    tolerance = min(found.fineness * worse ** (-1 / USUAL_SLOPE), COARSEST)
     if tolerance < finest(found.method, found.scalar):
         return None
     growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
-    return found.seconds * growth, f"{traits.name} {min(tolerance, 1e-2):.0e}"
+    return found.seconds * growth, f"{traits.name} {tolerance:.0e}", tolerance

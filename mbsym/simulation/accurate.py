@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from math import isfinite
 
+from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.choice import rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.plan import Accuracy, Plan
+from mbsym.numerics.models import Model
+from mbsym.numerics.plan import ENERGY, Accuracy, Plan
 from mbsym.numerics.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.request import Request, wrong_with
@@ -24,6 +26,28 @@ PLANNING = "planning"
 
 #: A run that its estimate finds too coarse is repeated with so much finer a setting, so many times at most.
 FINER, REPEATS = {"tolerance": 0.1, "step": 0.5}, 2
+
+
+def read_accuracy(system: System, given: float | Mapping[str, float]) -> Accuracy:
+    """An error for everything, or errors by quantity.  Raises ValueError with everything that is wrong."""
+    errors = given if isinstance(given, Mapping) else {"accuracy": given}
+    known = (*system.coordinates, *system.velocities, ENERGY)
+    wrong = [f"there is no quantity {name}" for name in errors if isinstance(given, Mapping) and name not in known]
+    wrong += [f"{name}: an error is between 0 and 0.5, not {x}" for name, x in errors.items() if not 0 < x <= 0.5]
+    if wrong or not errors:
+        raise ValueError("; ".join(wrong) or "no error is given")
+    return Accuracy(None, dict(given)) if isinstance(given, Mapping) else Accuracy(float(given))
+
+
+def settled_by(request: Request) -> Pins:
+    """What a request settles by itself; float64, which it has by default, settles nothing."""
+    return Pins(
+        model=None if request.model == Model() else request.model,
+        method=None if request.method == "auto" else request.method,
+        tolerance=request.tolerance,
+        step=request.step,
+        scalar=None if request.arithmetic == "float64" else request.arithmetic,
+    )
 
 
 def plan_for(

@@ -210,6 +210,49 @@ def test_quantities_by_name_have_errors_of_their_own() -> None:
     assert np.max(np.abs(found.trajectory.drift)) <= 1e-11
 
 
+PULSE = """
+mbsym: 1
+name: A mass on a spring, struck for a thousandth of a second
+parameters: {m: positive, k: positive}
+bodies:
+  - name: mass
+    attached to: 0
+    coordinates: [x]
+    connection point: [x, 0, 0]
+    mass: m
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - generalized force: {x: 1000*exp(-((t - 7.3)/0.001)**2)}
+values: {m: 1, k: 1}
+initial: {x: {position: 1, velocity: 0}}
+"""
+
+
+def test_a_short_push_is_not_stepped_over_and_no_coarser_setting_is_said_to_do() -> None:
+    """x = cos t + 1000 w sqrt(pi) exp(-w^2/4) sin(t - 7.3) when the push is over, w = 0.001."""
+    given, times = described(PULSE), np.linspace(0, 10, 1001)
+    plan = planned(given, Accuracy(1e-6), times)
+    assert plan.reached
+    after = times > 7.4
+    push = np.sqrt(np.pi) * np.exp(-(0.001**2) / 4) * np.sin(times - 7.3)
+    true = np.cos(times) + push
+    error = np.max(np.abs(run_of(given, plan, times)[0] - true)[after]) / np.max(np.abs(true[after]))
+    assert error <= plan.bound.total
+    assert plan.more is not None
+    assert plan.more.seconds is None or plan.more.seconds >= 0.9 * plan.seconds
+
+
+def test_the_python_interface_plans_and_runs() -> None:
+    plan = mbsym.plan(mbsym.loads(PENDULUM, ()), 10, {"theta": 1e-5})
+    assert [bound.quantity for bound in plan.bounds] == ["theta"]
+    run = mbsym.simulate(mbsym.loads(PENDULUM, ()), 10, accuracy=1e-7, samples=501)
+    assert run.plan is not None
+    assert run.plan.reached
+    assert np.max(np.abs(run["theta"] - pendulum_angle(run.times, 2.0))) / 2 <= run.plan.bound.total <= 1e-7
+    with pytest.raises(ValueError, match="no quantity phi; theta: an error is between 0 and 0.5"):
+        mbsym.plan(mbsym.loads(PENDULUM, ()), 10, {"phi": 1e-5, "theta": 2.0})
+
+
 # --- planted lies ---
 
 
