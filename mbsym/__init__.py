@@ -110,8 +110,8 @@ def simulate(
     there in the ``axes`` (``"q2, q2_dot"``).
 
     ``accuracy`` is the tolerable relative error, of everything or by quantity (``{"theta": 1e-6, "energy": 1e-9}``):
-    model, method, tolerance and arithmetic are chosen for it (what is given by hand is kept); ``run.plan`` says how, and
-    ``run.plan.bound.total`` what the error is at most.
+    model, method, tolerance and arithmetic are chosen for it (what is given by hand is kept); ``run.plan`` says how,
+    and ``run.plan.bound.total`` what the error is at most.
 
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.

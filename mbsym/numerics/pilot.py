@@ -82,7 +82,8 @@ class Bench:
     ``times`` are those at which runs are compared, ``shown`` the rows that are asked for and timed (all of them among
     ``times`` unless they are very many); ``targets`` the tolerable errors of coordinates, velocities and energy, shape
     (2n + 1,), inf where any is.  ``complete`` makes of a method one that shows whole states.
-    ``reference`` holds the quantities of a run whose own error is ``known`` (rho).
+    ``reference`` holds the quantities of a run whose own error is ``known`` (rho); no step is to be longer than
+    ``longest``.
     """
 
     dynamics: Dynamics
@@ -93,6 +94,7 @@ class Bench:
     scale: Any = None
     reference: Any = None
     known: float = 0.0
+    longest: float | None = None
     trials: list[Trial] = field(default_factory=list)
 
     @property
@@ -108,6 +110,8 @@ class Bench:
     def run(self, method: Method, scalar: str, setting: Setting, often: bool = False) -> Trial:
         """A run, judged where there is a reference.  Raises Breakdown, Unusable."""
         complete = self.complete(method)
+        if self.longest is not None:
+            setting = replace(setting, longest=min(setting.longest or self.longest, self.longest))
         # Steps of one length end at every row: between rows there is nothing to compare.
         times = self._rows if method.traits.fixed else self.times
         found = rows(complete, self.dynamics, setting, times, scalar)

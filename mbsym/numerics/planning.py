@@ -70,6 +70,7 @@ class Pins:
     step: float | None = None
     scalar: str | None = None
     whole: bool = False
+    longest: float | None = None
 
     @property
     def kinds(self) -> frozenset[str]:
@@ -110,7 +111,7 @@ def planned(
     resting = None if pins.whole or model.taken.model.linear else _resting(model.dynamics)
     worth, goal, too_simple = worth_of(scene, model.taken)
     complete, parts = _completing(model.dynamics, resting, pins, model.taken.model.linear)
-    bench = Bench(model.dynamics, scene.times, times, worth, complete, scene.scale)
+    bench = Bench(model.dynamics, scene.times, times, worth, complete, scene.scale, longest=pins.longest)
     watch("a run to measure by")
     first = _first_tolerance(scene)
     stick = yardstick(bench, _base(choice), first, goal)

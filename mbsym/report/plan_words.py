@@ -143,6 +143,7 @@ def repeating_options(request: Request) -> list[str]:
     found += ["--method", request.method]
     found += ["--tolerance", _number(request.tolerance)] if request.tolerance is not None else []
     found += ["--step", _number(request.step)] if request.step is not None else []
+    found += ["--max-step", _number(request.longest)] if request.longest is not None else []
     found += ["--arithmetic", request.arithmetic] if request.arithmetic != "float64" else []
     found += ["--gravity", str(request.model.gravity)] if request.model.gravity is not None else []
     found += ["--linear"] if request.model.linear else []

@@ -66,7 +66,7 @@ def plan_for(
         raise ValueError("; ".join(wrong))
     frequency = rates(Dynamics(scenario))[1]
     times = sample_times(replace(request, step=None), frequency, scenario.system)
-    plan = planned(scenario, accuracy, times, replace(pins, whole=request.whole), watch)
+    plan = planned(scenario, accuracy, times, replace(pins, whole=request.whole, longest=request.longest), watch)
     rows = None if request.every is not None else len(times)
     settled = replace(
         request,

@@ -249,7 +249,7 @@ def test_the_python_interface_plans_and_runs() -> None:
     assert run.plan is not None
     assert run.plan.reached
     assert np.max(np.abs(run["theta"] - pendulum_angle(run.times, 2.0))) / 2 <= run.plan.bound.total <= 1e-7
-    with pytest.raises(ValueError, match="no quantity phi; theta: an error is between 0 and 0.5"):
+    with pytest.raises(ValueError, match="no quantity phi; theta: an error is between"):
         mbsym.plan(mbsym.loads(PENDULUM, ()), 10, {"phi": 1e-5, "theta": 2.0})
 
 
