@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import click
 
-from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, complain, read_description
-from mbsym_cli.ensemble_run import answers, spread
-from mbsym_cli.files import folder_for, obstacle
-from mbsym_cli.options import Options
+from mbsym_cli.console import INTERRUPTED, complain
+from mbsym_cli.files import folder_for
 from mbsym_cli.simulation_certify import certify_options
-from mbsym_cli.simulation_choice import choice_options, with_goal
+from mbsym_cli.simulation_choice import choice_options
+from mbsym_cli.simulation_command import simulated
+from mbsym_cli.simulation_continue import continue_options
 from mbsym_cli.simulation_events import watch_options
-from mbsym_cli.simulation_many import Many, many_options, read_many
+from mbsym_cli.simulation_many import Many, many_options
 from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
-from mbsym_cli.simulation_request import Flags, read_request
-from mbsym_cli.simulation_run import run
+from mbsym_cli.simulation_request import Flags
 
 
 @click.command("simulate")
@@ -31,6 +27,7 @@ from mbsym_cli.simulation_run import run
 @many_options
 @certify_options
 @watch_options
+@continue_options
 @output_options
 def command(file: Path, span: Span, way: Way, many: Many, output: Output, **further: Group) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
@@ -63,6 +60,11 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
     --accuracy 1e-6 chooses order of gravity, linear or nonlinear, parameters to drop, method, tolerance, arithmetic;
     prints one bound, and the command that repeats the run.  --method, --tolerance, --gravity, ... settle a part of it.
 
+    --continue goes on from the last state of an earlier run of the same description and values, in its arithmetic, with
+    its method and tolerance unless others are given; the table holds the rows of both (in float64).  Steps begin anew
+    there: the numbers are those of one run in one go within the tolerance, or, where that run ended at the end of a
+    step of fixed length, but for rounding.
+
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
     ...-partial.  Exit codes: 0 done, 1 not written, 2 wrong, 3 ended early or not accurate enough, 130 interrupted.
 
@@ -78,42 +80,13 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
       mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
       mbsym simulate systems/double-pendulum.yaml --time 5 --certify 1e-12
       mbsym simulate systems/satellite.yaml --time 20 --accuracy 1e-6 --plan
+      mbsym simulate systems/double-pendulum.yaml --time 120 --continue reports/double-pendulum/simulation.json
     """
     folder = folder_for(file, output.out)
     flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
         texts = typed(span, way, output)
-        sys.exit(_command(file, folder, span.settings, texts, flags, many, further))
+        sys.exit(simulated(file, folder, span.settings, texts, flags, many, further))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
-
-
-def _command(
-    file: Path,
-    folder: Path,
-    settings: Sequence[str],
-    texts: Mapping[str, str | None],
-    flags: Flags,
-    many: Many,
-    further: Mapping[str, Group],
-) -> int:
-    """Reads everything, complains about everything, then simulates."""
-    system = read_description(file)
-    asked = Options()
-    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
-    wanted = read_request(system, texts, flags, asked)
-    for group in further.values():
-        wanted = replace(wanted, request=group.added(wanted.request, system, asked))
-    varied, sensitive = read_many(many, given, wanted, asked)
-    wanted = with_goal(further["choosing"], system, wanted, settings, bool(many.vary or many.sensitivity), asked)
-    if asked.refused(None if system is None else file) or given is None:
-        return BAD_INPUT
-    reason = obstacle(folder)
-    if reason:
-        complain(file, f"the results cannot be written: {reason}")
-        return FAILED
-    if varied is not None:
-        return spread(file, folder, given, overrides, varied, wanted, asked)
-    code = run(file, folder, given, wanted, asked)
-    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)

@@ -85,11 +85,6 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
     )
     if method is not None:
         _check_method(system, request, texts, asked)
-    if step is not None and end is not None and step <= end:
-        spacing = every if every is not None else end / (samples - 1) if samples is not None else step
-        if step > spacing * (1 + 1e-9):
-            message = f"rows {spacing:g} apart are asked for, with steps of {step:g}: there is nothing between steps"
-            asked.complain("--step", "conflicting-options", message, f"--every {step:g} gives a row a step")
     return Asked(request, formats, flags.quiet)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, pi
+from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import time_unit, unit_of, with_unit
@@ -56,6 +58,9 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
             f", of which {len(found.times)} up to t = {with_unit(f'{found.times[-1]:.9g}', unit)}, where it was stopped"
         )
     yield "time", f"0 to {with_unit(f'{request.time:g}', unit)}, {len(chosen.times)} samples{reached}"
+    if request.earlier is not None:
+        begin = with_unit(f"{request.earlier.time:.9g}", unit)
+        yield "continued", f"from t = {begin}; {counted(len(request.earlier.times), 'row', 'rows')} before it"
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
     if chosen.parts:
@@ -101,12 +106,17 @@ def _method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if setting.step is None:
         how = f"tolerance {setting.tolerance:g} per step"
     else:
-        spacing = float(chosen.times[1] - chosen.times[0])
-        taken = spacing / ceil(spacing / setting.step * (1 - 1e-9))
-        shorter = taken < setting.step * (1 - 1e-6)
-        how = f"step {setting.step:g}" + (f", shortened to {taken:.6g} to end at every row" if shorter else "")
+        how = f"step {setting.step:g}" + _between(chosen.times, setting.step)
     longest = f", steps up to {setting.longest:g}" if setting.longest is not None else ""
     yield "setting", f"{how}{longest}, {request.arithmetic}"
+
+
+def _between(times: Any, step: float) -> str:
+    """How rows that no step ends at came about."""
+    passed = np.asarray(times[:-1]) / step
+    if np.allclose(passed, np.round(passed), rtol=1e-12, atol=1e-6):
+        return ""
+    return "; rows between the ends of steps by the polynomial that fits q, q', q'' there"
 
 
 def _rest_line(found: Reduced) -> str:

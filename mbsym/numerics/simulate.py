@@ -123,13 +123,15 @@ def simulate(
     times: Sequence[float],
     scalar: str = "float64",
     watch: Callable[[float], None] = lambda t: None,
+    before: Any = None,
 ) -> Trajectory:
     """x(t) for t in ``times`` (increasing, the first is 0) by a method, with its energies.
 
-    ``watch`` is told the time reached.  Never raises Breakdown or KeyboardInterrupt: both end the trajectory early.
+    ``watch`` is told the time reached; ``before`` are states (2n, k) at the first k times that are known already, of
+    which the last is where the run begins.  Never raises Breakdown or KeyboardInterrupt: both end the trajectory early.
     Raises Unusable where the method does not apply to the system.
     """
-    run = integrated(dynamics, method, setting, times, scalar, watch)
+    run = integrated(dynamics, method, setting, times, scalar, watch, before)
     energies = _energies(dynamics, np.vstack([run.times, run.states]), scalar)
     defined = np.all([np.isfinite(row.astype(float)) for row in energies], axis=0)
     if not np.all(defined):
@@ -161,24 +163,28 @@ def integrated(
     times: Sequence[float],
     scalar: str = "float64",
     watch: Callable[[float], None] = lambda t: None,
+    before: Any = None,
 ) -> Integrated:
     """The states alone; see ``simulate``."""
     work, breakdown, interrupted = Work(), None, False
     run: Run | None = None
     initial = np.array([float(x) for x in dynamics.scenario.state])
+    known = initial[:, None] if before is None else before
     # Room for all states is taken at once, and only touched as they come; one more for the state of a breakdown.
     states = np.empty((len(initial), len(times) + 1), dtype=np.longdouble if scalar == EXTENDED else float)
-    states[:, 0], reached = initial, 1
+    reached = known.shape[1]
+    states[:, :reached] = known
+    begin = float(times[reached - 1])
     started = time.perf_counter()
     try:
-        found = _at_once(dynamics, initial)
+        found = _at_once(dynamics, known[:, -1].astype(float), begin)
         if found is not None:
             raise found
-        run = method.start(dynamics, setting, scalar)
+        run = method.start(dynamics, setting, scalar, None if before is None else known[:, -1], begin)
         work = run.work
         started = time.perf_counter()
-        states[:, 0] = run.state
-        for rows in chunks(run, np.asarray(times, dtype=float)[1:], _bound(initial)):
+        states[:, reached - 1] = run.state
+        for rows in chunks(run, np.asarray(times, dtype=float)[reached:], _bound(initial)):
             states[:, reached : reached + rows.shape[1]] = rows
             reached += rows.shape[1]
             watch(float(times[reached - 1]))
@@ -264,28 +270,28 @@ def _bound(initial: Any) -> float:
     return LARGEST * max(1.0, float(np.max(np.abs(initial), initial=0.0)))
 
 
-def _at_once(dynamics: Dynamics, initial: Any) -> Breakdown | None:
+def _at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Breakdown | None:
     """What is wrong with the initial state itself: there the right-hand side must exist."""
     if not np.all(np.abs(initial) < LARGEST_START):
-        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST_START:g}", 0.0, initial)
-    point = np.concatenate(([0.0], initial))
+        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST_START:g}", begin, initial)
+    point = np.concatenate(([begin], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
-    singular = _vanishing(dynamics, 0.0, initial, _neighbours(initial), SINGULAR_AT_ONCE)
+    singular = _vanishing(dynamics, begin, initial, _neighbours(initial, begin), SINGULAR_AT_ONCE)
     if singular:
-        return Breakdown(SINGULAR, singular, 0.0, initial)
+        return Breakdown(SINGULAR, singular, begin, initial)
     if np.all(np.isfinite(rates)):
         return None
     if np.any(np.isnan(rates)):
-        return Breakdown(UNDEFINED, "the accelerations at the initial state are no numbers", 0.0, initial)
-    return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", 0.0, initial)
+        return Breakdown(UNDEFINED, "the accelerations at the initial state are no numbers", begin, initial)
+    return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", begin, initial)
 
 
-def _neighbours(state: Any) -> Any:
+def _neighbours(state: Any, time: float) -> Any:
     """(t, q, q') in columns: some states not far from a state, the same ones every time."""
     n = len(state)
     moved = np.sin(np.outer(np.arange(1, n + 1), np.arange(1, 5)))  # any numbers between -1 and 1
-    return np.vstack([np.zeros(4), state[:, None] + 0.1 * moved * (1 + np.abs(state[:, None]))])
+    return np.vstack([np.full(4, time), state[:, None] + 0.1 * moved * (1 + np.abs(state[:, None]))])
 
 
 def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:

@@ -12,6 +12,8 @@ from importlib.metadata import PackageNotFoundError, version
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from mbsym.model.quantities import energy_unit, units_by_name
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
@@ -33,7 +35,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
     """The file's text; ``files`` are those that belong to it."""
     system, found, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
     state = [float(x) for x in scenario.state]
-    traits = chosen.method.traits
+    traits, earlier = chosen.method.traits, run.request.earlier
     content: dict[str, Any] = {
         "format": FORMAT,
         "system": system.name,
@@ -41,7 +43,8 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),
         "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},
-        "reached": {"time": float(found.times[-1]), "samples": len(found.times)},
+        "reached": {"time": float(found.times[-1]), "samples": len(found.times), "state": _last(found)},
+        "continued": None if earlier is None else {"from": earlier.time, "samples": len(earlier.times)},
         "method": {"name": traits.name.lower(), "title": traits.title, "why": chosen.why},
         "arithmetic": run.arithmetic,
         "tolerance": found.setting.tolerance,
@@ -92,6 +95,13 @@ def _resting(found: Reduced | None) -> dict[str, Any] | None:
     return known | (
         {"operations": dict(zip(("whole", "reduced"), found.operations, strict=True))} if found.proved else {}
     )
+
+
+def _last(found: Trajectory) -> dict[str, Any]:
+    """The last state to the last bit; numbers of more digits than JSON's readers keep are text."""
+    names, state = [*found.system.coordinates, *found.system.velocities], found.states[:, -1]
+    exact = [np.format_float_scientific(x) for x in state] if state.dtype == np.longdouble else map(float, state)
+    return dict(zip(names, exact, strict=True))
 
 
 def _ended(found: Trajectory) -> dict[str, Any] | None:

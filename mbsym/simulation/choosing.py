@@ -42,8 +42,14 @@ def _choice(dynamics: Dynamics, request: Request, tolerance: float) -> Choice:
     if request.method == "auto":
         return choose(dynamics, tolerance, request.time, request.arithmetic)
     decay, frequency = rates(dynamics)
-    return Choice(METHODS[request.method], "as asked for", decay, frequency)
+    return Choice(METHODS[request.method], _asked(request), decay, frequency)
 
 
 def _words(choice: Choice) -> tuple[str, str]:
     return choice.why, choice.measured
+
+
+def _asked(request: Request) -> str:
+    """Why a method that has a name in the request is there."""
+    earlier = request.earlier
+    return "as in the earlier run" if earlier is not None and earlier.method == request.method else "as asked for"

@@ -13,6 +13,7 @@ from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
+from mbsym.simulation.earlier import Earlier
 from mbsym.simulation.watching import Watch
 
 #: The local error unless asked for otherwise.
@@ -28,7 +29,8 @@ class Request:
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size;
     ``events``: what is watched for; ``model``: how much of the mechanics is in the equations; no step
-    is longer than ``longest``.
+    is longer than ``longest``; ``earlier``: the run that it goes on from,
+    whose rows come first.
     """
 
     time: float
@@ -46,6 +48,7 @@ class Request:
     events: Watch = Watch()
     model: Model = Model()
     longest: float | None = None
+    earlier: Earlier | None = None
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
@@ -90,6 +93,8 @@ def wrong_with(request: Request) -> Iterator[str]:
         yield f"samples must be 2 at least, not {request.samples}"
     if request.samples is not None and request.every is not None:
         yield "samples and every exclude each other"
+    if request.earlier is not None and not request.time > request.earlier.time:
+        yield f"time must be beyond {request.earlier.time:.9g}, where the earlier run ended"
     if request.step_limit < 1:
         yield f"step_limit must be 1 at least, not {request.step_limit}"
     if request.arithmetic not in TOLERANCE:

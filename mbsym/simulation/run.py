@@ -71,7 +71,8 @@ def simulate(
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
     with stage(INTEGRATING):
-        found = integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch)
+        known = {} if request.earlier is None else {"before": request.earlier.states}
+        found = integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, **known)
     happened = None
     if watching is not None:
         found, happened = watching.happened(found)

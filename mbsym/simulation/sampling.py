@@ -17,6 +17,9 @@ SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
 
 def sample_times(request: Request, frequency: float, system: System) -> Any:
     """Times from 0 to the end, the end included: a hundred a period of the fastest oscillation, within bounds."""
+    if request.earlier is not None:
+        further = request.earlier.further(request.time, request.every, request.samples)
+        return np.concatenate((request.earlier.times, further))
     if request.every is not None:
         times = np.arange(ceil(request.time / request.every * (1 - 1e-12)) + 1) * request.every
         times[-1] = request.time
@@ -27,7 +30,7 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
     fitting = min(max(SAMPLES, int(min(wanted, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
     if request.step is None:
         return np.linspace(0.0, request.time, fitting)
-    # A method of fixed step knows nothing between its steps: rows stand at whole numbers of them, and at the end.
+    # A polynomial knows less than a method of fixed step: rows stand at whole numbers of steps, and at the end.
     steps = max(1, ceil(request.time / request.step * (1 - 1e-12)))
     apart = max(1, ceil(steps / (fitting - 1)))
     return np.append(np.arange(0, steps, apart) * request.step, request.time)

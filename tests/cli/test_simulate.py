@@ -704,15 +704,22 @@ def test_a_fixed_step_is_the_step_that_is_taken(method: str, step: str, order: i
     assert 0.6 * 2**order < errors[0] / errors[1] < 1.6 * 2**order
 
 
-def test_there_is_nothing_between_fixed_steps(tmp_path: Path) -> None:
-    words = ("--time", 1, "--method", "rk4", "--format", "csv", "--out", tmp_path)
-    for rows in (("--every", "0.01"), ("--samples", "101")):
-        done = mbsym(SHIPPED / "double-pendulum.yaml", *words, *rows, "--step", "0.05")
-        assert done.exit_code == 2
-        assert "rows 0.01 apart are asked for, with steps of 0.05" in done.stderr
-    done = mbsym(SHIPPED / "double-pendulum.yaml", *words, "--every", "0.1", "--step", "0.03")
-    assert done.exit_code == 0
-    assert "step 0.03, shortened to 0.025 to end at every row" in done.stdout
+def test_rows_between_fixed_steps_cost_no_steps(tmp_path: Path) -> None:
+    """A step stays what it is asked for, however close the rows; where rows lie between, it is said."""
+    words = ("--time", 1, "--method", "rk4", "--format", "csv")
+    steps, ends = set(), []
+    for k, rows in enumerate((("--every", "0.01"), ("--samples", "101"), ("--every", "0.05"), ("--samples", "11"))):
+        done = mbsym(SHIPPED / "double-pendulum.yaml", *words, *rows, "--step", "0.05", "--out", tmp_path / str(k))
+        assert done.exit_code == 0, done.output
+        assert ("rows between the ends of steps by the polynomial" in done.stdout) == (k < 2)
+        steps.add(summary(tmp_path / str(k))["work"]["steps"])
+        ends.append(table(tmp_path / str(k) / "trajectory.csv"))
+    assert steps == {20}
+    for name in ("theta1", "theta2_dot"):
+        assert len({one[name][-1] for one in ends}) == 1
+        assert np.allclose(ends[0][name][::5], ends[2][name], rtol=0, atol=1e-14)
+    done = mbsym(SHIPPED / "double-pendulum.yaml", *words, "--every", "0.1", "--step", "0.03", "--out", tmp_path)
+    assert "step 0.03; rows between the ends of steps" in done.stdout
 
 
 def test_the_state_at_a_step_limit_is_kept(tmp_path: Path) -> None:

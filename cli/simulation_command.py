@@ -1,0 +1,50 @@
+"""What ``mbsym simulate`` does with its options: reads them all, complains of them all, and hands over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from mbsym_cli.assignments import given_numbers
+from mbsym_cli.console import BAD_INPUT, FAILED, complain, read_description
+from mbsym_cli.ensemble_run import answers, spread
+from mbsym_cli.files import obstacle
+from mbsym_cli.options import Options
+from mbsym_cli.simulation_choice import with_goal
+from mbsym_cli.simulation_continue import check_values
+from mbsym_cli.simulation_many import Many, read_many
+from mbsym_cli.simulation_options import Group
+from mbsym_cli.simulation_request import Flags, read_request
+from mbsym_cli.simulation_run import run
+
+
+def simulated(
+    file: Path,
+    folder: Path,
+    settings: Sequence[str],
+    texts: Mapping[str, str | None],
+    flags: Flags,
+    many: Many,
+    further: Mapping[str, Group],
+) -> int:
+    """The exit code of one command."""
+    system = read_description(file)
+    asked = Options()
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
+    wanted = read_request(system, texts, flags, asked)
+    for group in further.values():
+        wanted = replace(wanted, request=group.added(wanted.request, system, asked))
+    check_values(wanted.request, given, asked)
+    varied, sensitive = read_many(many, given, wanted, asked)
+    wanted = with_goal(further["choosing"], system, wanted, settings, bool(many.vary or many.sensitivity), asked)
+    if asked.refused(None if system is None else file) or given is None:
+        return BAD_INPUT
+    reason = obstacle(folder)
+    if reason:
+        complain(file, f"the results cannot be written: {reason}")
+        return FAILED
+    if varied is not None:
+        return spread(file, folder, given, overrides, varied, wanted, asked)
+    code = run(file, folder, given, wanted, asked)
+    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)
