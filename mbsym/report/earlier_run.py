@@ -45,7 +45,8 @@ def read_earlier(path: Path, system: System) -> Earlier:
     if not isinstance(state, dict) or list(state) != names:
         raise Unfit("its last state is not that of these coordinates")
     arithmetic, method = content["arithmetic"], content["method"]["name"]
-    if arithmetic not in TOLERANCE or method not in METHODS:
+    method = "auto" if method == "parts" else method  # parts by different methods are found again
+    if arithmetic not in TOLERANCE or method not in ("auto", *METHODS):
         raise Unfit(f"there is no method {method} in {arithmetic}")
     kind = np.longdouble if arithmetic == EXTENDED else float
     last = np.array([_number(value, kind) for value in state.values()])
