@@ -13,7 +13,6 @@ from rich.text import Text
 
 from mbsym_cli.console import tell
 
-
 #: Without control characters: a tab goes on from how wide things are, which plain text does not know.
 WORDS = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=40)
 
