@@ -7,17 +7,23 @@ import os
 import sys
 import threading
 
-from mbsym_cli.main import main
+#: As shells count Ctrl-C; ``mbsym_cli.console.INTERRUPTED``, which is not there before everything is imported.
+INTERRUPTED = 130
 
 
 def command() -> None:
     """Runs the command that ``sys.argv`` names, and ends the process with its exit code."""
     try:
+        from mbsym_cli.main import main
+
         main()
     except SystemExit as ended:
         if ended.code is None or isinstance(ended.code, int):
             _end(ended.code or 0)
         raise
+    except KeyboardInterrupt:  # before the command began or after it ended: else it tells what has been written
+        print("interrupted", file=sys.stderr)
+        sys.exit(INTERRUPTED)
 
 
 def _end(code: int) -> None:

@@ -70,3 +70,27 @@ def test_output_that_nobody_takes_is_told() -> None:
         )
     assert done.returncode == 1
     assert "standard output cannot be written" in done.stderr
+
+
+WHILE_IT_LOADS = """
+class Interrupts:
+    def find_spec(self, name, path=None, target=None):
+        if name == "mbsym_cli.main":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupts())
+"""
+
+
+def test_interrupted_while_modules_load() -> None:
+    done = ended("--version", before=WHILE_IT_LOADS)
+    assert done.returncode == 130
+    assert "interrupted" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+
+
+def test_the_code_of_an_interruption_is_that_of_the_command() -> None:
+    from mbsym_cli import console, process
+
+    assert process.INTERRUPTED == console.INTERRUPTED
