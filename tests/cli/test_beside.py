@@ -122,3 +122,24 @@ def test_a_run_with_help_writes_the_same_bytes(tmp_path: Path) -> None:
     assert len(files) >= 20
     assert files == sorted(path.relative_to(helped_) for path in helped_.rglob("*") if path.is_file())
     assert all((alone / file).read_bytes() == (helped_ / file).read_bytes() for file in files)
+
+
+@pytest.mark.parametrize(("running", "cores", "wanted"), [(1, 2, True), (2, 2, True), (3, 2, False), (1, 1, False)])
+def test_help_only_where_a_core_is_idle(
+    running: int, cores: int, wanted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Beside, "allowed", True)
+    monkeypatch.setattr(module, "_running", lambda: running)
+    monkeypatch.setattr(module.os, "sched_getaffinity", lambda _: set(range(cores)))
+    monkeypatch.setattr(module.threading, "active_count", lambda: 1)
+    assert helped() is wanted
+
+
+def test_no_help_for_a_process_that_holds_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Beside, "allowed", True)
+    monkeypatch.setattr(module, "_running", lambda: 1)
+    monkeypatch.setattr(module.os, "sched_getaffinity", lambda _: {0, 1})
+    monkeypatch.setattr(module.threading, "active_count", lambda: 1)
+    assert helped()
+    monkeypatch.setattr(module, "MOST_MEMORY", 10**6)
+    assert not helped()
