@@ -665,6 +665,13 @@ class Ring(Algebra):
             self._jumps[index] = {name for name in self._derivatives if not self.derivative(x, name).is_zero()}
         return self._gens[index]
 
+    @property
+    def kinked(self) -> bool:
+        """Whether formulas hold a sign or modulus that may have either side: they may vanish on one side alone, so that
+        no number of states shows that they vanish.
+        """
+        return any(g.kind == "function" and g.name in ("abs", "sign") for g in self.generators[: self.spare])
+
     def _absolute(self, x: Polynomial) -> Polynomial:
         """|x| with |x|^2 = x^2 and d|x| = sign(x) dx."""
         x = self.reduce(x)
@@ -873,7 +880,7 @@ class Ring(Algebra):
         source = random.Random(20240229)
         free = {g.name for k, g in enumerate(self.generators) if k not in self._nonnegative}
         with ctx.workprec(400):
-            for attempt in range(8 if any(g.name in ("abs", "sign") for g in self.generators[: self.spare]) else 4):
+            for attempt in range(8 if self.kinked else 4):
                 values = {name: fmpq(source.randint(1, 99), 64) for name in self.names()}
                 if attempt > 3:  # beyond kinks formulas are others
                     signs = {name: source.choice((1, -1)) for name in values if name in free}

@@ -179,7 +179,10 @@ def _term_holds(ring: Ring, term: Polynomial, found: Sequence[str]) -> bool:
 def _without_influence(work: Work, read: Sequence[str]) -> list[str]:
     """Those whose value makes no difference to q'' at random states, in balls of ``PRECISION`` bits."""
     forward = work.forward
-    size = len(forward.program.live(forward.accelerations))
+    live = forward.program.live(forward.accelerations)
+    size = len(live)
+    if any(forward.program.instructions[number].operation in ("abs", "sign") for number in live):
+        return []  # what makes no difference at some states may make one beyond a jump
     if size * (len(read) + 1) * STATES > INSTRUCTIONS:
         return []
     left = list(read)

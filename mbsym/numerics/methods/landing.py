@@ -41,6 +41,9 @@ BLUR = 1e-13
 #: Switches so close to each other, relative to the time, that nothing moves between them; so many end the run.
 TOGETHER, MOST_TOGETHER = 1e-12, 24
 
+#: No step is longer, relative to the time: where nothing moves until it is pushed, steps would grow without end.
+FAR = 100.0
+
 #: A step is shortened so often for what it would pass.
 MOST_WINDOWS = 40
 
@@ -165,8 +168,8 @@ class LandingRun:
         place, turned = self._first(piece)
         return piece, place, turned
 
-    def _bound(self, until: float | None) -> float | None:
-        bound = inf if until is None else until
+    def _bound(self, until: float | None) -> float:
+        bound = self.time + FAR * (1.0 + abs(self.time)) if until is None else until  # at rest steps know no bound
         if self._longest is not None:
             bound = min(bound, self.time + self._longest)
         for window in self._windows:
@@ -174,9 +177,9 @@ class LandingRun:
                 bound = min(bound, window.start)
             elif self.time < window.end:
                 bound = min(bound, max(self.time + window.longest, np.nextafter(self.time, inf)))
-        return None if bound == inf else bound
+        return bound
 
-    def _inner_step(self, bound: float | None) -> Piece:
+    def _inner_step(self, bound: float) -> Piece:
         """A step of the run on these sides, from the state where this run is."""
         assert self._sides is not None
         run = self._run(self._sides)

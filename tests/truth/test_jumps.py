@@ -1,0 +1,75 @@
+"""The truth suite, jumps and kinks: what is not said of forces that come late, of dry friction and of corners."""
+
+from __future__ import annotations
+
+import pytest
+
+import mbsym
+from mbsym.algebra.failures import Failure
+from mbsym.analysis import Analysis
+
+PLANE = (
+    "mbsym: 1\nname: plane\nbodies:\n"
+    "  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}\nloads:\n"
+)
+
+
+def loaded(loads: str, motion: str = "motion: {x: 0, y: 0}\n") -> Analysis:
+    return mbsym.loads(PLANE + loads + motion)
+
+
+#: Momentum along 2 (y) is conserved until the force comes, or on one side of a corner only.
+BROKEN = [
+    "  - potential: x**2/2\n  - generalized force:\n      y: 3*step(t - 5)\n",
+    "  - potential: x**2/2\n  - generalized force:\n      y: 3*pulse(t, 50, 51)\n",
+    "  - potential: x**2/2\n  - generalized force:\n      y: step(x - 9)\n",
+    "  - potential: x**2/2\n  - generalized force:\n      y: (abs(x) - x)/2\n",
+    "  - potential: x**2/2 + (abs(y - 7) + y - 7)\n",
+]
+
+
+@pytest.mark.parametrize("loads", BROKEN)
+def test_no_momentum_is_conserved_until_something_comes(loads: str) -> None:
+    names = [item.name for item in loaded(loads).integrals]
+    assert not any("axis 2" in name or name.endswith(" y") for name in names)
+
+
+def test_the_energy_of_a_corner_is_conserved() -> None:
+    """x'' = -sign x: |x| + v^2/2 is continuous, and constant between corners."""
+    analysis = loaded("  - potential: abs(x) + y**2/2\n")
+    assert any("energy" in item.name for item in analysis.integrals)
+
+
+@pytest.mark.parametrize(
+    "loads",
+    [
+        "  - generalized force:\n      x: -sign(x_dot) - x\n",  # a whole interval is at rest
+        "  - rayleigh: abs(x_dot)\n  - potential: x**2/2\n",
+        "  - potential: abs(x) + y**2/2\n",
+        "  - generalized force:\n      x: -step(x)\n",
+    ],
+)
+@pytest.mark.parametrize("number", [5, 6])
+def test_nothing_is_linearised_at_a_jump(loads: str, number: int) -> None:
+    stage = loaded(loads).stage(number)
+    assert stage.failure is not None
+    assert "jump" in str(stage.failure) or "kink" in str(stage.failure)
+
+
+@pytest.mark.parametrize("force", ["-sign(x_dot)", "-x_dot*abs(x_dot) - sign(x)", "step(x - 1) - x/2"])
+def test_equilibria_are_not_called_complete_where_forces_jump(force: str) -> None:
+    text = (
+        "mbsym: 1\nname: line\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\nloads:\n"
+        f"  - potential: x**4/4 - x**2/2\n  - generalized force:\n      x: {force}\n"
+    )
+    with pytest.raises(Failure, match=r"jump|sign"):
+        mbsym.equilibria(mbsym.loads(text))
+
+
+def test_a_push_that_comes_late_is_no_rest() -> None:
+    """y rests until t = 5 and is accelerated then: y = 3 (t - 5)^2/2."""
+    text = PLANE + BROKEN[0] + "initial: {x: {position: 1}, y: {position: 0}}\n"
+    run = mbsym.simulate(mbsym.loads(text), 10)
+    assert run["y"][-1] == pytest.approx(37.5, abs=1e-8)
+    assert run.conservation.standing.conserved is not True
