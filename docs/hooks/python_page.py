@@ -47,7 +47,7 @@ _RESULTS: dict[type, tuple[str, ...]] = {
     ),
     studies.Table: (),
     studies.TradeoffStudy: ("runs", "models", "advice", "reference_error"),
-    studies.ExtremesStudy: ("digits", "verdicts", "sentences", "left_out"),
+    studies.ExtremesStudy: ("digits", "verdicts", "singular", "singular_complete", "sentences", "left_out"),
     studies.EquilibriaStudy: ("table", "complete", "remarks"),
 }
 

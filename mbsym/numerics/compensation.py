@@ -2,7 +2,7 @@
 
 An operation k with value v_k is rounded by a relative u; that moves output i by at most
 
-    c_ik = u |df_i/dv_k v_k|,     in parts of s_i, the largest |f_i| over the states looked at
+    c_ik = u |df_i/dv_k v_k|,     in parts of s_i = max(|f_i|, 1e-3 of its largest at the states looked at)
 
 (one reverse sweep over the program for each output, with values of 300 bits).  Operations with c_ik beyond
 ``SENSITIVE`` are carried as pairs (``mbsym.algebra.compensated``).  That is kept where it is measured to be better:
@@ -38,6 +38,9 @@ UNIT, FULL = 2.0**-53, 15.95
 #: Parts of an output that a loss may be before it is looked at (a bound), and an operation's share that makes it
 #: sensitive.
 WORTH_LOOKING, SENSITIVE = 1e-9, 2e-14
+
+#: An output is measured by itself, but at least by this part of its largest value at the states.
+SMALL = 1e-3
 
 #: A kernel that keeps so many digits is good enough; otherwise so many have to be gained.
 ENOUGH, GAIN = 11.0, 1.0
@@ -96,7 +99,7 @@ def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequenc
     if len(live) > MOST_OPERATIONS:
         return None
     wanted = [code.outputs[i].number for i in outputs]
-    if all(_bounded(program, live, code.inputs, state, wanted) for state in states):
+    if _bounded([_running(program, live, code.inputs, state, wanted) for state in states], wanted):
         return None
     try:
         looked = [_values(code, live, state) for state in states]
@@ -125,10 +128,30 @@ def compensated_code(given: Scenario, code: Code, outputs: Sequence[int]) -> Com
 # --- in plain floats -------------------------------------------------------------------------------------------------
 
 
-def _bounded(
+Bounds = tuple[dict[int, float], dict[int, float]]
+
+
+def _bounded(found: Sequence[Bounds | None], wanted: Sequence[int]) -> bool:
+    """Whether running error bounds show every output to keep its digits at all states."""
+    known = [one for one in found if one is not None]
+    if len(known) < len(found):
+        return False
+    for k in wanted:
+        largest = max((abs(v[k]) for v, _ in known), default=0.0)
+        if not isfinite(largest):
+            return False
+        if any(not e[k] <= WORTH_LOOKING * max(abs(v[k]), SMALL * largest) for v, e in known):
+            return False
+    return True
+
+
+def _running(
     program: Program, live: Sequence[int], inputs: Sequence[str], state: Sequence[float], wanted: Sequence[int]
-) -> bool:
-    """Whether a running error bound shows every output to keep its digits at a state; no number is no reason."""
+) -> Bounds | None:
+    """Values and running error bounds of the wanted numbers; None where there is no number.
+
+    Functions beyond sine, cosine and root are not looked at: then all is said to be well.
+    """
     place = {name: i for i, name in enumerate(inputs)}
     v: dict[int, float] = {}
     e: dict[int, float] = {}
@@ -163,12 +186,11 @@ def _bounded(
                 v[number], e[number] = -a, ea
                 continue
             else:
-                return True  # other functions: not looked at
+                return dict.fromkeys(wanted, 1.0), dict.fromkeys(wanted, 0.0)
             v[number], e[number] = x, error + UNIT * abs(x)
     except (ArithmeticError, ValueError):
-        return False
-    largest = max((abs(v[k]) for k in wanted), default=0.0)
-    return isfinite(largest) and all(e[k] <= WORTH_LOOKING * max(abs(v[k]), 1e-3 * largest) for k in wanted)
+        return None
+    return {k: v[k] for k in wanted}, {k: e[k] for k in wanted}
 
 
 # --- with many bits --------------------------------------------------------------------------------------------------
@@ -198,10 +220,11 @@ def _sensitive(
     chosen: set[int] = set()
     floats = [{number: float(x.mid()) for number, x in known.items()} for known in values]
     for output in wanted:
-        size = max(abs(known[output]) for known in floats)
-        if not size > 0:
+        largest = max(abs(known[output]) for known in floats)
+        if not largest > 0:
             continue
         for known in floats:
+            size = max(abs(known[output]), SMALL * largest)
             for number, slope in _slopes(program, live, known, output).items():
                 if UNIT * abs(slope * known[number]) > SENSITIVE * size:
                     chosen.add(number)
@@ -249,14 +272,15 @@ def _digits(
     wanted: Sequence[int],
     outputs: Sequence[int],
 ) -> float:
-    """The fewest digits of any output, in parts of its size over the states."""
+    """The fewest digits of any output at any of the states."""
     run, fewest = stepwise(code, FLOAT64), FULL
-    sizes = {k: max(abs(float(known[k].mid())) for known in values) for k in wanted}
+    largest = {k: max(abs(float(known[k].mid())) for known in values) for k in wanted}
     for state, known in zip(states, values, strict=True):
         with np.errstate(all="ignore"):
             found = np.asarray(run(np.array(state)), dtype=float)
         for i, k in zip(outputs, wanted, strict=True):
-            error = _apart(float(found[i]), known[k]) / sizes[k] if sizes[k] > 0 else 0.0
+            size = max(abs(float(known[k].mid())), SMALL * largest[k])
+            error = _apart(float(found[i]), known[k]) / size if size > 0 else 0.0
             fewest = min(fewest, -log10(error) if 0 < error < inf else (FULL if error == 0 else 0.0))
     return max(0.0, fewest)
 

@@ -199,9 +199,14 @@ def _ratios(found: Extremes, file: str) -> Iterator[str]:
         worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
         names = ", ".join(dict.fromkeys(r.quantity for r in lost))
         yield (
-            f"{subject} times {worst.size:.0e}: {worst.found.digits[FLOAT64]:.1f} digits of the {worst.quantity} are "
+            f"{subject} times {worst.size:.0e}: {worst.found.digits[FLOAT64]:.1f} digits of the {_called(worst)} are "
             f"left in float64 (below {GOOD:.0f} digits: {names}), {_blame(found, worst, file)}."
         )
+
+
+def _called(row: Row) -> str:
+    """``accelerations``, ``matrix M``."""
+    return f"matrix {row.quantity}" if row.quantity in ("M", "D", "G", "K", "N") else row.quantity
 
 
 def _blame(found: Extremes, row: Row, file: str) -> str:
