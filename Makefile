@@ -79,6 +79,7 @@ consumers: $(READY)
 
 bench: robot-data
 	$(BIN)/python tests/bench/run.py
+	$(BIN)/python tests/bench/rows_bench.py
 
 # What can be made again; reports are the user's.
 clean:
