@@ -25,9 +25,13 @@ if TYPE_CHECKING:
 
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
+    from mbsym.numerics.adjoint import Gradient
     from mbsym.numerics.ensemble import Ensemble
+    from mbsym.numerics.floquet import Judged
+    from mbsym.numerics.lyapunov import Exponents
     from mbsym.numerics.plan import Plan
     from mbsym.simulation import Simulation
+    from mbsym.simulation.motions import PeriodicMotion
     from mbsym.simulation.sensitivities import Sensitivities
     from mbsym.studies import EquilibriaStudy, ExtremesStudy, TradeoffStudy
 
@@ -37,8 +41,12 @@ __all__ = [
     "ensemble",
     "equilibria",
     "extremes",
+    "floquet",
+    "gradient",
     "load",
     "loads",
+    "lyapunov",
+    "orbit",
     "plan",
     "sensitivities",
     "simulate",
@@ -230,6 +238,95 @@ def sensitivities(
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance)
     return derived(scenario(system, read), request, tuple(names), read)
+
+
+def gradient(
+    source: str | Path | Analysis,
+    time: float,
+    functional: str,
+    names: Iterable[str],
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+) -> Gradient:
+    """The derivatives of one number at the end by many parameters and initial values at once (adjoint equations).
+
+        >>> import mbsym
+        >>> found = mbsym.gradient("systems/double-pendulum.yaml", 2, "l1*sin(theta1)", ["m1", "m2", "theta1"])
+        >>> sorted(found.by)
+        ['m1', 'm2', 'theta1']
+
+    ``functional`` is an expression in coordinates, velocities and parameters.  Raises DescriptionError, ValueError,
+    ``mbsym.numerics.scenario.Incomplete``, Breakdown where the motion ends early.
+    """
+    from mbsym import simulation
+    from mbsym.simulation.motions import gradient_of
+
+    system = _system(source)
+    return gradient_of(system, simulation.read_values(system, values or {}), functional, tuple(names), time)
+
+
+def orbit(
+    source: str | Path | Analysis,
+    period: float,
+    *,
+    keep: str = "auto",
+    turns: Mapping[str, int] | None = None,
+    values: Mapping[str, Fraction | float | str] | None = None,
+) -> PeriodicMotion:
+    """A periodic motion near the initial state and near ``period``: ``mbsym orbit``.
+
+        >>> import mbsym
+        >>> found = mbsym.orbit("systems/double-pendulum.yaml", 2.6, values={"theta1": 0.3, "theta2": 0.12})
+        >>> found.orbit.multipliers.shape, found.states.shape
+        ((4,), (4, 401))
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.periodic.NotFound``.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation.motions import find_orbit
+
+    system = _system(source)
+    return find_orbit(scenario(system, simulation.read_values(system, values or {})), period, keep, turns)
+
+
+def lyapunov(
+    source: str | Path | Analysis,
+    time: float,
+    *,
+    count: int | None = None,
+    every: float | None = None,
+    values: Mapping[str, Fraction | float | str] | None = None,
+) -> Exponents:
+    """Lyapunov exponents over ``time``, the largest first, with their uncertainty: ``mbsym lyapunov``.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation.motions import lyapunov_exponents
+
+    system = _system(source)
+    given = scenario(system, simulation.read_values(system, values or {}))
+    return lyapunov_exponents(given, time, every, count)
+
+
+def floquet(source: str | Path | Analysis, *, values: Mapping[str, Fraction | float | str] | None = None) -> Judged:
+    """What the multipliers of a time-periodic first approximation prove: ``mbsym floquet``.
+
+        >>> import mbsym
+        >>> mbsym.floquet("systems/shaken-pendulum.yaml", values={"nu": 40}).word.value
+        'unstable'
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.floquet.NotPeriodic``.
+    """
+    from mbsym import simulation
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.floquet import judged
+    from mbsym.numerics.scenario import scenario
+
+    system = _system(source)
+    return judged(Dynamics(scenario(system, simulation.read_values(system, values or {}))))
 
 
 def tradeoff(

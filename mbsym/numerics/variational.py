@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.derivative import directional, gradient, jacobian
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.tree import Expression
 from mbsym.numerics.dynamics import Dynamics
@@ -62,9 +63,15 @@ class Variational(Dynamics):
     """The motion of ``base`` with ``directions`` of change: a state (x, y_1, ..., y_k) of 2n (1 + k) numbers.
 
     ``base`` may be ``Parametrised``; its free parameters have the scenario's values here.
+
+    Raises NoClosedForm where the rates are not smooth: the columns would miss what the jumps do to them.
     """
 
     def __init__(self, base: Dynamics, directions: Sequence[Direction]) -> None:
+        if base.switches.outputs:
+            raise NoClosedForm(
+                "the variational equations of rates that jump (sign, abs, step): they miss what the jumps do"
+            )
         further = [value for direction in directions for value in direction.initial]
         super().__init__(extended(base.scenario, further), base.ring)
         self.base, self.directions = base, tuple(directions)
@@ -104,6 +111,12 @@ class Variational(Dynamics):
             return [program.zero] * len(outputs)
         (by,) = [program.input(direction.parameter)]
         return directional(program, outputs, [by], [program.one])
+
+
+def require_smooth(dynamics: Dynamics) -> None:
+    """Raises NoClosedForm where signs, moduli or steps are in the rates."""
+    if dynamics.switches.outputs:
+        raise NoClosedForm("derivatives of rates with switches (sign, abs, step): they miss what the jumps do")
 
 
 def _applied(program: Program, matrix: Sequence[Sequence[Node]], vector: Sequence[Node]) -> tuple[Node, ...]:
@@ -150,11 +163,11 @@ def sensitive(
         if name in states:
             directions.append(_unit(name, states))
         else:
-            directions.append(Direction(name, _start_column(base, name), name))
+            directions.append(Direction(name, start_column(base, name), name))
     return Variational(base, directions)
 
 
-def _start_column(base: Parametrised, name: str) -> tuple[Fraction, ...]:
+def start_column(base: Parametrised, name: str) -> tuple[Fraction, ...]:
     """dx(0)/dc, rounded to the program's precision."""
     code = base.start
     program, fresh = code.program, bound(base.scenario)

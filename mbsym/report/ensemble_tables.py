@@ -152,6 +152,11 @@ def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:
         yield "error", told + "; of the others nothing is known"
     elif not found.interrupted:
         yield "error", "not estimated: nothing finer than this to compare with"
+    if found.members.dynamics.switches.outputs:
+        told = (
+            "steps do not end where the rates are not smooth, as those of a run of its own do; the error may be larger"
+        )
+        yield "warning", told
     if found.fates:
         ended = counted(len(found.fates), "member ended", "members ended")
         yield "warning", f"{ended} early; from then on the statistics are those of the rest (column alive)"

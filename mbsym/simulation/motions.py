@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import Expression, names
+from mbsym.model.system import System
+from mbsym.numerics.adjoint import Gradient, gradient_at_end
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.lyapunov import Exponents, exponents
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.periodic import Guess, NotFound, Orbit, autonomous, conserves_energy, periodic_orbit
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.scenario import scenario as scenario_of
 
 #: Rows of a period that are shown, and intervals between orthogonalisations.
 ROWS, INTERVALS = 401, 400
@@ -63,3 +69,20 @@ def lyapunov_exponents(
 ) -> Exponents:
     """The exponents of the scenario's motion from 0 to ``time``; see ``mbsym.numerics.lyapunov``."""
     return exponents(Dynamics(scenario), time, every or time / INTERVALS, count, tolerance, watch)
+
+
+def gradient_of(
+    system: System, values: Mapping[str, Expression], functional: str, wanted: Sequence[str], time: float
+) -> Gradient:
+    """See ``mbsym.numerics.adjoint``; raises ValueError for what cannot be read or differentiated by."""
+    complaints = Complaints()
+    found = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}
+    wrong = [item.message for item in complaints.items]
+    wrong += [f"unknown name {name}" for name in sorted((names(found) if found is not None else set()) - known)]
+    following = {relation.name for relation in system.relations}
+    wrong += [f"there is nothing called {name} to differentiate by" for name in wanted if name not in known - {"pi"}]
+    wrong += [f"{name} follows from other parameters" for name in wanted if name in following]
+    if wrong or found is None:
+        raise ValueError("; ".join(wrong))
+    return gradient_at_end(scenario_of(system, values), found, wanted, time, values)
