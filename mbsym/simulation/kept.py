@@ -34,14 +34,20 @@ def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tu
 
 
 def kept_integrals(
-    dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str]
+    dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
 ) -> tuple[Kept, ...]:
-    """First integrals along the run; one that is not proved is looked at where the run goes."""
-    known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural)) if integrals else ()
+    """First integrals at the rows of ``found``; judged along ``dense``, the same run with places between its rows.
+
+    One that is not proved is looked at where the run goes.
+    """
+    if not integrals:
+        return ()
+    known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))
+    shown, seen = (list(values(known, run.times, run.states)) for run in (found, dense))
     kept = []
-    for item, (column, size) in zip(known, values(known, found.times, found.states), strict=True):
+    for item, (column, _), (along, size) in zip(known, shown, seen, strict=True):
         state, doubt = Standing.PROVED, None
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
-            state, doubt = standing(dynamics, item.code, 0, visited(found.times, found.states, column), held)
-        kept.append(Kept(item.column, column, confronted(item.name, state, column, size, doubt), item.unit))
+            state, doubt = standing(dynamics, item.code, 0, visited(dense.times, dense.states, along), held)
+        kept.append(Kept(item.column, column, confronted(item.name, state, along, size, doubt), item.unit))
     return tuple(kept)

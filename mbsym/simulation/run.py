@@ -26,6 +26,7 @@ from mbsym.numerics.models import scenario_of
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
+from mbsym.numerics.unseen import between_rows
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import Request, wrong_with
@@ -80,8 +81,9 @@ def simulate(
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
-        both = energies(dynamics, found, held)
-        kept = kept_integrals(dynamics, found, integrals, held)
+        dense = between_rows(dynamics, found, chosen.method, request.arithmetic)
+        both = energies(dynamics, dense, held)
+        kept = kept_integrals(dynamics, found, integrals, held, dense)
         if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
             error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):

@@ -186,3 +186,56 @@ def test_a_damper_on_a_coordinate_that_rests_takes_nothing(
     path = tmp_path / "particle.yaml"
     path.write_text(RESTING.replace("START", start), encoding="utf-8")
     assert mbsym.simulate(path, 5, whole=whole).conservation.standing is wanted
+
+
+# --- between rows ---
+
+SOFT_GROUND = """
+mbsym: 1
+name: Ball on soft ground, a force where z < 0 alone
+parameters: {k: 1e4, d: 1/20000, g: 10}
+bodies:
+  - {name: ball, attached to: 0, connection point: [0, 0, z], mass: 1, coordinates: [z]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+  - generalized force: {z: "k*(sqrt(z**2) - z)/2*(1 - d*z_dot)"}
+initial: {z: 1}
+"""
+
+
+@pytest.mark.parametrize("rows", [2, 3, 11, 2001])
+def test_a_force_between_rows_is_seen(rows: int) -> None:
+    """It touches the ground at t = sqrt(1/5) for 0.03 of time; at two rows, t = 0 and 0.9, nothing pushes it."""
+    run = mbsym.simulate(mbsym.loads(SOFT_GROUND, ()), 0.9, samples=rows, method="dop853")
+    assert run.conservation.standing is Standing.CHANGING
+    assert run.conservation.change > 0.5, "the energy of the compressed ground is none of T - U"
+
+
+def test_a_planted_blindness_between_rows_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negative control: judged at its rows alone the same run is called conserved, beside a loss of 3e-4."""
+    monkeypatch.setattr("mbsym.simulation.run.between_rows", lambda dynamics, found, method, scalar: found)
+    run = mbsym.simulate(mbsym.loads(SOFT_GROUND, ()), 0.9, samples=2, method="dop853")
+    assert run.conservation.standing is Standing.VERIFIED
+    assert run.conservation.change > 1e-4
+
+
+def test_a_late_force_is_seen_however_few_rows_there_are() -> None:
+    """x'' = -x + exp(-(t - 5)^2 100)/1e5 has the power x' F, not zero at any time but 1e-1086 at both rows."""
+    text = (
+        "mbsym: 1\nname: late\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\n"
+        "loads:\n  - potential: x**2/2\n  - generalized force: {x: exp(-((t - 5)*10)**2)/100000}\ninitial: {x: 1}\n"
+    )
+    for rows in (2, 5, 100):
+        run = mbsym.simulate(mbsym.loads(text), 10, samples=rows)
+        assert run.conservation.standing is Standing.CHANGING
+
+
+def test_the_drift_is_that_of_the_whole_interval() -> None:
+    """Between the steps of the midpoint rule, which keep h, a curve is drawn that does not; few rows hide nothing of it."""
+    found = [
+        mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=rows, method="midpoint", step=0.1).conservation.change
+        for rows in (3, 5, 2001)
+    ]
+    assert found == pytest.approx([found[2]] * 3, rel=0.05)
+    assert found[2] > 1e-10

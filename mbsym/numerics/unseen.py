@@ -1,0 +1,40 @@
+"""What a run does between rows that are far apart: the same run at the ends of its steps and midway between them.
+
+A force that acts between two rows and at neither of them changes an energy; whoever looks at rows alone sees no force.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown, Method
+from mbsym.numerics.simulate import Trajectory, simulate
+
+#: Steps whose ends are looked at one by one, and places in what is left of the interval.
+MOST, PLACES = 4_000, 4_000
+
+#: Runs that took longer than this many seconds are not run again.
+LONG = 2.0
+
+
+def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> Trajectory:
+    """The trajectory with more rows, where its steps are many beside its rows; else as it is."""
+    if not found.whole or found.seconds > LONG or 2 * found.work.steps < len(found.times):
+        return found
+    end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
+    places = [0.0]
+    try:
+        with np.errstate(all="ignore"):
+            while places[-1] < end and len(places) < MOST:
+                places.append(min(float(run.step().end), end))
+    except Breakdown:
+        return found  # a step that would have gone beyond the end
+    places += [(one + other) / 2 for one, other in pairwise(places)]
+    reached = max(places)
+    rest = np.linspace(reached, end, PLACES if reached < end else 0)
+    times = np.unique(np.concatenate([places, rest, found.times]))
+    more = simulate(dynamics, method, found.setting, times.tolist(), scalar)
+    return more if more.whole else found
