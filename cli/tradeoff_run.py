@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from mbsym.numerics.trade_study import Study
     from mbsym.numerics.tradeoff import Measured
 
+#: Seconds that drawing and writing take.
+FIGURES = 2.5
+
 
 @dataclass(frozen=True)
 class Request:
@@ -28,6 +32,12 @@ class Request:
     fidelity: bool
     every_row: bool
     quiet: bool
+    started: float = 0.0
+
+    @property
+    def left(self) -> float:
+        """Seconds of the budget that are left for measuring, so that the figures are within it, too."""
+        return self.budget - min(FIGURES, 0.2 * self.budget) - (time.perf_counter() - self.started)
 
 
 def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], request: Request) -> int:
@@ -42,7 +52,7 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
             say(f"{file.name}: {text}")
 
         try:
-            study = studied(found, methods, request.end, request.budget, request.fidelity, watch)
+            study = studied(found, methods, request.end, max(request.left, 0.0), request.fidelity, watch)
         except Breakdown as error:
             complain(file, _without_reference(error, request))
             return BROKEN_DOWN
@@ -63,7 +73,11 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
 def _without_reference(error: Breakdown, request: Request) -> str:
     """A solution that ends is one thing, one that takes too long another."""
     from mbsym.numerics.methods.interface import STEP_LIMIT
+    from mbsym.numerics.reference_search import DISAGREE
 
+    if error.kind == DISAGREE:
+        why = f"no two solutions agree, {error.message}: the motion may be chaotic over such a time"
+        return f"there is no reference solution up to t = {request.end:g}: {why}; a shorter --time helps"
     if error.kind != STEP_LIMIT:
         return f"there is no reference solution up to t = {request.end:g}: {error}"
     reached = f"the time ended at t = {error.time:.3g}; a shorter --time or a longer --budget helps"

@@ -341,7 +341,8 @@ def tradeoff(
 ) -> TradeoffStudy:
     """What accuracy costs from 0 to ``time`` on this machine, in about ``budget`` seconds: ``mbsym tradeoff``.
 
-    ``study.runs`` is a table (``study.runs["error"]``), ``study.advice`` the sentence about ``target``.
+    ``study.runs`` is a table (``study.runs["error"]``, the largest over the whole interval), ``study.advice`` the
+    sentence about ``target``; ``study.reference_error`` is that of the reference, ``study.reference`` says what it is.
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where there is no reference
     solution up to ``time``.

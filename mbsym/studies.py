@@ -82,6 +82,11 @@ class TradeoffStudy:
     reference_error: float
     study: Study
 
+    @property
+    def reference(self) -> str:
+        """The two solutions whose difference is ``reference_error``."""
+        return self.study.trade.reference.method
+
     def __repr__(self) -> str:
         return f"TradeoffStudy({self.advice})"
 

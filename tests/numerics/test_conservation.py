@@ -232,7 +232,7 @@ def test_a_late_force_is_seen_however_few_rows_there_are() -> None:
 
 
 def test_the_drift_is_that_of_the_whole_interval() -> None:
-    """Between the steps of the midpoint rule, which keep h, a curve is drawn that does not; few rows hide nothing of it."""
+    """Between the steps of the midpoint rule, which keep h, a curve is drawn that does not, however few the rows."""
     found = [
         mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=rows, method="midpoint", step=0.1).conservation.change
         for rows in (3, 5, 2001)
