@@ -51,9 +51,6 @@ EVERY = 4
 #: Two solutions that differ by more than this are no reference.
 AGREE = 1e-3
 
-#: Parts of the time that is left that each way may take.
-SHARES_OF_TIME = (0.35, 0.85, 1.0)
-
 #: Nothing is given up as too slow before so many seconds.
 SOME_SECONDS = 1.0
 
@@ -65,28 +62,35 @@ DISAGREE = "no two solutions agree"
 
 
 def whole_reference(
-    dynamics: Dynamics, end: float, seconds: float, watch: Callable[[str], None] = lambda text: None
+    dynamics: Dynamics,
+    end: float,
+    seconds: float,
+    watch: Callable[[str], None] = lambda text: None,
+    at_most: float | None = None,
 ) -> Reference:
     """A solution over the whole interval, known at thousands of places, in about so many seconds.
 
-    Raises Breakdown where the solution does not exist up to the end, where none is found in time (kind STEP_LIMIT), or
-    where no two solutions agree (kind DISAGREE).
+    Where that is too short for any way, the explicit one goes on for ``at_most`` seconds in all.  Raises Breakdown
+    where the solution does not exist up to the end, where none is found in time (kind STEP_LIMIT), or where no two
+    solutions agree (kind DISAGREE).
     """
     started = time.perf_counter()
     failed: Breakdown | None = None
-    for way, share in zip((_extrapolated, _explicit, _implicit), SHARES_OF_TIME, strict=True):
-        left = seconds - (time.perf_counter() - started)
+    limits = [*((way, share, seconds) for way, share in WAYS), (_explicit, 1.0, at_most or seconds)]
+    for way, share, limit in limits:
+        now = time.perf_counter()
+        left = limit - (now - started)
+        if left <= 0 or (failed is not None and failed.kind == DISAGREE):
+            continue
         try:
-            now = time.perf_counter()
-            found = way(_Search(dynamics, end, now, now + share * max(left, 0.0), watch))
+            found = way(_Search(dynamics, end, now, now + share * left, watch))
         except Breakdown as reason:
             if way is _extrapolated and reason.kind != STEP_LIMIT:
                 raise
             failed = reason if failed is None or reason.time > failed.time or reason.kind == DISAGREE else failed
         else:
             return replace(found, seconds=time.perf_counter() - started)
-    assert failed is not None
-    raise failed
+    raise failed or Breakdown(STEP_LIMIT, "out of time", 0.0, np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -244,3 +248,7 @@ def _filled(search: _Search, run: Any, found: Comparison) -> tuple[Any, Any]:
         states.append(run.fill(some))
         search.reached(float(some[-1]))
     return places, np.hstack(states)
+
+
+#: The ways, and the part of the time that is left which each of them may take.
+WAYS = ((_extrapolated, 0.35), (_explicit, 0.85), (_implicit, 1.0))

@@ -18,8 +18,9 @@ from mbsym.numerics.reference_search import whole_reference
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
 
-#: The part of the budget that the search for a reference may take, and the seconds that it has in any case.
-FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.6, 15.0
+#: The part of the budget that the search for a reference may take, where nothing is found that much more, and the
+#: seconds that it has in any case.
+FOR_REFERENCE, MOST_FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.6, 0.9, 15.0
 
 #: Places at which models are compared; they differ smoothly.
 PLACES = 500
@@ -48,7 +49,8 @@ def studied(
     until = time.perf_counter() + budget
     dynamics = Dynamics(scenario)
     watch("reference solution")
-    truth = whole_reference(dynamics, end, max(LEAST_FOR_REFERENCE, FOR_REFERENCE * budget), watch)
+    seconds, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
+    truth = whole_reference(dynamics, end, seconds, watch, at_most)
     models: tuple[ModelError, ...] = ()
     if with_models:
         places = np.unique(np.linspace(0, len(truth.times) - 1, PLACES).astype(int))
