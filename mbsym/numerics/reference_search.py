@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from mbsym.numerics.comparison import SHARES, Comparison, Ended, compared, uneven
+from mbsym.numerics.comparison import SHARES, Ended, compared, uneven
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
@@ -228,10 +228,12 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
             run, beside = (m.start(search.dynamics, setting, scalar) for m, setting in (first, second))
             search = search.next()  # compiling is no sign of a slow solution
             found = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
-            places, states = _filled(search, one.start(search.dynamics, fine, scalar), found)
+            places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
+            states, beside = (_filled(search, m.start(search.dynamics, s, scalar), places) for m, s in (first, second))
+            missed = np.max(np.abs(states - beside), axis=1).astype(float)
     except Ended as ended:
         raise ended.breakdown from None
-    differences = np.array([q.largest for q in found.quantities])
+    differences = np.maximum(missed, [q.largest for q in found.quantities])
     told = f"{one.traits.name} and {other.traits.name} in {scalar}, tolerances {fine.tolerance:g}, {rough.tolerance:g}"
     return search.finished(places, states, differences, told, way)
 
@@ -239,15 +241,14 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
 _Way = tuple[Method, Setting]
 
 
-def _filled(search: _Search, run: Any, found: Comparison) -> tuple[Any, Any]:
-    """The states at places that follow the steps of both, and at others that lie unevenly."""
+def _filled(search: _Search, run: Any, places: Any) -> Any:
+    """The states (2n, m) of a run that stands at the first of the places."""
     search = search.next()
-    places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
     states = [np.asarray(run.state)[:, None]]
     for some in np.array_split(places[1:], 64):
         states.append(run.fill(some))
         search.reached(float(some[-1]))
-    return places, np.hstack(states)
+    return np.hstack(states)
 
 
 #: The ways, and the part of the time that is left which each of them may take.
