@@ -221,8 +221,8 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
         if until >= end:
             return
         now = until
-        one = one if one.end > now else _step(first, second=False)
-        other = other if other.end > now else _step(second, second=True)
+        one = one if float(one.end) > now else _step(first, second=False)
+        other = other if float(other.end) > now else _step(second, second=True)
     # One of them, or both, may be ahead of what was looked at.
     ahead = sorted({now, min(float(one.end), end), min(float(other.end), end), end})
     ahead = sorted({*ahead, *np.linspace(ahead[-2], end, BLOCKS + 1).tolist()})
@@ -245,7 +245,7 @@ def _step(solution: Solution, second: bool) -> Piecewise:
 
 def _at(solution: Solution, piece: Piecewise, times: Any, second: bool) -> Any:
     """States on the step that is under way, or beyond it."""
-    if times[-1] <= piece.end:
+    if times[-1] <= float(piece.end):
         return piece(times)
     try:
         return solution.fill(times)
