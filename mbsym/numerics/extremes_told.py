@@ -82,7 +82,8 @@ def _where(found: Singularities, file: str) -> Iterator[str]:
     if not found.how:
         return
     for one in found.sets:
-        yield f"The mass matrix is singular where {_set(one)}, whatever else is: {_why(one, file)}."
+        others = ", whatever else is" if one.proved else ""
+        yield f"The mass matrix is singular where {_set(one)}{others}: {_why(one, file)}."
     for factor in found.undecided:
         yield f"It is undecided whether the mass matrix is singular where {factor} vanishes, and whether that does."
     within = ", ".join(f"|{name}| <= {float(bound):.3g}" for name, bound in found.ranges.items())
