@@ -23,7 +23,7 @@ from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.rows import rows
 
 #: Where a setting is aimed at, and the least that is still called fit, as parts of the goal.
-AIM, WASTEFUL = 0.4, 0.05
+AIM, WASTEFUL = 0.4, 0.15
 
 #: d log rho / d log tolerance, until it is measured.
 USUAL_SLOPE = 0.9

@@ -80,9 +80,8 @@ def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
 
 def accuracy_words(accuracy: Accuracy) -> str:
     """``1e-06 of every coordinate and velocity, energy 1e-09``."""
-    parts = (
-        [] if accuracy.everything is None else [f"{accuracy.everything:g} of every coordinate's and velocity's size"]
-    )
+    every = accuracy.everything
+    parts = [] if every is None else [f"{every:g} of the size of every coordinate and velocity"]
     return ", ".join([*parts, *(f"{name} {value:g}" for name, value in accuracy.named.items())])
 
 
