@@ -96,7 +96,7 @@ def sign_that_holds(rates: Code, switches: Code, sides: tuple[int, ...]) -> Code
         g' = g_t + g_x . x' = a + b s = 0,    s = -a/b,
 
     g' along the motion being linear in s where the second is 0 (Filippov, Differential equations with discontinuous
-    righthand sides, 1988, section 2.4; it is Utkin's equivalent control).  The other signs are those of ``sides``.
+    righthand sides, 1988, chapter 2; it is Utkin's equivalent control).  The other signs are those of ``sides``.
     """
     program, sliding = rates.program, switches.outputs[sides.index(SLIDING)]
     others = {

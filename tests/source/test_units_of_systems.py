@@ -56,6 +56,7 @@ UNITS = {
     "spatial-arm": {**LINKS, "g": "m/s^2", "h": "m", "e": "m", "c4": "m", "s": "m"},
     "spherical-pendulum": {"m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s", "theta0": "rad"},
     "spring-pendulum": {"m": "kg", "k": "N/m", "l0": "m", "g": "m/s^2", "r": "m"},
+    "stick-slip": {"m": "kg", "k": "N/m", "R": "N", "v": "m/s", "F": "N", "T": "s", "d": "s", "x": "m"},
     "tethered-satellites": TETHER,
     "ziegler": {"m": "kg", "l": "m", "k": "N*m/rad", "P": "N"},
     "ziegler-damped": {"m": "kg", "l": "m", "k": "N*m/rad", "P": "N", "b1": "N*m*s/rad", "b2": "N*m*s/rad"},
