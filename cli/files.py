@@ -24,7 +24,7 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, BinaryIO
@@ -50,6 +50,9 @@ _LONGEST_NAME = 200
 
 #: Names that some systems keep for devices.
 _RESERVED = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10)}
+
+#: Of a file: all of it, or parts that are made one after the other.
+Content = str | bytes | Iterable[str]
 
 #: Command -> file -> SHA-256, one entry a set; a command has several where it was asked for some of its files only.
 Sets = list[tuple[str, dict[str, str]]]
@@ -78,9 +81,9 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 
 def deliver(
-    folder: Path, files: Mapping[str, str | bytes], command: str, gone: Collection[str] | None = None
+    folder: Path, files: Mapping[str, Content], command: str, gone: Collection[str] | None = None
 ) -> list[Path]:
-    """The paths of ``files`` (name -> content), delivered into ``folder`` as one set of ``command``.
+    """The paths of ``files`` (name -> content, whole or in parts), delivered into ``folder`` as one set of ``command``.
 
     A name may have one folder in it, ``fragments/energy.tex``.
 
@@ -106,7 +109,7 @@ def deliver(
                 digests = {}
                 for name, content in files.items():
                     staged.append(closing.enter_context(_staged(stage / name)))
-                    digests[name] = hashlib.sha256(_written(staged[-1], content)).hexdigest()
+                    digests[name] = _written(staged[-1], content)
                 manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
                 staged.append(closing.enter_context(_staged(stage / MANIFEST)))
                 _written(staged[-1], manifest)
@@ -254,12 +257,15 @@ def _staged(path: Path) -> BinaryIO:
     return path.open("xb")
 
 
-def _written(stream: IO[bytes], content: str | bytes) -> bytes:
-    """Hands the content to the system; its bytes."""
-    data = content.encode() if isinstance(content, str) else content
-    stream.write(data)
+def _written(stream: IO[bytes], content: Content) -> str:
+    """Hands the content to the system; the SHA-256 of its bytes."""
+    digest = hashlib.sha256()
+    for part in [content] if isinstance(content, (str, bytes)) else content:
+        data = part.encode() if isinstance(part, str) else part
+        stream.write(data)
+        digest.update(data)
     stream.flush()
-    return data
+    return digest.hexdigest()
 
 
 def _flush(streams: Sequence[IO[bytes]]) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym_cli.console import status
-from mbsym_cli.files import deliver
+from mbsym_cli.files import Content, deliver
 from mbsym_cli.simulation_request import FIGURES, Asked
 from mbsym_cli.simulation_summary import note
 
@@ -30,14 +30,14 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """
     from mbsym.report.certificate import enclosure_csv
     from mbsym.report.simulation_json import simulation_json
-    from mbsym.report.trajectory_csv import trajectory_csv
+    from mbsym.report.trajectory_csv import trajectory_parts
 
     mark = "" if run.whole else "-partial"
-    files: dict[str, str | bytes] = {}
+    files: dict[str, Content] = {}
     if "csv" in asked.formats:
         further = {kept.column: kept.values for kept in run.invariants}
         units = {kept.column: kept.unit for kept in run.invariants}
-        files[f"trajectory{mark}.csv"] = trajectory_csv(run.trajectory, further, units)
+        files[f"trajectory{mark}.csv"] = trajectory_parts(run.trajectory, further, units)
     if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:
         files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
     files |= {f"{stem}{mark}.csv": text for stem, text in _happened(run).items()}

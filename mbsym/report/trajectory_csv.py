@@ -11,7 +11,7 @@ unit does not follow from the description.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,11 +30,18 @@ def trajectory_csv(
     found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
 ) -> str:
     """The file's text; ``more`` maps names of further columns to their values, of shape (m,), ``units`` to theirs."""
+    return "".join(trajectory_parts(found, more, units))
+
+
+def trajectory_parts(
+    found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
+) -> Iterator[str]:
+    """The same in parts, of which only one is held at a time."""
     further, natural = dict(more or {}), found.generalized_energy is found.energy
     energies = [found.energy] if natural else [found.energy, found.generalized_energy]
     table = [found.times, *found.states, *energies, found.drift, *further.values()]
     known = column_units(found.system, natural) | dict(units or {})
-    return written([marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)], table)
+    yield from parts([marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)], table)
 
 
 def column_units(system: System, natural: bool = True) -> dict[str, str | None]:
@@ -46,11 +53,15 @@ def column_units(system: System, natural: bool = True) -> dict[str, str | None]:
 
 def written(names: Sequence[str], table: Sequence[Any]) -> str:
     """A header and the columns of a table, a block of rows after the other."""
+    return "".join(parts(names, table))
+
+
+def parts(names: Sequence[str], table: Sequence[Any]) -> Iterator[str]:
+    """The same block by block."""
     many = len(table) * len(table[0]) >= MANY
-    blocks = range(0, len(table[0]), BLOCK)
-    return "".join(
-        [header(names), *(rows([column[start : start + BLOCK] for column in table], many) for start in blocks)]
-    )
+    yield header(names)
+    for start in range(0, len(table[0]), BLOCK):
+        yield rows([column[start : start + BLOCK] for column in table], many)
 
 
 def header(names: Sequence[str]) -> str:
