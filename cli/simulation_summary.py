@@ -43,7 +43,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     from mbsym.report.certificate import certificate_lines
     from mbsym.report.events_words import events_lines
     from mbsym.report.plan_words import plan_lines
-    from mbsym.report.simulation_words import conservation_line, error_lines, invariant_line, warnings
+    from mbsym.report.simulation_words import change_lines, conservation_line, error_lines, invariant_line, warnings
 
     found, chosen, request = run.trajectory, run.chosen, run.request
     if run.plan is not None:
@@ -51,6 +51,8 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     work = found.work
     if run.plan is None:
         yield from _method_lines(run)
+    for text in change_lines(work.changes, pretty(time_unit(run.system))):
+        yield "changes", text
     unit = pretty(time_unit(run.system))
     reached = "" if found.whole else f", reached {with_unit(f'{found.times[-1]:.9g}', unit)}"
     if run.happened is not None and run.happened.ended is not None:

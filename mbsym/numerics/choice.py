@@ -10,21 +10,13 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import Any
-
-import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.runge_kutta import RungeKutta
 from mbsym.numerics.methods.table import METHODS
-
-#: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
-STABLE = 5.0
-
-#: Only a decay so much faster than the oscillations makes a system stiff.
-STIFF = 3.0
+from mbsym.numerics.switching import STABLE, STIFF, Switching, rates
 
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
@@ -35,8 +27,8 @@ OF_NO_ACCOUNT = 100
 #: Steps of the trial of the explicit method, and seconds of the trial of each implicit one.
 TRIAL_STEPS, TRIAL_SECONDS = 2_000, 0.3
 
-#: Preferred explicit methods, and implicit ones to try on stiff systems.
-EXPLICIT, IMPLICIT = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda")
+#: Preferred explicit methods, implicit ones to try on stiff systems, and the one that a run changes to on its way.
+EXPLICIT, IMPLICIT, ALONG = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda"), "radau"
 
 
 @dataclass(frozen=True)
@@ -54,27 +46,22 @@ class Choice:
     measured: str = ""
 
 
-def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float, float]:
-    """(max -Re lambda, max |Im lambda|) of the Jacobian's eigenvalues at a state, the initial one by default.
-
-    The Jacobian is formed by central differences, which is close enough here and needs no further code to be compiled.
-    Zeros where it is not finite.
-    """
-    x = np.array([float(x) for x in (dynamics.scenario.state if state is None else state)])
-    n = len(x)
-    step = 1e-6 * (1 + np.abs(x))
-    moved = np.hstack([np.diag(step), -np.diag(step)]) + x[:, None]
-    with np.errstate(all="ignore"):
-        slopes = compiled_kernel(dynamics, "right_hand_side")(np.vstack([np.full(2 * n, t), moved]))
-        matrix = (slopes[:, :n] - slopes[:, n:]) / (2 * step)
-    if not np.all(np.isfinite(matrix)):
-        return 0.0, 0.0
-    found = np.linalg.eigvals(matrix)
-    return max(0.0, float(np.max(-found.real))), float(np.max(np.abs(found.imag)))
-
-
 def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLOAT64) -> Choice:
-    """The method for ``time_`` units of time at a tolerance, by the fastest decay and, if need be, by trials."""
+    """The method for ``time_`` units of time at a tolerance, by the fastest decay and, if need be, by trials.
+
+    That is how the run begins: it changes between this and an implicit method when the motion becomes stiff on the way.
+    """
+    first = _at_first(dynamics, tolerance, time_, scalar)
+    explicit = METHODS[EXPLICIT[0]]
+    if scalar != FLOAT64 or not isinstance(explicit, RungeKutta):
+        return first
+    if first.method is explicit:
+        return replace(first, method=Switching(explicit, METHODS[ALONG]))
+    return replace(first, method=Switching(explicit, first.method, True)) if first.method is METHODS[ALONG] else first
+
+
+def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -> Choice:
+    """The method for the stretch that begins with the initial state."""
     explicit = next(METHODS[name] for name in EXPLICIT if name in METHODS)
     decay, frequency = rates(dynamics)
     steps = decay * time_ / STABLE

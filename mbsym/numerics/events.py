@@ -10,7 +10,7 @@ the step,
 
 What the run cannot tell apart is not told apart.  A step is wrong by about tol (1 + |x|), and so g by
 
-    blur = tol sum_i |dg/dx_i| (1 + |x_i|);
+    blur = tol sum_i |dg/dx_i| (1 + |x_i|)        (and by the rounding of t, eps |t dg/dt|);
 
 g has passed zero when it has left the blur on the other side, and *touches* zero where it comes back on the same side.
 A touch may be two passages or none; it is recorded with direction 0 for events in both directions, and stops nothing.
@@ -214,13 +214,14 @@ class Watcher:
         return self._slopes[event](np.vstack([times, np.asarray(piece(times), dtype=float)]))
 
     def _blur(self, event: int, piece: Piece) -> float:
-        """tol sum |dg/dx_i| (1 + |x_i|), at worst."""
+        """tol sum |dg/dx_i| (1 + |x_i|) and what g changes by within the rounding of the time, at worst."""
         times = nodes(piece.start, piece.end)
         states = np.asarray(piece(times), dtype=float)
-        derivatives = self._slopes[event](np.vstack([times, states]))[3:]
+        _, rates, _, *derivatives = self._slopes[event](np.vstack([times, states]))
         with np.errstate(all="ignore"):
-            sizes = np.sum(np.abs(derivatives) * (1 + np.abs(states)), axis=0)
-        return self._tolerance * float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
+            sizes = self._tolerance * np.sum(np.abs(derivatives) * (1 + np.abs(states)), axis=0)
+            sizes += ROUNDINGS * np.finfo(float).eps * np.abs(times * rates)
+        return float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
 
     def _occurrence(self, event: int, piece: Piece, time: float, turn: int) -> Occurrence:
         """Polished on the motion from the start of the piece; the direction is that of a - b."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting, Traits, Work
+from mbsym.numerics.methods.interface import COUNTS, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.passed import Passed, together
 from mbsym.numerics.reduction import without
 from mbsym.numerics.scenario import Scenario
@@ -142,8 +142,9 @@ class _Beside:
 
     def _count(self) -> None:
         """The work of all parts together."""
-        for name in vars(self.work):
+        for name in COUNTS:
             setattr(self.work, name, sum(getattr(run.work, name) for run in self.runs))
+        self.work.changes[:] = sorted((one for run in self.runs for one in run.work.changes), key=lambda one: one.time)
 
     def _joined(self, states: Sequence[Any]) -> Any:
         """Whole states of those of the parts, one or in columns."""

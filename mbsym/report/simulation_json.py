@@ -54,7 +54,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "step_limit": found.setting.step_limit,
         "parameters": {name: float(value) for name, value in scenario.parameters.items()},
         "initial": dict(zip([*system.coordinates, *system.velocities], state, strict=True)),
-        "work": vars(found.work),
+        "work": {name: count for name, count in vars(found.work).items() if name != "changes"},
         "files": list(files),
         "versions": versions(),
         **_units(run),
@@ -73,6 +73,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "parts": [{"coordinates": list(part.names), "method": part.method} for part in chosen.parts],
         "model": model_json(run.request.model),
         "plan": None if run.plan is None else plan_json(run.plan, run.request),
+        **_changes(found),
     }
     if run.certificate is not None:
         content["certificate"] = certificate_json(run.certificate, [*system.coordinates, *system.velocities])
@@ -102,6 +103,11 @@ def _last(found: Trajectory) -> dict[str, Any]:
     names, state = [*found.system.coordinates, *found.system.velocities], found.states[:, -1]
     exact = [np.format_float_scientific(x) for x in state] if state.dtype == np.longdouble else map(float, state)
     return dict(zip(names, exact, strict=True))
+
+
+def _changes(found: Trajectory) -> dict[str, Any]:
+    """The stretches of a run that changed its method on the way: from when, which, why."""
+    return {"method_changes": [vars(one) for one in found.work.changes]} if found.work.changes else {}
 
 
 def _ended(found: Trajectory) -> dict[str, Any] | None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import Any
 
+from mbsym.model.quantities import with_unit
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
+from mbsym.numerics.methods.interface import Change
 
 
 def standing_words(found: Conservation) -> str:
@@ -65,6 +67,22 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
         yield (
             f"{names} rest: the {error:.1e} that the run makes of it is measured by what the motion could do (sizes "
             f"below {floor:.1e} count as rest)"
+        )
+
+
+#: So many changes of the method are told one by one.
+MOST_CHANGES = 6
+
+
+def change_lines(changes: Sequence[Change], unit: str | None) -> Iterator[str]:
+    """Where the run changed its method on the way, and why."""
+    for one in changes[:MOST_CHANGES]:
+        yield f"from t = {with_unit(f'{one.time:.9g}', unit)} on {one.method} ({one.why})"
+    if len(changes) > MOST_CHANGES:
+        last = changes[-1]
+        yield (
+            f"... and {len(changes) - MOST_CHANGES} changes more, the last at t = "
+            f"{with_unit(f'{last.time:.9g}', unit)} to {last.method}; all are in simulation.json"
         )
 
 

@@ -27,7 +27,7 @@ from PIL import Image
 
 import mbsym as library
 from mbsym.numerics.between import accelerations, between
-from mbsym.numerics.choice import choose, rates
+from mbsym.numerics.choice import choose
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.dynamics import Dynamics
@@ -35,6 +35,7 @@ from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import least_pivot, simulate
+from mbsym.numerics.switching import rates
 from mbsym.report.drawing import thinned
 from mbsym.report.figures import CORNER, _curve, figures
 from mbsym.report.trajectory_csv import trajectory_csv

@@ -8,7 +8,7 @@ everywhere between its ends.  What goes wrong is a ``Breakdown`` with time and s
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -52,14 +52,28 @@ class Setting:
     longest: float | None = None
 
 
+@dataclass(frozen=True)
+class Change:
+    """From ``time`` on a run goes by another method, named as in the table; ``why`` in words."""
+
+    time: float
+    method: str
+    why: str
+
+
+#: What a ``Work`` counts.
+COUNTS = ("evaluations", "jacobians", "steps", "rejected")
+
+
 @dataclass
 class Work:
-    """What a run has cost so far."""
+    """What a run has cost so far, and which ``changes`` of the method it made on its way."""
 
     evaluations: int = 0
     jacobians: int = 0
     steps: int = 0
     rejected: int = 0
+    changes: list[Change] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -178,20 +178,32 @@ class CompiledRun(Stepping):
         """The states (2n, m) at m increasing times, steps and rows alike in machine code."""
         at = np.ascontiguousarray(times, dtype=self.clock_type)
         found = np.empty((self.size, len(at)), self.dtype)
-        pointers = (*self._pointers, address(self.terms), address(at), address(found))
         done = 0
         try:
             while done < len(at):
-                if at[done] - self.clock[SLACK] > self.clock[TIME]:
-                    self._allow(self._at_once)
-                done = self._fill(*pointers, done, len(at), len(at))
-                self._judge(REACHED if done == len(at) else int(self.count[REPLY]))
+                done = self.stretch(at, found, done, self._at_once)
         except Breakdown as trouble:
             trouble.filled = found[:, :done]
             raise
         if done:
             self.time, self.state = times[-1], found[:, -1].copy()
         return found
+
+    def stretch(self, at: Any, found: Any, done: int, attempts: int) -> int:
+        """Fills columns of ``found`` from number ``done`` on, by so many attempted steps; how many are filled then."""
+        if at[done] - self.clock[SLACK] > self.clock[TIME]:
+            self._allow(attempts)
+        pointers = (*self._pointers, address(self.terms), address(at), address(found))
+        done = self._fill(*pointers, done, len(at), len(at))
+        self._judge(REACHED if done == len(at) else int(self.count[REPLY]))
+        return done
+
+    def some(self, until: float, attempts: int) -> None:
+        """Steps towards ``until``, at most so many attempts."""
+        self.clock[UNTIL] = until - self.clock[SLACK]
+        if self.clock[TIME] < self.clock[UNTIL]:
+            self._allow(attempts)
+            self._judge(self._march(*self._pointers))
 
     def _allow(self, attempts: int) -> None:
         """So many steps may be tried before machine code is left, as far as the limit allows any."""

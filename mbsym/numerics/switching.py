@@ -1,0 +1,249 @@
+"""A run that changes between an explicit and an implicit method as the motion becomes stiff and ceases to be.
+
+Explicit steps are bounded by accuracy, or by stability: about ``STABLE`` / |Re lambda| for what dies out fastest
+(Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2).  After every ``WINDOW`` of explicit steps h the
+greatest decay -Re lambda is looked at.  Where
+
+    h max(-Re lambda) > LIMITED    and    max(-Re lambda) > STIFF max |Im lambda|
+
+stability bounds the steps.  Then a few implicit steps are tried from there; where these are longer by more than they
+are dearer, the run goes on with them.  Of implicit steps h every tenth is followed by the question whether explicit
+ones of min(h, STABLE / -Re lambda) would lead further at equal cost, with a margin; if so the run goes back.
+
+How much dearer a step is, is a fixed estimate, not a measured time: equal runs change at equal times.  Where nothing is
+ever stiff, steps, rows and results are those of the explicit method to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Setting, Traits, Work
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.runge_kutta import CompiledRun, RungeKutta
+from mbsym.numerics.methods.stepping import Stepping
+
+#: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
+STABLE = 5.0
+
+#: Explicit steps beyond this over |Re lambda| are near that bound.
+LIMITED = 1.5
+
+#: Only a decay so much faster than the oscillations makes a motion stiff.
+STIFF = 3.0
+
+#: So many explicit steps, and so many implicit ones, from one look at the eigenvalues to the next.
+WINDOW, IMPLICIT_WINDOW = 256, 10
+
+#: Implicit steps of a trial; after one that did not pay, so many times as many explicit steps pass before the next.
+TRIAL, PATIENCE = 40, 4
+
+#: Explicit steps must promise to be so much quicker before the run goes back to them.
+MARGIN = 3.0
+
+#: About what a step takes: seconds an operation of compiled code and a compiled step besides, and a step of SciPy's
+#: implicit methods by their names.
+OPERATION, STEP = 4e-10, 2e-7
+IMPLICIT_STEP = {"radau": 5e-4, "lsoda": 5e-5, "bdf": 3e-4}
+
+
+def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float, float]:
+    """(max -Re lambda, max |Im lambda|) of the Jacobian's eigenvalues at a state, the initial one by default.
+
+    The Jacobian is formed by central differences, which is close enough here and needs no further code to be compiled.
+    Zeros where it is not finite.
+    """
+    x = np.array([float(x) for x in (dynamics.scenario.state if state is None else state)])
+    n = len(x)
+    step = 1e-6 * (1 + np.abs(x))
+    moved = np.hstack([np.diag(step), -np.diag(step)]) + x[:, None]
+    with np.errstate(all="ignore"):
+        slopes = compiled_kernel(dynamics, "right_hand_side")(np.vstack([np.full(2 * n, t), moved]))
+        matrix = (slopes[:, :n] - slopes[:, n:]) / (2 * step)
+    if not np.all(np.isfinite(matrix)):
+        return 0.0, 0.0
+    found = np.linalg.eigvals(matrix)
+    return max(0.0, float(np.max(-found.real))), float(np.max(np.abs(found.imag)))
+
+
+class Switching:
+    """``explicit`` and ``implicit`` in turns, beginning with the latter where ``stiff``."""
+
+    def __init__(self, explicit: RungeKutta, implicit: Method, stiff: bool = False) -> None:
+        self.explicit, self.implicit, self.stiff = explicit, implicit, stiff
+
+    @property
+    def traits(self) -> Traits:
+        """Those of the method that it begins with."""
+        return self.implicit.traits if self.stiff else self.explicit.traits
+
+    def start(
+        self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
+    ) -> Stepping:
+        """A run; in other arithmetic than float64, which the implicit methods do not know, it never changes."""
+        if scalar != "float64" and not self.stiff:
+            return self.explicit.start(dynamics, setting, scalar, initial, at)
+        return SwitchingRun(self, dynamics, setting, initial, at)
+
+
+class SwitchingRun(Stepping):
+    """Steps of one method or the other."""
+
+    def __init__(self, method: Switching, dynamics: Dynamics, setting: Setting, initial: Any, at: float) -> None:
+        self._method, self._dynamics, self._setting = method, dynamics, setting
+        state = np.array([float(x) for x in dynamics.scenario.state]) if initial is None else np.asarray(initial)
+        self._runs: dict[bool, Any] = {}
+        self._since = 0, float(at)  # steps and time at the last look at the eigenvalues
+        self._stiff = method.stiff
+        self.work = Work()
+        operations = 12 * dynamics.right_hand_side.operations * OPERATION
+        self._dearer = IMPLICIT_STEP.get(method.implicit.traits.name, 5e-4) / (operations + STEP)
+        self._patience = 1
+        self._turned(self._stiff, at, state)
+        self.time, self.state = float(at), np.array(self.end)
+
+    # --- what Stepping asks for ---
+
+    @property
+    def reached(self) -> float:
+        """The end of the last step."""
+        found: float = self._active.reached
+        return found
+
+    @property
+    def end(self) -> Any:
+        """The state there."""
+        return self._active.end
+
+    def curve(self) -> Callable[[Any], Any]:
+        """The dense output of the last step."""
+        found: Callable[[Any], Any] = self._active.curve()
+        return found
+
+    def restart(self, time: float, state: Any) -> None:
+        """Go on from another state, by the method that is at work."""
+        self._turned(self._stiff, time, state)
+        self.time, self.state = float(time), np.array(self.end)
+
+    def one(self, until: float | None = None) -> None:
+        """One step, by whichever method is the better one here."""
+        self._considered()
+        self._counted(partial(self._active.one, until))
+
+    def far(self, until: float) -> None:
+        """Steps until ``until`` is reached or passed."""
+        while self.reached < until:
+            self._considered()
+            if isinstance(self._active, CompiledRun):
+                self._counted(partial(self._active.some, until, WINDOW))
+            else:
+                self._counted(self._active.one)
+
+    def advance(self, until: float) -> Any:
+        """The state at ``until``: a row."""
+        return self.fill(np.array([until]))[:, 0]
+
+    def fill(self, times: Any) -> Any:
+        """Rows in machine code while the explicit method is at work."""
+        at = np.ascontiguousarray(times, dtype=float)
+        found, done = np.empty((len(self.state), len(at))), 0
+        try:
+            while done < len(at):
+                if at[done] > self.reached:
+                    self._considered()
+                run = self._active
+                if isinstance(run, CompiledRun):
+                    done = self._counted(partial(run.stretch, at, found, done, WINDOW))
+                    continue
+                if at[done] > self.reached:
+                    self._counted(run.one)
+                last = done + int(np.searchsorted(at[done:], self.reached, side="right"))
+                if last > done:
+                    found[:, done:last] = self.states(at[done:last])
+                done = last
+        except Breakdown as trouble:
+            trouble.filled = found[:, :done]
+            raise
+        if done:
+            self.time, self.state = float(at[-1]), found[:, -1].copy()
+        return found
+
+    # --- which method ---
+
+    def _considered(self) -> None:
+        """Looks, every so many steps, whether the other method is the better one, and turns to it if it is."""
+        if self.work.steps + self.work.rejected >= self._setting.step_limit:
+            raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", self.reached, np.array(self.end, dtype=float))
+        made = self.work.steps - self._since[0]
+        if made < (IMPLICIT_WINDOW if self._stiff else WINDOW * self._patience):
+            return
+        step = (self.reached - self._since[1]) / made
+        decay, frequency = rates(self._dynamics, self.end, self.reached)
+        if self._stiff:
+            possible = min(step, STABLE / decay) if decay > 0 else step
+            if self._dearer * possible > MARGIN * step:
+                self._change(False, f"stiff no longer: motions die out at rates up to {decay:.3g}")
+                return
+        elif step * decay > LIMITED and decay > STIFF * frequency:
+            longer = self._tried()
+            if longer > self._dearer * step:
+                self._patience = 1
+                self._change(True, f"stiff: motions die out at rates up to {decay:.3g}, explicit steps were {step:.2g}")
+                return
+            self._patience *= PATIENCE
+        else:
+            self._patience = 1
+        self._since = self.work.steps, self.reached
+
+    def _tried(self) -> float:
+        """The length of the last of some implicit steps from here; 0 where they fail."""
+        run = self._run(True, self.reached, self.end)
+        before = run.reached
+        try:
+            for _ in range(TRIAL):
+                before = run.reached
+                self._counted(run.one, run)
+        except Breakdown:
+            return 0.0
+        return float(run.reached - before)
+
+    def _change(self, stiff: bool, why: str) -> None:
+        traits = (self._method.implicit if stiff else self._method.explicit).traits
+        self.work.changes.append(Change(float(self.reached), traits.name, why))
+        self._turned(stiff, self.reached, np.array(self.end, dtype=float))
+
+    def _turned(self, stiff: bool, time: float, state: Any) -> None:
+        self._active = self._run(stiff, time, state)
+        self._stiff, self._since = stiff, (self.work.steps, float(time))
+
+    def _run(self, stiff: bool, time: float, state: Any) -> Any:
+        """The run of one of the methods, from a state."""
+        run: Any
+        if stiff in self._runs:
+            run = self._runs[stiff]
+            self._counted(partial(run.restart, time, state), run)
+        else:
+            method: Method = self._method.implicit if stiff else self._method.explicit
+            run = method.start(self._dynamics, self._setting, "float64", state, float(time))
+            self._runs[stiff] = run
+            self._added(run.work, Work())
+        return self._runs[stiff]
+
+    def _counted(self, action: Callable[[], Any], run: Any = None) -> Any:
+        """What an action of a run costs is added to the work."""
+        own = (self._active if run is None else run).work
+        before = replace(own)
+        try:
+            return action()
+        finally:
+            self._added(own, before)
+
+    def _added(self, now: Work, before: Work) -> None:
+        for name in COUNTS:
+            setattr(self.work, name, getattr(self.work, name) + getattr(now, name) - getattr(before, name))
