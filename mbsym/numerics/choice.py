@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
-from mbsym.numerics.methods.runge_kutta import RungeKutta
+from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.switching import STABLE, STIFF, Switching, rates
 
@@ -52,12 +52,13 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
     That is how the run begins: it changes between this and an implicit method when the motion becomes stiff on the way.
     """
     first = _at_first(dynamics, tolerance, time_, scalar)
-    explicit = METHODS[EXPLICIT[0]]
-    if scalar != FLOAT64 or not isinstance(explicit, RungeKutta):
+    explicit, implicit = METHODS[EXPLICIT[0]], METHODS[ALONG]
+    if scalar != FLOAT64 or first.method not in (explicit, implicit):
         return first
-    if first.method is explicit:
-        return replace(first, method=Switching(explicit, METHODS[ALONG]))
-    return replace(first, method=Switching(explicit, first.method, True)) if first.method is METHODS[ALONG] else first
+    assert isinstance(explicit, Landing)
+    assert isinstance(implicit, Landing)
+    # It is between switches of the rates that the method may change.
+    return replace(first, method=Landing(Switching(explicit.inner, implicit.inner, first.method is implicit)))
 
 
 def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -> Choice:

@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Setting, Traits, Work
+from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Run, Setting, Traits, Work
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.runge_kutta import CompiledRun, RungeKutta
+from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.stepping import Stepping
 
 #: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
@@ -75,7 +75,7 @@ def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float,
 class Switching:
     """``explicit`` and ``implicit`` in turns, beginning with the latter where ``stiff``."""
 
-    def __init__(self, explicit: RungeKutta, implicit: Method, stiff: bool = False) -> None:
+    def __init__(self, explicit: Method, implicit: Method, stiff: bool = False) -> None:
         self.explicit, self.implicit, self.stiff = explicit, implicit, stiff
 
     @property
@@ -85,7 +85,7 @@ class Switching:
 
     def start(
         self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
-    ) -> Stepping:
+    ) -> Run:
         """A run; in other arithmetic than float64, which the implicit methods do not know, it never changes."""
         if scalar != "float64" and not self.stiff:
             return self.explicit.start(dynamics, setting, scalar, initial, at)

@@ -13,6 +13,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events import BATCH, Occurrences, Watcher
 from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Piece, Run, Setting
+from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.pieces import states_on
 from mbsym.numerics.surfaces import Event
 
@@ -63,6 +64,11 @@ class WatchedRun:
         self._piece: Piece | None = None
         self._filled = 0
         watcher.begin(np.asarray(inner.state, dtype=float), float(inner.time))
+
+    @property
+    def passed(self) -> Passed | None:
+        """What is not smooth, or narrow, on the way."""
+        return met_by(self._inner)
 
     def advance(self, until: float) -> Any:
         """The state at ``until``."""

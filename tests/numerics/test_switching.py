@@ -12,9 +12,13 @@ import mbsym
 from mbsym.numerics import switching
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Setting
-from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.methods.library import METHODS as LIBRARY
+from mbsym.numerics.methods.runge_kutta import METHODS as COMPILED
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.switching import Switching
+
+EXPLICIT = next(method for method in COMPILED if method.traits.name == "dop853")
+IMPLICIT = next(method for method in LIBRARY if method.traits.name == "radau")
 
 #: x'' = -L(t) (x' - cos t) - sin t has the solution sin t whatever L is (after Prothero & Robinson, 1974); L is large
 #: between t = 30 and t = 70.
@@ -59,7 +63,7 @@ def test_stiffness_that_comes_late_and_goes_again() -> None:
 def test_without_the_change_the_same_motion_takes_a_thousand_times_as_many_steps() -> None:
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
     with pytest.raises(Breakdown, match=STEP_LIMIT):
-        METHODS["dop853"].start(dynamics, Setting(1e-10, step_limit=2_000_000)).advance(100)
+        EXPLICIT.start(dynamics, Setting(1e-10, step_limit=2_000_000)).advance(100)
 
 
 @pytest.fixture
@@ -72,7 +76,7 @@ def cheap(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_change_to_a_wrong_state_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control: the implicit run goes on a little beside where the explicit one was."""
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
-    method = Switching(METHODS["dop853"], METHODS["radau"])  # type: ignore[arg-type]
+    method = Switching(EXPLICIT, IMPLICIT)
 
     def error() -> float:
         found = method.start(dynamics, Setting(1e-8)).fill(np.linspace(0, 33, 12))
@@ -105,10 +109,10 @@ def test_half_a_relaxation_oscillation_of_van_der_pol_at_a_hundred_thousand() ->
 @pytest.mark.parametrize("way", ["fill", "advance", "step"])
 def test_where_nothing_is_stiff_it_is_the_explicit_method_to_the_last_bit(way: str) -> None:
     dynamics = Dynamics(scenario(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system))
-    explicit = METHODS["dop853"]
+    explicit = EXPLICIT
     times = np.linspace(0, 40, 77)
     states = []
-    for method in (explicit, Switching(explicit, METHODS["radau"])):  # type: ignore[arg-type]
+    for method in (explicit, Switching(explicit, IMPLICIT)):
         run = method.start(dynamics, Setting(1e-10))
         if way == "fill":
             states.append(np.hstack([run.fill(times[:40]), run.fill(times[40:])]))
@@ -123,7 +127,7 @@ def test_where_nothing_is_stiff_it_is_the_explicit_method_to_the_last_bit(way: s
 @pytest.mark.usefixtures("cheap")
 def test_all_ways_to_ask_for_a_run_that_changes_agree() -> None:
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
-    method = Switching(METHODS["dop853"], METHODS["radau"])  # type: ignore[arg-type]
+    method = Switching(EXPLICIT, IMPLICIT)
     times = np.linspace(0, 100, 41)
     rows = method.start(dynamics, Setting(1e-9)).fill(times)
     run = method.start(dynamics, Setting(1e-9))
@@ -151,7 +155,7 @@ def test_a_run_that_begins_stiff_goes_back_to_explicit_steps() -> None:
 
 def test_the_limit_of_steps_counts_both_methods() -> None:
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
-    run = Switching(METHODS["dop853"], METHODS["radau"]).start(dynamics, Setting(1e-10, step_limit=1500))  # type: ignore[arg-type]
+    run = Switching(EXPLICIT, IMPLICIT).start(dynamics, Setting(1e-10, step_limit=1500))
     with pytest.raises(Breakdown, match=STEP_LIMIT):
         run.fill(np.linspace(0, 100, 11))
     assert run.work.steps <= 1500 + switching.WINDOW + switching.TRIAL

@@ -24,7 +24,7 @@ from mbsym.numerics.crossings import Sign, free_of_zeros, passages, resolved, se
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.features import SLIDING
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
+from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.kept import compiled_kernel, once
 from mbsym.numerics.methods.narrow import BESIDE, along, met
 from mbsym.numerics.methods.passed import Narrow, Passed
@@ -188,12 +188,13 @@ class LandingRun:
             self._ahead = run
         if self.work.steps >= self._setting.step_limit:
             raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", self.time, np.array(self.state, dtype=float))
-        before = vars(run.work).copy()
+        before, changes = {name: getattr(run.work, name) for name in COUNTS}, len(run.work.changes)
         try:
             return run.step(bound)
         finally:
-            for name, value in vars(run.work).items():
-                setattr(self.work, name, getattr(self.work, name) + value - before[name])
+            for name in COUNTS:
+                setattr(self.work, name, getattr(self.work, name) + getattr(run.work, name) - before[name])
+            self.work.changes += run.work.changes[changes:]
 
     def _run(self, sides: tuple[int, ...]) -> Run:
         if sides not in self._runs:
