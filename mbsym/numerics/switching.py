@@ -160,6 +160,7 @@ class SwitchingRun(Stepping):
                 run = self._active
                 if isinstance(run, CompiledRun):
                     done = self._counted(partial(run.stretch, at, found, done, WINDOW))
+                    run.settle(done == len(at))
                     continue
                 if at[done] > self.reached:
                     self._counted(run.one)

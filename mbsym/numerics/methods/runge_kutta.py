@@ -182,6 +182,7 @@ class CompiledRun(Stepping):
         try:
             while done < len(at):
                 done = self.stretch(at, found, done, self._at_once)
+                self.settle(done == len(at))
         except Breakdown as trouble:
             trouble.filled = found[:, :done]
             raise
@@ -195,8 +196,12 @@ class CompiledRun(Stepping):
             self._allow(attempts)
         pointers = (*self._pointers, address(self.terms), address(at), address(found))
         done = self._fill(*pointers, done, len(at), len(at))
-        self._judge(REACHED if done == len(at) else int(self.count[REPLY]))
+        self._counted()
         return done
+
+    def settle(self, whole: bool) -> None:
+        """Raises the Breakdown that ended a stretch, if one did; ``whole`` says that all rows are filled."""
+        self._judge(REACHED if whole else int(self.count[REPLY]))
 
     def some(self, until: float, attempts: int) -> None:
         """Steps towards ``until``, at most so many attempts."""
