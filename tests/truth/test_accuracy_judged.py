@@ -1,0 +1,93 @@
+"""What ``--accuracy`` promises, judged by solutions of equations that were written by hand (``truth/independent``).
+
+Over the whole interval, at irregular times: the run is within its bound, the bound within what was asked for, and the
+bound is worth something: not a thousand times the error.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from truth.independent.scenes import SCENES, Scene
+from truth.independent.solve import agreement, places, states_of
+
+import mbsym
+from mbsym.numerics.accuracy import ErrorEstimate
+from mbsym.numerics.plan import Accuracy
+from mbsym.numerics.scenario import scenario
+from mbsym.simulation.accurate import simulate_accurately
+from mbsym.simulation.request import Request
+
+SOLUTIONS = json.loads((Path(__file__).parent / "independent" / "solutions.json").read_text(encoding="utf-8"))
+
+#: Rounding of one number, and what a handful of them make; a bound needs not be better.
+FLOOR = 1e-13
+
+
+@cache
+def exact(name: str) -> Any:
+    """(2n, m), to more digits than a float has."""
+    return np.array(SOLUTIONS[name]["states"], dtype=np.longdouble).T
+
+
+def true_errors(name: str, computed: Any) -> Any:
+    """Of each component, relative to its size in the whole motion."""
+    truth = exact(name)
+    size = np.max(np.abs(truth), axis=1)
+    return np.max(np.abs(computed - truth), axis=1) / np.where(size > 0, size, 1)
+
+
+@pytest.mark.parametrize("target", [1e-4, 1e-8])
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_what_is_promised_is_kept(scene: Scene, target: float) -> None:
+    given = scenario(mbsym.loads(scene.text).system)
+    found = simulate_accurately(given, Request(scene.time, samples=101), Accuracy(target))
+    assert found.plan is not None
+    assert found.whole
+    error = float(np.max(true_errors(scene.name, found.at(np.array(places(scene.time))))))
+    bound = found.plan.bound.total
+    assert error <= bound
+    assert found.plan.reached
+    assert error <= target
+    assert bound <= max(1000 * error, FLOOR)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_the_estimate_of_a_plain_run_is_true(scene: Scene) -> None:
+    """Whatever ``simulate`` chooses by itself: the error it tells is the error, within a factor, or none is told."""
+    found = mbsym.simulate(mbsym.loads(scene.text), scene.time, samples=101, estimate=True)
+    error = float(np.max(true_errors(scene.name, found.at(np.array(places(scene.time))))))
+    if isinstance(found.error, ErrorEstimate):
+        assert error <= 3 * found.error.largest + FLOOR
+        assert found.error.largest <= 1000 * error + FLOOR
+
+
+@pytest.mark.parametrize("name", ["kepler", "pulse", "furuta"])
+def test_the_solutions_are_made_as_is_said(name: str) -> None:
+    """Made again, by another order and other steps."""
+    scene = next(scene for scene in SCENES if scene.name == name)
+    again = states_of(scene, 50, 0.8)
+    known = [[mpmath.mpf(text) for text in row] for row in SOLUTIONS[name]["states"]]
+    assert agreement(again, known) < 1e-20
+
+
+def test_all_scenes_are_known_to_many_digits() -> None:
+    assert SOLUTIONS.keys() == {scene.name for scene in SCENES}
+    assert all(entry["agreement"] < 1e-20 for entry in SOLUTIONS.values())
+
+
+@pytest.mark.parametrize("name", ["elastic", "three", "top"])
+def test_a_wrong_digit_is_noticed(name: str) -> None:
+    """The judge itself: a state that is off by 1e-6 of its size fails at a target of 1e-8."""
+    scene = next(scene for scene in SCENES if scene.name == name)
+    found = mbsym.simulate(mbsym.loads(scene.text), scene.time, samples=101, tolerance=1e-13)
+    states = found.at(np.array(places(scene.time)))
+    assert float(np.max(true_errors(name, states))) < 1e-8
+    states[0] *= 1 + 1e-6
+    assert float(np.max(true_errors(name, states))) > 1e-8
