@@ -93,7 +93,12 @@ way_options = group(
         default=None,
         help="Estimate the error by a better run.  [default: if the run was short]",
     ),
-    click.option("--whole", is_flag=True, help="Integrate the coordinates that provably rest as well."),
+    click.option(
+        "--whole",
+        is_flag=True,
+        help="Integrate the coordinates that provably rest as well, all parts with the same steps, and keep welded "
+        "bodies apart.",
+    ),
 )
 
 output_options = group(

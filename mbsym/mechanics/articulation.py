@@ -11,7 +11,8 @@ motion can tell: a joint that turns about the axis a feels neither m nor h_a, fo
 
 that hold them do not depend on the turn, and one that slides does not feel J (the regrouping of inertial parameters of
 Khalil & Kleinfinger, IEEE J. Robotics Automation 3 (1987) 517-526; the part of it that only adds).  What is moved is
-made of parameters alone and costs nothing at run time.
+made of parameters alone and costs nothing at run time.  A body that is welded to another moves to it with all that it
+has, and its frame stays behind without mass, for points and loads on it.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from mbsym.expressions.tree import Expression, differentiate, names
 from mbsym.mechanics.frames import Turn, turn_back, turn_forward
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.system import INERTIAL, Body
+from mbsym.model.welded import still_names, welded
 
 Matrix = tuple[Vector, Vector, Vector]
 
@@ -44,7 +46,7 @@ class Frame:
 
     offset, offset_rate, offset_acceleration: r, r' and r'' of the frame's origin at q'' = 0.  The partial derivatives
     are those of the angle and of r with respect to each coordinate that they contain.  ``fixed_turn`` and
-    ``fixed_offset`` say that nothing but parameters occurs in them; ``together`` that one coordinate drives several
+    ``fixed_offset`` say that nothing occurs in them that moves; ``together`` that one coordinate drives several
     elementary joints of the body, or several coordinates one turn, so that they cannot be taken one by one.
     """
 
@@ -90,13 +92,18 @@ class Articulation:
         return self.scene.system.coordinates
 
 
-def articulation(scene: Scene) -> Articulation:
-    """The elementary frames of a scene whose accelerations are zero, with regrouped mass properties."""
+def articulation(scene: Scene, apart: bool = False) -> Articulation:
+    """The elementary frames of a scene whose accelerations are zero, with regrouped mass properties.
+
+    With ``apart`` the bodies that are welded to others keep their mass properties for themselves.
+    """
     builder = _Builder(scene)
     for body in scene.system.bodies:
         builder.add(body)
     properties = [mass_properties(scene, name) for name in scene.motions]
-    masses = _regrouped(scene.algebra, builder.frames, dict(zip(builder.frame_of.values(), properties, strict=True)))
+    own = dict(zip(builder.frame_of.values(), properties, strict=True))
+    kept = frozenset(builder.frame_of[name] for name in welded(scene.system)) if apart else frozenset[int]()
+    masses = _regrouped(scene.algebra, builder.frames, own, kept)
     return Articulation(scene, tuple(builder.frames), builder.frame_of, masses)
 
 
@@ -105,7 +112,7 @@ class _Builder:
         self.scene = scene
         self.frames: list[Frame] = []
         self.frame_of: dict[str, int] = {}
-        self.parameters = set(scene.system.parameter_names)
+        self.still = still_names(scene.system)
         self.coordinates = set(scene.system.coordinates)
 
     def add(self, body: Body) -> None:
@@ -129,13 +136,13 @@ class _Builder:
             angle_derivatives={},
             offset_derivatives={name: lower.vector([differentiate(x, name) for x in point]) for name in steered},
             fixed_turn=True,
-            fixed_offset=present <= self.parameters,
+            fixed_offset=present <= self.still,
             together=together,
         )
         if not motion.turns:
             self.frames.append(frame)
         for number, turn in enumerate(motion.turns):
-            fixed = names(turn.angle) <= self.parameters
+            fixed = names(turn.angle) <= self.still
             if number == 0:
                 moved = (
                     frame.offset,
@@ -261,11 +268,13 @@ def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
 
 
 def _regrouped(
-    algebra: Algebra, frames: list[Frame], properties: Mapping[int, MassProperties]
+    algebra: Algebra, frames: list[Frame], properties: Mapping[int, MassProperties], kept: frozenset[int]
 ) -> tuple[MassProperties, ...]:
-    """Mass properties frame by frame after moving to the parents what the joints do not feel."""
+    """Mass properties frame by frame after moving to the parents what the joints do not feel; ``kept`` move nothing."""
     masses = [properties.get(number, nothing(algebra)) for number in range(len(frames))]
     for number in reversed(range(len(frames))):
+        if number in kept:
+            continue
         frame, own = frames[number], masses[number]
         stays, leaves = _split(algebra, frame, own)
         masses[number] = stays

@@ -65,8 +65,8 @@ def bias_forces(system: Articulation) -> BiasForces:
         moments.append(moment)
     for name, body in system.scene.motions.items():
         if body.gyrostatic_moment is not None:
-            k = system.frame_of[name]
-            moments[k] = algebra.add(moments[k], algebra.cross(motions[k].spin, body.gyrostatic_moment))
+            k, moment = _carrying(system, name, body.gyrostatic_moment)
+            moments[k] = algebra.add(moments[k], algebra.cross(motions[k].spin, moment))
     generalized = dict.fromkeys(system.coordinates, algebra.zero)
     falling = falling_scene(system.scene) if felt else system.scene
     for load in system.scene.system.loads:
@@ -81,6 +81,16 @@ def bias_forces(system: Articulation) -> BiasForces:
             forces[k] = algebra.subtract(forces[k], wrench.force)
             moments[k] = algebra.subtract(moments[k], wrench.moment)
     return BiasForces(tuple(forces), tuple(moments), generalized)
+
+
+def _carrying(system: Articulation, body: str, moment: Vector) -> tuple[int, Vector]:
+    """The frame that turns a body's gyrostatic moment, and that in its axes: where the turn of a frame is fixed, the
+    frame below it."""
+    k = system.frame_of[body]
+    while system.frames[k].fixed_turn and system.frames[k].parent >= 0:
+        moment = system.frames[k].back(system.algebra, moment)
+        k = system.frames[k].parent
+    return k, moment
 
 
 def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:

@@ -47,15 +47,15 @@ class ForwardDynamics:
     estimated: frozenset[str] = frozenset()
 
 
-def forward_dynamics(system: System, ring: Ring, method: str | None = None) -> ForwardDynamics:
-    """The accelerations by ``method``, or by whichever costs less.
+def forward_dynamics(system: System, ring: Ring, method: str | None = None, apart: bool = False) -> ForwardDynamics:
+    """The accelerations by ``method``, or by whichever costs less; with ``apart``, welded bodies are not lumped.
 
     Raises SingularPoint if M is singular everywhere, NoClosedForm as the loads do, ValueError for a method that does
     not apply.
     """
     program = Program()
     inputs = program_environment(system, program)
-    frames = articulation(scene_without_accelerations(system, ring, program, inputs))
+    frames = articulation(scene_without_accelerations(system, ring, program, inputs), apart)
     needed = bias_forces(frames)
     given = constants(system)
     found: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}

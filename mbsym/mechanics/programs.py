@@ -30,6 +30,7 @@ from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.variables import expressions, program_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.model.welded import still_names
 
 
 @dataclass(frozen=True)
@@ -56,15 +57,15 @@ def scene_without_accelerations(system: System, ring: Ring, program: Program, in
 
 def constants(system: System) -> frozenset[str]:
     """The inputs of a program that do not change with the state."""
-    return frozenset((*system.parameter_names, "pi"))
+    return still_names(system) | {"pi"}
 
 
-def programs(system: System, ring: Ring) -> Programs:
-    """Mass matrix, forcing and energy as straight-line code."""
+def programs(system: System, ring: Ring, apart: bool = False) -> Programs:
+    """Mass matrix, forcing and energy as straight-line code; with ``apart``, welded bodies are not lumped."""
     program = Program()
     inputs = program_environment(system, program)
     scene = scene_without_accelerations(system, ring, program, inputs)
-    frames = articulation(scene)
+    frames = articulation(scene, apart)
     kinetic, force = kinetic_energy(scene), force_function(scene)
     return Programs(
         program=program,

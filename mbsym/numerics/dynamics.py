@@ -31,19 +31,23 @@ from mbsym.numerics.specialise import Specialised, bound, substituted
 
 
 class Dynamics:
-    """The codes of a scenario; each is made when it is first asked for."""
+    """The codes of a scenario; each is made when it is first asked for.
 
-    def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
+    With ``apart``, bodies that are welded to others are not lumped into them: more operations for the same motion.
+    """
+
+    def __init__(self, scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> None:
         self.scenario = scenario
         self.system: System = scenario.system
         self.ring = ring if ring is not None else ring_of(self.system)
         self.inputs = ("t", *self.system.coordinates, *self.system.velocities)
         self.size = len(self.system.coordinates)
+        self.apart = apart
         self._on_sides: dict[tuple[int, ...], Dynamics] = {}
 
     @cached_property
     def _programs(self) -> Programs:
-        return programs(self.system, self.ring)
+        return programs(self.system, self.ring, self.apart)
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -55,7 +59,7 @@ class Dynamics:
     @cached_property
     def right_hand_side(self) -> Code:
         """(t, q, q') -> (q', q''), 2n outputs."""
-        found = forward_dynamics(self.system, self.ring)
+        found = forward_dynamics(self.system, self.ring, apart=self.apart)
         fresh = self._specialised
         accelerations = substituted(found.program, found.accelerations, fresh)
         return self._code([*(fresh.input(name) for name in self.system.velocities), *accelerations])
@@ -79,7 +83,7 @@ class Dynamics:
     @cached_property
     def pivots(self) -> Code:
         """(t, q, q') -> the pivots of the factorised mass matrix; one that vanishes means a singular M."""
-        found = forward_dynamics(self.system, self.ring)
+        found = forward_dynamics(self.system, self.ring, apart=self.apart)
         return self._code(substituted(found.program, found.pivots, self._specialised))
 
     @cached_property
@@ -191,7 +195,7 @@ class Frozen(Dynamics):
     """A scenario's dynamics with the signs of its switches held: smooth, and right on that side of every switch."""
 
     def __init__(self, whole: Dynamics, sides: tuple[int, ...]) -> None:
-        super().__init__(whole.scenario, whole.ring)
+        super().__init__(whole.scenario, whole.ring, whole.apart)
         self.whole, self.sides = whole, sides
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs

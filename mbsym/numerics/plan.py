@@ -26,16 +26,6 @@ MODEL, INTEGRATION, ARITHMETIC = "model", "integration", "arithmetic"
 #: The quantity besides coordinates and velocities: T2 - T0 - U, relative to the largest kinetic energy.
 ENERGY = "energy"
 
-#: Kinds of items; those that the ledger has, too, are called as there.
-GRAVITY, LINEARITY, LEFT_OUT, RESTING = (
-    "order of gravity",
-    "linear or nonlinear",
-    "parameters left out",
-    "coordinates that rest",
-)
-PARTS = "separable parts"
-METHOD, FINENESS, SCALAR, KERNEL = "method", "tolerance", "arithmetic", "kernel"
-
 OPERATIONS, SECONDS = "operations", "seconds"
 
 
@@ -79,7 +69,8 @@ class Refused:
 class Item:
     """One choice: of ``kind``, about ``what``; ``chosen`` is its word, ``error`` what it adds (None: not told apart).
 
-    ``cost`` is in ``unit``: operations of one right-hand side, or processor seconds of the run.
+    Kinds are those of ``mbsym.numerics.kinds``.  ``cost`` is in ``unit``: operations of one right-hand side, or
+    processor seconds of the run.
     """
 
     kind: str

@@ -7,27 +7,25 @@ from dataclasses import dataclass
 from math import isfinite
 
 from mbsym.model.system import GRAVITY_ORDERS
+from mbsym.model.welded import lumped
 from mbsym.numerics.choice import Choice
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
-from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
-from mbsym.numerics.models import Model, described
-from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
-from mbsym.numerics.plan import (
+from mbsym.numerics.kinds import (
     FINENESS,
     GRAVITY,
     KERNEL,
     LEFT_OUT,
     LINEARITY,
-    MEASURED,
     METHOD,
     PARTS,
-    PROVED,
     RESTING,
     SCALAR,
-    SECONDS,
-    Item,
-    Refused,
+    WELDED,
 )
+from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
+from mbsym.numerics.models import Model, described
+from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
+from mbsym.numerics.plan import MEASURED, PROVED, SECONDS, Item, Refused
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.separable import Part
 from mbsym.numerics.yardstick import Yardstick
@@ -53,7 +51,7 @@ class Settled:
 
 def items_of(settled: Settled) -> tuple[Item, ...]:
     """In the order of the choices."""
-    return (*_models(settled), *_resting(settled), *_parts(settled), *_settings(settled))
+    return (*_models(settled), *_resting(settled), *_parts(settled), *_welded(settled), *_settings(settled))
 
 
 def _models(settled: Settled) -> Iterator[Item]:
@@ -111,6 +109,13 @@ def _parts(settled: Settled) -> Iterator[Item]:
     if settled.parts and not settled.found.method.traits.fixed:
         names = tuple(" ".join(part.names) for part in settled.parts)
         yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, PROVED)
+
+
+def _welded(settled: Settled) -> Iterator[Item]:
+    found = lumped(settled.scene.scenario.system)
+    if found and WELDED not in settled.pinned and not settled.model.taken.model.linear:
+        carriers = ", ".join(dict.fromkeys(found.values()))
+        yield Item(WELDED, tuple(found), f"one with {carriers}", "no coordinate moves them against it", 0.0, PROVED)
 
 
 def _settings(settled: Settled) -> Iterator[Item]:

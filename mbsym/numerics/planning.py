@@ -21,23 +21,14 @@ from mbsym.numerics.choice import Choice, choose
 from mbsym.numerics.contenders import Contender, contenders, first_setting, in_more_digits
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
 from mbsym.numerics.methods.interface import Method, Setting, Unusable
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.model_choice import ModelChoice, Scene, model_chosen, model_settled, richest
 from mbsym.numerics.models import Model, described
 from mbsym.numerics.pilot import Bench, Trial, searched
-from mbsym.numerics.plan import (
-    ENERGY,
-    FINENESS,
-    GRAVITY,
-    LEFT_OUT,
-    LINEARITY,
-    METHOD,
-    SCALAR,
-    Accuracy,
-    Plan,
-)
+from mbsym.numerics.plan import ENERGY, Accuracy, Plan
 from mbsym.numerics.plan_bounds import bounds_of, shares_of, worth_of
 from mbsym.numerics.plan_items import Settled, items_of
 from mbsym.numerics.reduced import Reduced, reduced
@@ -78,7 +69,8 @@ class Pins:
         fineness = None if self.setting is None else self.setting
         given = {METHOD: self.method, FINENESS: fineness, SCALAR: self.scalar, GRAVITY: self.model}
         given |= {LINEARITY: self.model, LEFT_OUT: self.model}
-        return frozenset(kind for kind, value in given.items() if value is not None)
+        together = (RESTING, PARTS, WELDED) if self.whole else ()
+        return frozenset((*(kind for kind, value in given.items() if value is not None), *together))
 
     @property
     def setting(self) -> Setting | None:

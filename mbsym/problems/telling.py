@@ -28,7 +28,6 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import State
-from mbsym.mechanics.programs import constants
 from mbsym.mechanics.states import enclosed_states
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System, acceleration_name
@@ -116,7 +115,7 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
         found.program,
         outputs,
         {k: (name, found.meanings[k]) for k, name in proposed.items()},
-        constants(system),
+        frozenset((*system.parameter_names, "pi")),
         ring_with,
         lambda made: ring_environment(system, made),
         _stem(Quantity.COMMON, _Taken(ring), [str(k) for k in range(1, 500)]),

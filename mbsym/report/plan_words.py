@@ -7,22 +7,25 @@ from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from mbsym.numerics.kinds import (
+    FINENESS,
+    GRAVITY,
+    LEFT_OUT,
+    LINEARITY,
+    METHOD,
+    PARTS,
+    RESTING,
+    SCALAR,
+    WELDED,
+)
 from mbsym.numerics.models import Model
 from mbsym.numerics.plan import (
     ARITHMETIC,
     ENERGY,
     ESTIMATED,
-    FINENESS,
-    GRAVITY,
-    LEFT_OUT,
-    LINEARITY,
     MEASURED,
-    METHOD,
     MODEL,
     OPERATIONS,
-    PARTS,
-    RESTING,
-    SCALAR,
     TOGETHER,
     Accuracy,
     Alternative,
@@ -46,6 +49,7 @@ TITLES = {
     LEFT_OUT: "left out",
     RESTING: "resting",
     PARTS: "parts",
+    WELDED: "welded",
     METHOD: "method",
     SCALAR: "arithmetic",
 }
@@ -109,7 +113,7 @@ def item_words(item: Item, plan: Plan) -> str:
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
         chosen = f"{chosen}, {fineness.chosen}, {duration(plan.seconds)} a run"
-    what = f"{', '.join(item.what)} " if item.kind in (RESTING, PARTS) else ""
+    what = f"{', '.join(item.what)} " if item.kind in (RESTING, PARTS, WELDED) else ""
     refused = "".join(f"; {refused_words(one, item.unit)}" for one in item.refused)
     return f"{what}{chosen}: {item.why}{refused}"
 

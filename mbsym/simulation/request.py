@@ -27,10 +27,10 @@ class Request:
     ``samples`` rows from 0 to ``time``, or one ``every`` so often (by default as many as the motion needs); a method's
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
-    integrated, too; ``certify``: the exact solution is enclosed so narrowly, as a part of each quantity's size;
-    ``events``: what is watched for; ``model``: how much of the mechanics is in the equations; no step
-    is longer than ``longest``; ``earlier``: the run that it goes on from,
-    whose rows come first.
+    integrated, too, all parts in one, and no body is lumped into another; ``certify``: the exact solution is enclosed
+    so narrowly, as a part of each quantity's size; ``events``: what is watched for; ``model``: how much of the
+    mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run that it goes on from, whose
+    rows come first.
     """
 
     time: float

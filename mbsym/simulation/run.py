@@ -64,7 +64,9 @@ def simulate(
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
         ring = analysis.ring if analysis is not None and not missing else None
-        dynamics = LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring)
+        dynamics = (
+            LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring, request.whole)
+        )
         if request.certify is not None:
             analytic(dynamics)
         resting = None if request.model.linear else reduced(dynamics)

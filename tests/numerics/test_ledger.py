@@ -30,6 +30,7 @@ from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.system import GeneralizedForce, System
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kinds import PARTS
 from mbsym.numerics.ledger import code
 from mbsym.numerics.ledger.entry import (
     ESTIMATED,
@@ -488,7 +489,8 @@ def test_what_is_not_proved_is_integrated(plane: Path, tmp_path: Path, monkeypat
         module, "resting", lambda *given, **more: replace(proved(*given, **more), how="verified numerically")
     )
     doubtful = simulated(plane, tmp_path / "doubtful")
-    whole = simulated(plane, tmp_path / "whole", "--whole")
+    monkeypatch.setattr(module, "resting", lambda *given, **more: None)
+    whole = simulated(plane, tmp_path / "whole")
     assert "integrated all the same" in doubtful.output
     assert np.array_equal(table(tmp_path / "doubtful")[1], table(tmp_path / "whole")[1])
     assert whole.exit_code == 0
@@ -555,9 +557,9 @@ def test_parts_that_nothing_links_are_listed() -> None:
         "  - {name: b, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}\n"
         "loads:\n  - potential: x**2/2 + y**2/2\ninitial: {x: 1, y: 1}\n"
     )
-    found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == "parts"]
+    found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == PARTS]
     assert [saving.what for saving in found] == [("x", "y")]
     assert found[0].how == PROVED
     assert [(item.without, item.taken) for item in found[0].measures] == [(2, 1), (16, 8)]
     linked = text.replace("y**2/2", "y**2/2 + x*y/2")
-    assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == "parts"]
+    assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == PARTS]

@@ -11,6 +11,7 @@ from mbsym.mechanics import factorisation
 from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.variables import ring_of
+from mbsym.numerics.kinds import DEAD, ROUTE, SPARSITY, STEADY, SYMMETRY, VALUES, ZEROS
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, Measure, Saving
 from mbsym.numerics.ledger.work import Work
 from mbsym.numerics.scenario import Scenario, changed
@@ -27,7 +28,7 @@ def steady_operations(work: Work) -> Iterator[Saving]:
     measures = (Measure("operations of q'' for one state", OPERATIONS, every, work.operations(forward.accelerations)),)
     steady = every - int(measures[0].taken)
     why = "liveness: no coordinate, velocity or time reaches them"
-    yield Saving("parameters only", (f"{steady} subexpressions",), why, PROVED, measures)
+    yield Saving(STEADY, (f"{steady} subexpressions",), why, PROVED, measures)
 
 
 def dead_operations(work: Work) -> Iterator[Saving]:
@@ -40,7 +41,7 @@ def dead_operations(work: Work) -> Iterator[Saving]:
     written, live = (alone.program.operations(x, given) for x in (every, alone.accelerations))
     measures = (Measure("operations written for one state", OPERATIONS, written, live),)
     why = "liveness: counted backwards from q'', no output needs them"
-    yield Saving("dead instructions", (f"{written - live} operations",), why, PROVED, measures)
+    yield Saving(DEAD, (f"{written - live} operations",), why, PROVED, measures)
 
 
 def route(work: Work) -> Iterator[Saving]:
@@ -57,9 +58,7 @@ def route(work: Work) -> Iterator[Saving]:
         bound_only = False
     quantity = "operations of q'' and the pivots for one state"
     measures = (Measure(quantity, OPERATIONS, costs[other], costs[forward.method], bound_only),)
-    yield Saving(
-        "route to q''", (f"{forward.method} instead of {other}",), "both solve M q'' = f exactly", PROVED, measures
-    )
+    yield Saving(ROUTE, (f"{forward.method} instead of {other}",), "both solve M q'' = f exactly", PROVED, measures)
 
 
 def branch_sparsity(work: Work) -> Iterator[Saving]:
@@ -80,7 +79,7 @@ def branch_sparsity(work: Work) -> Iterator[Saving]:
         Measure("operations of solving M q'' = f", OPERATIONS, dense, sparse),
     )
     why = "structural zeros: coordinates on different branches, or normal to each other, share no kinetic energy"
-    yield Saving("sparsity of M", (f"{2 * len(zeros)} entries of M",), why, PROVED, measures)
+    yield Saving(SPARSITY, (f"{2 * len(zeros)} entries of M",), why, PROVED, measures)
 
 
 def symmetry(work: Work) -> Iterator[Saving]:
@@ -98,7 +97,7 @@ def symmetry(work: Work) -> Iterator[Saving]:
         Measure("operations of solving M q'' = f", OPERATIONS, whole, half),
     )
     why = "identity: M_ij = d2T/dq_i' dq_j' = M_ji"
-    yield Saving("symmetry of M", (f"{below} entries below the diagonal",), why, PROVED, measures)
+    yield Saving(SYMMETRY, (f"{below} entries below the diagonal",), why, PROVED, measures)
 
 
 def _factorised(work: Work) -> Programs | None:
@@ -163,11 +162,11 @@ def values(work: Work) -> Iterator[Saving]:
     if zero:
         measures = (Measure("operations of q'' at these values", OPERATIONS, without_zeros, here),)
         why = "exact folding: 0 x = 0, so their terms are no instructions"
-        yield Saving("values that are zero", zero, why, PROVED, measures)
+        yield Saving(ZEROS, zero, why, PROVED, measures)
     symbolic = work.operations(work.forward.accelerations)
     measures = (Measure("operations of q'' for one state", OPERATIONS, symbolic, without_zeros),)
     why = "exact folding: constants are rational, 1 x = x, and equal values make equal nodes"
-    yield Saving("values put in", (f"{len(work.numbers.parameters)} parameters",), why, PROVED, measures)
+    yield Saving(VALUES, (f"{len(work.numbers.parameters)} parameters",), why, PROVED, measures)
 
 
 def _generic(names: Sequence[str]) -> Mapping[str, Fraction]:

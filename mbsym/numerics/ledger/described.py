@@ -10,6 +10,7 @@ from flint import arb, ctx, fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
 from mbsym.expressions.tree import ZERO, Expression, names
+from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, trace
 from mbsym.mechanics.variables import ring_of
@@ -24,7 +25,9 @@ from mbsym.model.system import (
     acceleration_name,
     rational,
 )
-from mbsym.numerics.ledger.entry import ESTIMATED, PROVED, UNDECIDED, Saving
+from mbsym.model.welded import lumped
+from mbsym.numerics.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
+from mbsym.numerics.ledger.entry import ESTIMATED, OPERATIONS, PROVED, SECONDS, UNDECIDED, Measure, Saving
 from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
 from mbsym.numerics.scenario import PRECISION, Scenario
 
@@ -42,7 +45,24 @@ def massless_bodies(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, heavy, symbols)
     why = "structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving("massless bodies", _in_order(work, found), why, PROVED, measures)
+    yield Saving(MASSLESS, _in_order(work, found), why, PROVED, measures)
+
+
+def welded_bodies(work: Work) -> Iterator[Saving]:
+    """Bodies without a coordinate of their own, lumped into what carries them, against each on a frame of its own."""
+    found = lumped(work.system)
+    if not found:
+        return
+    work.require(work.cost[1])
+    apart, spent = work.timed(lambda: forward_dynamics(work.system, ring_of(work.system), apart=True))
+    every = apart.program.operations(apart.accelerations, work.given)
+    measures = (
+        Measure("operations of q'' for one state", OPERATIONS, every, work.operations(work.forward.accelerations)),
+        Measure("seconds of writing the program of q''", SECONDS, spent, work.cost[1]),
+    )
+    carriers = ", ".join(dict.fromkeys(found.values()))
+    why = f"no coordinate moves them against {carriers}: m, m c and the tensor add up there, once, by Steiner's theorem"
+    yield Saving(WELDED, tuple(found), why, PROVED, measures)
 
 
 def point_masses(work: Work) -> Iterator[Saving]:
@@ -62,7 +82,7 @@ def point_masses(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, extended, symbols)
     why = "structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving("point masses", _in_order(work, found), why, PROVED, measures)
+    yield Saving(POINTS, _in_order(work, found), why, PROVED, measures)
 
 
 def unused_axes(work: Work) -> Iterator[Saving]:
@@ -83,7 +103,7 @@ def unused_axes(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = "structural: a turn that is not there is the identity matrix, and is never multiplied"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving("unused axes", _in_order(work, found), why, PROVED, measures)
+    yield Saving(AXES, _in_order(work, found), why, PROVED, measures)
 
 
 def constant_rotations(work: Work) -> Iterator[Saving]:
@@ -105,7 +125,7 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = "the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1"
     measures = work.right_hand_sides(other, changing=symbols.names)
-    yield Saving("constant rotations", tuple(found), why, PROVED, measures)
+    yield Saving(TURNS, tuple(found), why, PROVED, measures)
 
 
 def gravity_orders(work: Work) -> Iterator[Saving]:
@@ -131,7 +151,7 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
                 f"about (l/R)^{order + 1} = {dropped:.1e} of nu m/R, {kept:.1e} of the terms of order 2"
             )
             how = ESTIMATED
-        yield Saving("order of gravity", (f"terms of the field above order {order}",), why, how, measures)
+        yield Saving(GRAVITY, (f"terms of the field above order {order}",), why, how, measures)
 
 
 def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:

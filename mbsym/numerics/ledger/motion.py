@@ -15,6 +15,7 @@ from mbsym.mechanics.states import ball_states
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERMS, VERIFIED, Measure, Saving
 from mbsym.numerics.ledger.work import Work, holds
 from mbsym.numerics.reduced import reduced
@@ -50,7 +51,7 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
         Measure("operations of the right-hand side at these values", OPERATIONS, before, after),
         Measure("seconds of writing the right-hand side", SECONDS, seconds, spent),
     )
-    kind = "plane motion" if normal else "coordinates that rest"
+    kind = PLANE if normal else RESTING
     yield Saving(kind, found.names, why, found.reduction.how, measures)
 
 
@@ -72,7 +73,7 @@ def separate_parts(work: Work) -> Iterator[Saving]:
         ),
     )
     why = "the blocks of M between them vanish, and none occurs in the accelerations of another"
-    yield Saving("parts", tuple(" and ".join(part.names) for part in parts), why, PROVED, measures)
+    yield Saving(PARTS, tuple(" and ".join(part.names) for part in parts), why, PROVED, measures)
 
 
 def _written(scenario: Scenario) -> Dynamics:
@@ -114,7 +115,7 @@ def cyclic_coordinates(work: Work) -> Iterator[Saving]:
         "told, not used: mbsym simulate integrates them"
     )
     measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
-    yield Saving("cyclic coordinates", found, why, PROVED, measures)
+    yield Saving(CYCLIC, found, why, PROVED, measures)
 
 
 def _undriven(work: Work) -> set[str]:
@@ -145,14 +146,14 @@ def dropped_parameters(work: Work) -> Iterator[Saving]:
     unread = [name for name in used if name not in live]
     if unread:
         why = "liveness: no instruction that q'' needs reads it"
-        yield Saving("parameters that drop out", tuple(unread), why, PROVED, _dropped(work, used, unread))
+        yield Saving(DROPPED, tuple(unread), why, PROVED, _dropped(work, used, unread))
     read = [name for name in used if name in live]
     by_reason: dict[tuple[str, str], list[str]] = {}
     for name in _without_influence(work, read):
         by_reason.setdefault(_reason(work, name), []).append(name)
     for (why, how), found in by_reason.items():
         measures = _dropped(work, used, found)[: 1 if why == FACTOR else 2]
-        yield Saving("parameters that drop out", tuple(found), why, how, measures)
+        yield Saving(DROPPED, tuple(found), why, how, measures)
 
 
 def _dropped(work: Work, used: Sequence[str], found: Sequence[str]) -> tuple[Measure, ...]:

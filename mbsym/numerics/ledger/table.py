@@ -6,30 +6,52 @@ from collections.abc import Callable, Iterator, Mapping
 
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
+from mbsym.numerics.kinds import (
+    AXES,
+    CYCLIC,
+    DEAD,
+    DROPPED,
+    ENTRIES,
+    GRAVITY,
+    MASSLESS,
+    NOT_ASKED,
+    PARTS,
+    POINTS,
+    RESTING,
+    ROUTE,
+    SPARSITY,
+    STEADY,
+    SUBSYSTEMS,
+    SYMMETRY,
+    TURNS,
+    VALUES,
+    WELDED,
+)
 from mbsym.numerics.ledger import code, described, formulas, motion
 from mbsym.numerics.ledger.entry import Ledger, Saving
 from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Work
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
-    "coordinates that rest": motion.resting_coordinates,
-    "parts": motion.separate_parts,
-    "massless bodies": described.massless_bodies,
-    "point masses": described.point_masses,
-    "unused axes": described.unused_axes,
-    "constant rotations": described.constant_rotations,
-    "cyclic coordinates": motion.cyclic_coordinates,
-    "parameters that drop out": motion.dropped_parameters,
-    "entries that vanish": formulas.vanishing_entries,
-    "subsystems": formulas.subsystems,
-    "outputs nobody asked for": formulas.problems_not_asked,
-    "symmetry of M": code.symmetry,
-    "sparsity of M": code.branch_sparsity,
-    "route to q''": code.route,
-    "dead instructions": code.dead_operations,
-    "parameters only": code.steady_operations,
-    "values": code.values,
-    "order of gravity": described.gravity_orders,
+    RESTING: motion.resting_coordinates,
+    PARTS: motion.separate_parts,
+    WELDED: described.welded_bodies,
+    MASSLESS: described.massless_bodies,
+    POINTS: described.point_masses,
+    AXES: described.unused_axes,
+    TURNS: described.constant_rotations,
+    CYCLIC: motion.cyclic_coordinates,
+    DROPPED: motion.dropped_parameters,
+    ENTRIES: formulas.vanishing_entries,
+    SUBSYSTEMS: formulas.subsystems,
+    NOT_ASKED: formulas.problems_not_asked,
+    SYMMETRY: code.symmetry,
+    SPARSITY: code.branch_sparsity,
+    ROUTE: code.route,
+    DEAD: code.dead_operations,
+    STEADY: code.steady_operations,
+    VALUES: code.values,
+    GRAVITY: described.gravity_orders,
 }
 
 
