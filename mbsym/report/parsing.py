@@ -1,25 +1,19 @@
 """Reading what was written: whether a generated file would be taken by who reads it.
 
-Nothing of it is executed.  Python is compiled, its names are looked up and the constants of the module are computed;
-JSON is read; the other languages are read as far as brackets, strings, comments and environments go.
+Nothing of it is executed.  Python is compiled (``python_reading``), JSON is read; the other languages are read as far
+as brackets, strings, comments and environments go.
 """
 
 from __future__ import annotations
 
-import ast
-import builtins
 import json
-import math
 import re
-import symtable
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 from mbsym.report.latex_reading import read_latex
-
-#: Larger powers are not computed.
-_MOST_EXPONENT = 10_000
+from mbsym.report.python_reading import read_python
 
 
 def unreadable(filename: str, content: str | bytes) -> str:
@@ -38,113 +32,6 @@ def unreadable(filename: str, content: str | bytes) -> str:
         line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
         return f"{line}{getattr(error, 'msg', None) or error}"
     return ""
-
-
-#: Longer whole numbers than 4300 digits are not read by Python, as it is set by default.
-MOST_BITS = 14_284
-
-# --- Python -----------------------------------------------------------------------------------------------------------
-
-
-#: Fewer letters and digits in a row make no such number, whatever its base.
-_LONG_NUMBER = re.compile(rf"\w{{{MOST_BITS // 4}}}")
-
-
-def _python(text: str) -> None:
-    """Compiles; every name is known where it is used; tables of the module have numbers as values."""
-    tree = ast.parse(text)
-    for node in ast.walk(tree) if _LONG_NUMBER.search(text) else ():
-        if isinstance(node, ast.Constant) and isinstance(node.value, int) and node.value.bit_length() > MOST_BITS:
-            # Python refuses these unless somebody has lifted its limit in this process.
-            raise ValueError("a number with more digits than Python reads")
-    compile(tree, "<module>", "exec", dont_inherit=True)
-    known = set(dir(builtins)) | {"__name__"}
-    for statement in tree.body:
-        match statement:
-            case ast.Import(names=names) | ast.ImportFrom(names=names):
-                known |= {(item.asname or item.name).split(".")[0] for item in names}
-            case ast.FunctionDef(name=name):
-                known.add(name)
-            case ast.AnnAssign(target=ast.Name(id=name), annotation=annotation, value=value) if value is not None:
-                _known(value, known)
-                if not (isinstance(annotation, ast.Name) and annotation.id == "TypeAlias"):
-                    _constant(value)
-                known.add(name)
-            case ast.Assign(targets=targets, value=value):
-                _known(value, known)
-                _constant(value)
-                known |= {target.id for target in targets if isinstance(target, ast.Name)}
-    module = symtable.symtable(text, "<module>", "exec")
-    known |= {symbol.get_name() for symbol in module.get_symbols() if symbol.is_assigned() or symbol.is_imported()}
-    wanted = {symbol.get_name() for symbol in module.get_symbols() if symbol.is_referenced()}
-    missing = wanted.union(*map(_taken_from_module, module.get_children())) - known
-    if missing:
-        _known(tree, {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - missing)
-        raise SyntaxError(f"name '{min(missing)}' is not defined")
-
-
-def _taken_from_module(scope: symtable.SymbolTable) -> set[str]:
-    """The names that a function looks up in the module or among the builtins."""
-    if isinstance(scope, symtable.Function):
-        found = set(scope.get_globals())
-    else:
-        found = {symbol.get_name() for symbol in scope.get_symbols() if symbol.is_global() and symbol.is_referenced()}
-    return found.union(*map(_taken_from_module, scope.get_children()))
-
-
-def _known(tree: ast.AST, names: Container[str]) -> None:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in names:
-            raise SyntaxError(f"name '{node.id}' is not defined", ("", node.lineno, node.col_offset, None))
-
-
-def _constant(node: ast.expr) -> object:
-    """The value of a display of constants: numbers are computed, nothing else is."""
-    match node:
-        case ast.Constant(value=value):
-            return value
-        case ast.Tuple(elts=items) | ast.List(elts=items):
-            return [_constant(item) for item in items]
-        case ast.Dict(values=values):
-            return [_constant(item) for item in values]
-        case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
-            return math.pi
-    return _number(node)
-
-
-def _number(node: ast.expr) -> float:
-    match node:
-        case ast.Constant(value=int() | float() as value):
-            return float(value)
-        case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
-            return math.pi
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_number(operand)
-        case ast.BinOp(op=ast.Pow(), left=left, right=right):
-            base, exponent = _number(left), _number(right)
-            if abs(exponent) > _MOST_EXPONENT:
-                raise ValueError("a power too large to be computed")
-            value = base**exponent
-            if isinstance(value, complex):
-                raise ValueError("a value that is not real")
-            return float(value)
-        case ast.BinOp(op=operator, left=left, right=right) if type(operator) in _OPERATIONS:
-            return _OPERATIONS[type(operator)](_number(left), _number(right))
-        case ast.Call(func=ast.Attribute(value=ast.Name(id="np"), attr=name), args=[argument]) if name in _FUNCTIONS:
-            return _FUNCTIONS[name](_number(argument))
-    raise SyntaxError(f"no constant: {ast.unparse(node)[:60]}", ("", node.lineno, node.col_offset, None))
-
-
-_OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-}
-_FUNCTIONS: dict[str, Callable[[float], float]] = {
-    **{name: getattr(math, name) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "sinh", "cosh", "tanh")},
-    "arctan": math.atan,
-}
 
 
 # --- languages of brackets --------------------------------------------------------------------------------------------
@@ -294,5 +181,5 @@ def _no_number(word: str) -> float:
 
 
 _READERS: dict[str, Callable[[Any], None]] = {
-    "py": _python, "c": c_text, "h": c_text, "wl": _wolfram, "json": _json, "html": _html,
+    "py": read_python, "c": c_text, "h": c_text, "wl": _wolfram, "json": _json, "html": _html,
 }  # fmt: skip

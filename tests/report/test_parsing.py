@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from random import Random
 
 import pytest
+from conftest import SHIPPED
 
-from mbsym.report import parsing
+import mbsym
+from mbsym.report import parsing, python_reading
 from mbsym.report.parsing import unreadable
+from mbsym.report.targets import TARGETS
 
 GOOD = {
     "model.py": [
@@ -180,3 +183,46 @@ def token_by_token(text: str) -> bool:
                 return True
             stack.append(token)
     return bool(stack)
+
+
+def refused(text: str) -> bool:
+    """By the syntax tree of the whole file and Python's own table of names."""
+    try:
+        python_reading._looked_through(text)
+    except (SyntaxError, ValueError, ArithmeticError, RecursionError):
+        return True
+    return False
+
+
+@pytest.fixture(scope="module")
+def model() -> str:
+    analysis = mbsym.load(SHIPPED / "simple-pendulum.yaml", (5, 7))
+    return str(TARGETS["python"].render(analysis, (5, 7)))
+
+
+def test_a_model_needs_no_closer_look(model: str) -> None:
+    assert python_reading._surely_sound(model)
+
+
+@pytest.mark.parametrize("text", BAD["model.py"])
+def test_what_is_wrong_is_never_surely_sound(text: str) -> None:
+    assert not python_reading._surely_sound(text)
+    assert not python_reading._surely_sound("from __future__ import annotations\n" + text)
+
+
+def test_a_wrong_name_anywhere_is_seen_without_a_closer_look(model: str) -> None:
+    seen, words = 0, list(re.finditer(r"[A-Za-z_]\w*", model))
+    for word in Random(5).sample(words, 400):
+        wrong = model[: word.start()] + "unheard_of" + model[word.end() :]
+        if refused(wrong):
+            seen += 1
+            assert not python_reading._surely_sound(wrong), word
+    assert seen > 50
+
+
+def test_many_names_are_told_apart() -> None:
+    """More than bytecode counts in one byte."""
+    lines = "".join(f"    a{k}()\n" for k in range(700))
+    defined = "".join(f"def a{k}():\n    pass\n\n" for k in range(700))
+    assert python_reading._surely_sound(f"{defined}def f():\n{lines}")
+    assert not python_reading._surely_sound(f"{defined}def f():\n{lines}    b()\n")
