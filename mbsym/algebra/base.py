@@ -20,7 +20,8 @@ from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
+from mbsym.expressions.table import Table
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, expanded
 
 #: A scalar of some algebra: anything with + - * among its own kind.
 Scalar = Any
@@ -231,6 +232,8 @@ class Lowering:
                 return algebra.times(self(left), algebra.reciprocal(self(right)))
             case Operation("**", base, exponent):
                 return self._power(base, exponent)
+            case Call(_, argument, table=Table() as table):
+                return self(expanded(table, argument))
             case Call("sqrt", argument):
                 return algebra.square_root(self(argument))
             case Call("sin", argument):
@@ -280,6 +283,6 @@ def _label(expression: Expression) -> Any:
             return name
         case Operation(operator, _, _):
             return operator
-        case Call(function, _):
-            return function
+        case Call(function, _, table=table):
+            return table or function
     return None

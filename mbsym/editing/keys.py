@@ -20,6 +20,7 @@ from mbsym.source.keys import (
     SHAPE,
     SIGNS,
     SYSTEM,
+    TABLE,
 )
 
 _SIGN_WORDS = {sign: f"true, short for sign: {sign}" for sign in SIGNS}
@@ -28,6 +29,7 @@ _SIGN_WORDS = {sign: f"true, short for sign: {sign}" for sign in SIGNS}
 _RECORDS: dict[str, Mapping[str, str]] = {
     "parameters": {**PARAMETER, **_SIGN_WORDS},
     "prescribed": PRESCRIBED,
+    "tables": TABLE,
     "motion": MOTION,
     "initial": INITIAL,
 }

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from fractions import Fraction
 from math import ceil
@@ -24,6 +24,7 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import FUNCTIONS, SIGNATURES, Call, Expression, Name, Negative, Number, Operation
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
@@ -44,6 +45,9 @@ MAX_DENOMINATOR = 1_000
 
 #: Bound of the size of any number that evaluating the tree can produce, counted as in :func:`_weight`.
 MAX_WEIGHT = 5_000
+
+#: No tables to call.
+NO_TABLES: Mapping[str, Table] = {}
 
 SpanOf = Callable[[int, int], Span]
 
@@ -153,12 +157,18 @@ class _Refused(Exception):
 
 
 def parse_expression(
-    text: str, complaints: Complaints, span_of: SpanOf, named: bool = True, bounds: Bounds = WRITTEN
+    text: str,
+    complaints: Complaints,
+    span_of: SpanOf,
+    named: bool = True,
+    bounds: Bounds = WRITTEN,
+    tables: Mapping[str, Table] = NO_TABLES,
 ) -> Expression | None:
     """The tree of an expression, or None with at least one complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
     names a place allows is the reader's business; where it allows none (``named`` is false) no hint speaks of any.
+    Only ``tables`` are known: they may be called like functions.
     """
     errors_before = complaints.error_count
     try:
@@ -168,6 +178,7 @@ def parse_expression(
         parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
         parser.named = named
         parser.bounds = bounds
+        parser.tables = tables
         tree = parser.whole()
     except _Refused:
         return None
@@ -288,6 +299,7 @@ class _Parser:
         self.span_of = span_of
         self.named = True
         self.bounds = WRITTEN
+        self.tables: Mapping[str, Table] = NO_TABLES
 
     def whole(self) -> Expression:
         if self.next.kind == "end":
@@ -386,19 +398,20 @@ class _Parser:
         return self.grown(Name(token.text, self.span_of(token.start, token.end)))
 
     def call(self, token: _Token) -> Expression:
-        known = token.text in FUNCTIONS
+        table = self.tables.get(token.text)
+        known = token.text in FUNCTIONS or table is not None
         if not known:
             self.complain(
                 "unknown-function",
                 f"unknown function {ascii_safe(token.text)}",
                 token.start,
                 token.end,
-                _function_hint(token.text),
+                _function_hint(token.text, self.tables),
             )
         usage = SIGNATURES.get(token.text, "")
         argument, *more = self.inside(self.advance(), usage.count(",") + 1, usage)
         span = self.span_of(token.start, self.last_end)
-        return self.grown(Call(token.text, argument, span, tuple(more)), argument, *more)
+        return self.grown(Call(token.text, argument, span, tuple(more), table), argument, *more)
 
     def inside(self, opening: _Token, wanted: int = 1, usage: str = "") -> list[Expression]:
         """What stands between an opening parenthesis, already read, and its closing one: so many arguments."""
@@ -506,7 +519,10 @@ def _unit_hint(value: str, unit: str, named: bool) -> str | None:
     return f"no units beside numbers: write numbers only, and units under units:{product}"
 
 
-def _function_hint(name: str) -> str:
+def _function_hint(name: str, tables: Iterable[str]) -> str:
+    tabulated = get_close_matches(name, tables, n=1)
+    if tabulated:
+        return f"did you mean '{tabulated[0]}'?"
     if name in _FOREIGN_FUNCTIONS:
         return f"write {_FOREIGN_FUNCTIONS[name]}"
     lower = name.lower()[:40]

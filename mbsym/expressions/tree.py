@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 from fractions import Fraction
+from itertools import pairwise
 
 from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
+from mbsym.expressions.table import OUTSIDE_ZERO, Table, pieces
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
 SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
@@ -70,12 +72,13 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``function(argument, *more)`` with a function of :data:`FUNCTIONS`; most have one argument."""
+    """``function(argument, *more)`` with a function of :data:`FUNCTIONS`, or the name of a ``table``."""
 
     function: str
     argument: Expression
     span: Span | None = field(default=None, compare=False, repr=False)
     more: tuple[Expression, ...] = ()
+    table: Table | None = None
 
 
 Expression = Number | Name | Negative | Operation | Call
@@ -112,6 +115,33 @@ def walk(expression: Expression) -> Iterator[Expression]:
 def names(expression: Expression) -> set[str]:
     """The names that occur, ``pi`` excepted."""
     return {node.name for node in walk(expression) if isinstance(node, Name)} - set(CONSTANTS)
+
+
+def expanded(table: Table, x: Expression) -> Expression:
+    """f(x) of a table by the functions that there are: every knot is a kink, where steps end,
+
+        f = y_0 + sum_k q_k(u_k),    u_k = (|x - x_k| - |x - x_(k+1)| + x_(k+1) - x_k)/2,
+        q_k(u) = u (a_k + u (b_k + u c_k))
+
+    u_k being x - x_k in its piece, 0 before it and the length of the piece behind: no digits are lost far from the
+    first point.  Where f is zero outside, its ends are steps.
+    """
+    (first, start), (last, end) = table.points[0], table.points[-1]
+    half = Number(Fraction(1, 2))
+    kinks = [Call("abs", subtract(x, _exact(place))) for place, _ in table.points]
+    total = _exact(start)
+    for k, ((one, later), polynomial) in enumerate(zip(pairwise(table.points), pieces(table), strict=True)):
+        inside = multiply(half, add(subtract(kinks[k], kinks[k + 1]), _exact(later[0] - one[0])))
+        a, b, c = map(_exact, polynomial)
+        total = add(total, multiply(inside, add(a, multiply(inside, add(b, multiply(inside, c))))))
+    if table.outside == OUTSIDE_ZERO:
+        total = subtract(total, multiply(_exact(start), Call("step", subtract(_exact(first), x))))
+        total = subtract(total, multiply(_exact(end), Call("step", subtract(x, _exact(last)))))
+    return total
+
+
+def _exact(value: Fraction) -> Expression:
+    return Number(value) if value >= 0 else Negative(Number(-value))
 
 
 # --- building, with the few simplifications that keep derivatives readable -----------------------------------------
@@ -195,6 +225,7 @@ class Derivation:
     def __init__(self, rates: Mapping[str, Expression]) -> None:
         self.rates = rates
         self._known: dict[int, Expression] = {}
+        self._kept: list[Expression] = []  # what tables are, for as long as their identities count
 
     def __call__(self, expression: Expression) -> Expression:
         found = self._known.get(id(expression))
@@ -227,6 +258,9 @@ class Derivation:
                 if isinstance(exponent, Number):
                     lowered = Number(exponent.value - 1)
                 return multiply(multiply(exponent, power(base, lowered)), inner)
+            case Call(_, argument, table=Table() as table):
+                self._kept.append(expanded(table, argument))
+                return self(self._kept[-1])
             case Call(function, argument) if function in JUMPS:
                 if all(is_number(self(one), 0) for one in children(expression)):
                     return ZERO
@@ -273,9 +307,9 @@ def substitute(expression: Expression, replacements: Mapping[str, Expression]) -
             return negative(substitute(operand, replacements))
         case Operation(operator, left, right):
             return Operation(operator, substitute(left, replacements), substitute(right, replacements))
-        case Call(function, argument, more=more):
+        case Call(function, argument, more=more, table=table):
             others = tuple(substitute(one, replacements) for one in more)
-            return Call(function, substitute(argument, replacements), more=others)
+            return Call(function, substitute(argument, replacements), more=others, table=table)
     return expression
 
 

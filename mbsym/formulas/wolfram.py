@@ -12,7 +12,8 @@ from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
+from mbsym.expressions.table import Table
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, expanded
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
 from mbsym.formulas.shape import present
@@ -125,6 +126,8 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
             return names[name]
         case Negative(operand):
             return f"-{_operand(operand, names)}"
+        case Call(_, argument, table=Table() as table):
+            return wolfram_expression(expanded(table, argument), names)
         case Call(function):
             arguments = [wolfram_expression(one, names) for one in children(expression)]
             if function == "step":

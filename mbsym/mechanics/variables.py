@@ -172,7 +172,8 @@ def ring_of(
     adjunctions += 4 * exact * sum(body.mass != ZERO or body.inertia is not None for body in system.bodies)
     for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):
-            adjunctions += 2 * _may_adjoin(node)
+            knots = len(node.table.points) if isinstance(node, Call) and node.table is not None else 1
+            adjunctions += 2 * knots * _may_adjoin(node)
     return Ring(
         system.coordinates,
         [*(item.name for item in system.prescribed), *moving],

@@ -27,6 +27,7 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.units import Units
@@ -400,6 +401,7 @@ class System(GuessesNames):
     symbols: tuple[WrittenSymbol, ...] = ()
     language: str = ""
     order: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"

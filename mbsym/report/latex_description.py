@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import (
@@ -62,6 +63,9 @@ def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
             return str(names[name]), 4
         case Negative(operand):
             return "-" + _bracketed(operand, 2, names), 1
+        case Call(function, argument, table=Table()):
+            written = function.replace("_", "\\_")
+            return f"\\operatorname{{{written}}}({expression(argument, names)})", 4
         case Call(function):
             return call(function, ", ".join(expression(one, names) for one in children(value))), 4
         case Operation("/", left, right):

@@ -30,6 +30,7 @@ from mbsym.source.settings import (
     read_relations,
 )
 from mbsym.source.symbols import read_symbols
+from mbsym.source.tables import read_tables
 
 
 def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | None:
@@ -44,6 +45,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
     _check_version(fields, reading)
     for key in ("name", "bodies"):
         fields.require(key)
+    tables = read_tables(fields.get("tables"), reading)
     parameters = read_parameters(fields.get("parameters"), reading)
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
     drafts = draft_bodies(fields.get("bodies"), reading)
@@ -64,6 +66,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         bodies=tuple(bodies),
         description=fields.text("description"),
         prescribed=prescribed,
+        tables=tables,
         loads=loads,
         relations=relations,
         assumptions=read_assumptions(fields.get("assumptions"), reading),

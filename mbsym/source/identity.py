@@ -226,7 +226,8 @@ class _FloatPoint:
                 return self.value(left) * self.value(right)
             case Operation("/", left, right):
                 return self.value(left) / self.value(right)
-            case Call(function, argument) if function not in KINKED:  # |x| - x vanishes at some points only
+            # |x| - x vanishes at some points only.
+            case Call(function, argument, table=None) if function not in KINKED:
                 return float(getattr(math, function)(self.value(argument)))
         raise ValueError
 

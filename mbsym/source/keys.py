@@ -12,6 +12,7 @@ SYSTEM = {
     "description": "a sentence or two about it",
     "parameters": "constants: names with a sign word, a number, or {sign, value, meaning}; or a plain list of names",
     "prescribed": "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}",
+    "tables": "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",
     "bodies": "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
     "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
@@ -44,6 +45,13 @@ PRESCRIBED = {
     "initial": "its value at t = 0 (0 when left out)",
     "meaning": "what it is, for reports",
     "unit": "its unit, such as rad or m",
+}
+
+TABLE = {
+    "points": "[argument, value], two or more, arguments increasing",
+    "between": "linear, or cubic: the natural spline through the points",
+    "outside": "hold: the first or the last value; or zero",
+    "unit": "the unit of its values, such as N*m",
 }
 
 BODY = {

@@ -33,6 +33,7 @@ BODY = {
 SECTIONS: dict[str, tuple[str, str | None]] = {
     "parameters": ("parameters", "sign"),
     "prescribed motions": ("prescribed", "rate"),
+    "tables": ("tables", "points"),
     "units": ("units", None),
     "relations": ("relations", None),
     "unperturbed motion": ("motion", "value"),

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from mbsym.expressions.parser import ascii_safe, decimal_comma, names_apart, parse_expression
+from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import Vector
@@ -142,7 +142,9 @@ class Reading:
         if scalar is None:
             return ZERO
         before = len(self.complaints.items)
-        tree = parse_expression(scalar.text, self.complaints, scalar.place, bool(allowed.kinds))
+        named = bool(allowed.kinds)
+        tables = self.scope.tables if named else NO_TABLES
+        tree = parse_expression(scalar.text, self.complaints, scalar.place, named, tables=tables)
         if tree is None:
             for one in names_apart(scalar.text, scalar.place, self.complaints.items[before:]):
                 self.scope.check(one, allowed)

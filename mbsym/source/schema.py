@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mbsym.expressions.table import CUBIC, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
 from mbsym.model.system import EXACT, GRAVITY_ORDERS, LANGUAGES, SHAPES
 from mbsym.source.keys import (
@@ -25,9 +26,11 @@ from mbsym.source.keys import (
     SHAPE,
     SIGNS,
     SYSTEM,
+    TABLE,
     VERSION,
 )
 from mbsym.source.symbols import LONGEST
+from mbsym.source.tables import MAX_POINTS
 
 Schema = dict[str, Any]
 
@@ -78,6 +81,7 @@ def _system_values() -> dict[str, Schema]:
         "dimensionless time": expression,
         "parameters": {"anyOf": [_named(_reference("parameter")), names]},
         "prescribed": _named({"anyOf": [expression, _record(PRESCRIBED, _TEXTS, required=("rate",))]}),
+        "tables": _named(_record(TABLE, _table_values(), required=("points",))),
         "bodies": {"type": "array", "items": _reference("body"), "minItems": 1},
         "loads": {"type": "array", "items": _reference("load")},
         "relations": _named(expression),
@@ -100,12 +104,18 @@ _TEXTS: dict[str, Schema] = {"meaning": _TEXT, "unit": _UNIT}
 _BODY_NAME = _TEXT
 
 
+def _table_values() -> dict[str, Schema]:
+    points: Schema = {"type": "array", "items": {**_list(2), "minItems": 2}, "minItems": 2, "maxItems": MAX_POINTS}
+    words: dict[str, Schema] = {"between": {"enum": [LINEAR, CUBIC]}, "outside": {"enum": [HOLD, OUTSIDE_ZERO]}}
+    return {"points": points, **words, "unit": _UNIT}
+
+
 def _definitions() -> dict[str, Schema]:
     return {
         "expression": {
             "type": ["string", "number"],
             "description": "numbers, names, + - * / **, parentheses, sin cos tan sqrt exp log atan sinh cosh tanh; "
-            "in loads abs sign step pulse",
+            "in loads abs sign step pulse and tables",
         },
         "vector": {"type": "array", "items": _reference("expression"), "minItems": 3, "maxItems": 3},
         "parameter": {"anyOf": [{"enum": list(SIGNS)}, _reference("expression"), _parameter_record()]},

@@ -10,6 +10,7 @@ from dataclasses import field
 from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, JUMPS, KINKED, Call, Expression, Name, walk
 from mbsym.model.system import acceleration_name, velocity_name
 
@@ -30,6 +31,7 @@ _KINDS = {
     "acceleration": "an acceleration",
     "abbreviation": "an abbreviation",
     "variable": "a variable",
+    "table": "a table",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -41,6 +43,7 @@ _PLURALS = {
     "acceleration": "accelerations",
     "abbreviation": "abbreviations",
     "variable": "the variable",
+    "table": "tables",
 }
 
 
@@ -74,7 +77,8 @@ class Scope:
     ``later`` holds the names of notation (or abbreviations, as ``ordered`` says) that are still to come, ``assumed``
     undeclared names that were complained about and are since taken for whatever their place allows, ``beside`` the keys
     that stand beside the one that is looked at.  While ``by_use`` is a dictionary, an unknown name in a place that
-    parameters may take is a parameter by its use; it is kept there with its first place.
+    parameters may take is a parameter by its use; it is kept there with its first place.  ``tables`` are called like
+    functions.
     """
 
     complaints: Complaints
@@ -84,6 +88,7 @@ class Scope:
     assumed: set[str] = field(default_factory=set)
     beside: set[str] = field(default_factory=set)
     by_use: dict[str, Span] | None = None
+    tables: dict[str, Table] = field(default_factory=dict)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
@@ -120,7 +125,7 @@ class Scope:
     def check(self, expression: Expression, allowed: Allowed) -> None:
         """Complain about every name in an expression that its place does not allow."""
         for node in walk(expression):
-            if isinstance(node, Call) and node.function in KINKED and node.function not in allowed.kinked:
+            if isinstance(node, Call) and _kinked_as(node) not in ("", *allowed.kinked):
                 self._refuse_kinked(node, allowed)
             if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
                 self.check_name(node.name, node.span, allowed)
@@ -131,7 +136,7 @@ class Scope:
         if allowed.kinked:
             message = f"{node.function} jumps, and the derivative of {allowed.what} is a force"
         else:
-            kind = "jump" if node.function in JUMPS else "kink"
+            kind = "jump" if _kinked_as(node) in JUMPS else "kink"
             message = f"{allowed.what} may not hold {node.function}, which has a {kind}"
         self.complaints.error("not-smooth", message, node.span, hint)
 
@@ -200,6 +205,13 @@ class Scope:
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None
 
 
+def _kinked_as(node: Call) -> str:
+    """The function with a kink or a jump that a call is of, for a table one as smooth; "" where it is smooth."""
+    if node.table is not None:
+        return "step" if node.table.jumps else "abs"
+    return node.function if node.function in KINKED else ""
+
+
 def listed(what: str, words: Iterable[str], most: int = 20) -> str | None:
     """``what: a, b, c``, cut where there are too many; None where there are none."""
     known = list(words)
@@ -213,6 +225,8 @@ def _enumerated(words: list[str]) -> str:
 def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and "prescribed" in allowed.kinds:
         return "declare what changes with time under 'prescribed'"
+    if kind == "table":
+        return "a table is called with its argument, as in torque(t)"
     if kind == "velocity" and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
     return None

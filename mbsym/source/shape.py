@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import Union
 
 from mbsym.expressions.angles import angle_name
-from mbsym.expressions.tree import ZERO, Expression, text
+from mbsym.expressions.table import HOLD, LINEAR, Table
+from mbsym.expressions.tree import ZERO, Expression, Number, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.system import (
     Body,
@@ -61,6 +62,16 @@ def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
         shape["initial"] = text(prescribed.initial)
     if prescribed.meaning:
         shape["meaning"] = prescribed.meaning
+    return shape
+
+
+def table_shape(table: Table) -> dict[str, Shape]:
+    points: list[Shape] = [[text(Number(x)), text(Number(y))] for x, y in table.points]
+    shape: dict[str, Shape] = {"points": points}
+    if table.between != LINEAR:
+        shape["between"] = table.between
+    if table.outside != HOLD:
+        shape["outside"] = table.outside
     return shape
 
 

@@ -149,6 +149,8 @@ class _TextReader:
                 self.error("syntax", "here 'name = value' is wanted", line.span)
                 continue
             read = self.items(value) if key == "limits" else value if first is None else self.record(value, first)
+            if key == "tables":
+                read = self.table(read)
             entries.append(Entry(label, read))
         return Entry(_key(block.heading, key), Mapping(tuple(entries), block.heading.span))
 
@@ -169,6 +171,23 @@ class _TextReader:
                 word = word_of(label.text)
                 entries.append(Entry(_key(label, word), self.unquoted(rest) if word == "meaning" else rest))
         return Mapping(tuple(entries), value.span)
+
+    def table(self, read: Node) -> Node:
+        """A record whose points ``((0, 0), (1, 2.5))`` are a list of lists; such a list alone is a record of it."""
+        if isinstance(read, Scalar):
+            read = Mapping((Entry(_key(read, "points"), read),), read.span)
+        assert isinstance(read, Mapping)
+        return Mapping(tuple(map(self.table_entry, read.entries)), read.span)
+
+    def table_entry(self, entry: Entry) -> Entry:
+        value = entry.value
+        if entry.key.text != "points" or not isinstance(value, Scalar):
+            return entry
+        points = self.items(value)
+        if isinstance(points, Sequence):
+            rows = (self.items(item) if isinstance(item, Scalar) else item for item in points.items)
+            points = Sequence(tuple(rows), points.span)
+        return Entry(entry.key, points)
 
     def unquoted(self, value: Scalar) -> Scalar:
         """The text between double quotes, if there are any."""

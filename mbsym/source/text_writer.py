@@ -14,6 +14,7 @@ from mbsym.source.shape import (
     motion_shape,
     parameter_shape,
     prescribed_shape,
+    table_shape,
 )
 
 _ROWS = (0, 1, 2)
@@ -36,6 +37,7 @@ def to_text(system: System) -> str:
     lines += _section("Parameters", {one.name: _record(parameter_shape(one), "sign") for one in system.parameters})
     motions = {one.name: _record(prescribed_shape(one), "rate") for one in system.prescribed}
     lines += _section("Prescribed motions", motions)
+    lines += _section("Tables", {one.name: _table(table_shape(one)) for one in system.tables})
     lines += _section("Units", {one.name: one.text for one in system.units.declared})
     numbers = {"0": "0", **{body.name: str(number) for number, body in enumerate(system.bodies, start=1)}}
     for number, body in enumerate(system.bodies, start=1):
@@ -73,6 +75,13 @@ def _record(shape: Data, first: str) -> str:
         written = _free(str(value)) if key == "meaning" else str(value)
         parts.append(written if index == 0 and key == first else f"{key} = {written}")
     return "; ".join(parts)
+
+
+def _table(shape: dict[str, Data]) -> str:
+    """``((0, 0), (1, 2.5)); between = cubic``."""
+    points = shape["points"]
+    assert isinstance(points, list)
+    return _record({**shape, "points": f"({', '.join(_value(point) for point in points)})"}, "points")
 
 
 def _free(value: str) -> str:

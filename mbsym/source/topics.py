@@ -52,7 +52,7 @@ def loads() -> str:
 
 def expressions() -> str:
     """What a formula in a description is made of."""
-    return _EXPRESSIONS.format(functions=", ".join(sorted(SMOOTH)), kinked=_KINKED)
+    return _EXPRESSIONS.format(functions=", ".join(sorted(SMOOTH)), kinked=_KINKED, tabulated=_TABULATED)
 
 
 def claim_kinds() -> str:
@@ -90,6 +90,9 @@ sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 +
                   potentials and dissipation functions as well, whose derivatives are forces.  A simulation stops at
                   each jump and kink and goes on from there"""
 
+_TABULATED = """\
+torque(x) of a table torque under 'tables': where abs may stand; where step may stand, if its end jumps"""
+
 _EXPRESSIONS = """\
 Formulas in a description
 
@@ -98,6 +101,7 @@ Formulas in a description
     operations    + - * / and ** with a rational exponent; parentheses
     functions     {functions}
     in loads      {kinked}
+    tables        {tabulated}
     velocities    x_dot of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
     accelerations x_ddot: in claims of equations of motion and of values
     time          t: in loads and claims

@@ -18,6 +18,7 @@ from mbsym.source.shape import (
     motion_shape,
     parameter_shape,
     prescribed_shape,
+    table_shape,
 )
 
 _PLAIN = re.compile(r"[A-Za-z0-9(./-][A-Za-z0-9 _.()*/+'<>=!-]*\Z")
@@ -37,6 +38,7 @@ def to_yaml(system: System) -> str:
         lines.append(f"order: [{', '.join(system.order)}]")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _mapping("tables", {one.name: table_shape(one) for one in system.tables})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
     lines += _bodies(system)
     lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])

@@ -71,6 +71,20 @@ loads:
       x: F*pulse(t, a, b) - F*sign(x_dot - b)*abs(x) + step(x - a/3)*F
       q: -F*step(1 - 2*t) + tanh(x)*abs(q_dot)*q_dot
 """
+#: Forces by points: of the time, and of a place.
+TABULATED = """
+mbsym: 1
+name: Tabulated
+parameters: {m: positive, a: positive, F: positive}
+tables:
+  push: {points: [[0, 0], [0.25, 2.5], [0.75, 0], [3, 1]], between: cubic}
+  sag: {points: [[-2, 1/3], [0.3, 0.25], [3.1, -1]], outside: zero}
+bodies:
+  - {name: block, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+  - {name: arm, attached to: block, rotation: {axes: [3], angles: [q]}, mass centre: [a, 0, 0], mass: m}
+loads:
+  - generalized force: {x: F*push(t), q: sag(q)*a + push(x_dot)}
+"""
 #: Name -> description; how many states.
 SYSTEMS = {
     "double-pendulum": 2,
@@ -80,6 +94,7 @@ SYSTEMS = {
     "nasty": 1,
     "functions": 2,
     "kinked": 3,
+    "tabulated": 3,
 }
 SMALL = ("double-pendulum", "functions", "kinked")
 COMPILER = shutil.which("cc")
@@ -87,7 +102,7 @@ COMPILER = shutil.which("cc")
 
 @cache
 def analysis_of(name: str) -> Analysis:
-    own = {"nasty": NASTY, "functions": FUNCTIONS, "kinked": KINKED}
+    own = {"nasty": NASTY, "functions": FUNCTIONS, "kinked": KINKED, "tabulated": TABULATED}
     return mbsym.loads(own[name]) if name in own else mbsym.load(SHIPPED / f"{name}.yaml")
 
 

@@ -69,8 +69,8 @@ class Symbols:
                 form = linear_form(argument)
                 opened = None if form is None else self._opened_form(form)
                 return Call(function, self.opened(argument) if opened is None else _written(opened))
-            case Call(function, argument, more=more):
-                return Call(function, self.opened(argument), more=tuple(map(self.opened, more)))
+            case Call(function, argument, more=more, table=table):
+                return Call(function, self.opened(argument), more=tuple(map(self.opened, more)), table=table)
             case Negative(operand):
                 return Negative(self.opened(operand))
             case Operation(operator, left, right):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from mbsym.expressions.place import Span
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, text
 from mbsym.model.system import rational
 from mbsym.model.units import LENGTH, MASS, NONE, TIME, Dimension, times, written
@@ -59,6 +60,11 @@ class Dimensions:
                 return Form() if name == "pi" else self.name_form(name)
             case Negative(operand):
                 return self.of(operand)
+            case Call(name, argument, table=Table()):  # the numbers in it have one dimension each, whatever they are
+                inner = self.of(argument)
+                if inner is not None:
+                    self._tabulated(name, argument, inner)
+                return self.name_form(name)
             case Call("sqrt", argument):
                 inner = self.of(argument)
                 return None if inner is None else inner.to_the(Fraction(1, 2))
@@ -83,6 +89,13 @@ class Dimensions:
             case Operation(_, left, right):
                 return self._sum(expression, left, right)
         raise TypeError(expression)
+
+    def _tabulated(self, name: str, argument: Expression, found: Form) -> None:
+        """All arguments of a table have one dimension."""
+        wanted = self.name_form(f"the argument of {name}")
+        if not self.inference.equate(found, wanted):
+            message = f"{_shown(argument)} is {self.told(found)}, and the argument of {name} is {self.told(wanted)}"
+            self.complain(message, _place(argument), None)
 
     def _product(self, left: Expression, right: Expression, power: int) -> Form | None:
         one, other = self.of(left), self.of(right)

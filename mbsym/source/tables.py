@@ -1,0 +1,91 @@
+"""Tables: inputs that were measured or drawn, as points and what is between them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Span
+from mbsym.expressions.table import CUBIC, HOLD, LINEAR, OUTSIDE_ZERO, Table
+from mbsym.model.system import rational
+from mbsym.model.units import Declared
+from mbsym.source.keys import TABLE
+from mbsym.source.placed import Entry, Node, Sequence
+from mbsym.source.reading import Reading
+from mbsym.source.scope import NUMBER
+
+#: A table has at most so many points: each is a kink, and between two of them the rates are compiled anew.
+MAX_POINTS = 100
+
+Place = tuple[Fraction, Fraction]
+
+
+def read_tables(node: Node | None, reading: Reading) -> tuple[Table, ...]:
+    """``torque: {points: [[0, 0], [1, 2.5]], between: linear, outside: hold, unit: N*m}``; entered in the scope."""
+    tables = []
+    for entry in () if node is None else reading.entries(node, "'tables'"):
+        declared = reading.scope.declare(entry.key.text, "table", entry.key.span)
+        table = _table(entry, reading)
+        if declared:
+            reading.scope.tables[table.name] = table
+            tables.append(table)
+    return tuple(tables)
+
+
+def _table(entry: Entry, reading: Reading) -> Table:
+    name = entry.key.text
+    what = f"the table {ascii_safe(name)}"
+    hint = "write {points: [[0, 0], [1, 2.5]]}"
+    fields = reading.fields(entry.value, what, TABLE, hint)
+    between = _word("between", (LINEAR, CUBIC), fields.get("between"), reading)
+    outside = _word("outside", (HOLD, OUTSIDE_ZERO), fields.get("outside"), reading)
+    unit = fields.get("unit")
+    scalar = None if unit is None else reading.scalar(unit, f"the unit of {ascii_safe(name)}")
+    if scalar is not None:
+        reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
+    node = fields.require("points", hint)
+    points = () if node is None else _points(node, what, reading)
+    if len(points) < 2:  # something was complained about; this goes on for it
+        points = ((Fraction(0), Fraction(0)), (Fraction(1), Fraction(0)))
+    return Table(name, points, between, outside, entry.key.span)
+
+
+def _word(key: str, choices: tuple[str, ...], node: Node | None, reading: Reading) -> str:
+    """One of the words; the first of them where there is none."""
+    found = None if node is None else reading.word(node, f"'{key}'", choices)
+    return found or choices[0]
+
+
+def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:
+    """The points, each complained about that is none, or stands in the wrong order."""
+    items = reading.items(node, f"the points of {what}")
+    if isinstance(node, Sequence) and not 2 <= len(items) <= MAX_POINTS:
+        reading.error("wrong-shape", f"{what} has 2 to {MAX_POINTS} points, not {len(items)}", node.span)
+    found = [(point, item.span) for item in items if (point := _point(item, what, reading)) is not None]
+    for (one, _), (later, span) in pairwise(found):
+        if later[0] <= one[0]:
+            _disordered(one, later, span, reading)
+    increasing = len(found) == len(items) and all(one[0][0] < later[0][0] for one, later in pairwise(found))
+    return tuple(point for point, _ in found) if increasing else ()
+
+
+def _disordered(one: Place, later: Place, span: Span, reading: Reading) -> None:
+    message = "the arguments of a table increase from point to point"
+    hint = "for a jump add a step or a pulse to it" if later[0] == one[0] else "sort the points"
+    reading.error("table-order", message, span, hint)
+
+
+def _point(node: Node, what: str, reading: Reading) -> Place | None:
+    if not isinstance(node, Sequence) or len(node.items) != 2:
+        reading.shape_error(node, f"a point of {what}", "two numbers", "write [0.5, 2], the argument and the value")
+        return None
+    numbers = []
+    for item in node.items:
+        errors = reading.errors
+        number = rational(reading.expression(item, NUMBER))
+        if number is None and reading.errors == errors:
+            reading.error("bad-number", "the numbers of a table are rational", item.span, "write them as decimals")
+        numbers.append(number if reading.errors == errors else None)
+    first, second = numbers
+    return None if first is None or second is None else (first, second)
