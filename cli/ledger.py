@@ -17,15 +17,38 @@ if TYPE_CHECKING:
 #: A table of three columns of sentences needs so many characters.
 WIDE = 100
 
-_COLOURS = {"proved": "green", "verified numerically": "green", "estimated": "yellow", "undecided": "yellow"}
+_COLOURS = {
+    "proved": "green",
+    "verified numerically": "green",
+    "measured": "green",
+    "estimated": "yellow",
+    "undecided": "yellow",
+}
+
+#: By what follows of a line; an accuracy is that of --accuracy and --until.
+_TITLES = {
+    "not needed": "ledger: left out because this scene does not need it",
+    "open": "ledger: left out; whether this scene needs it depends on the accuracy (--accuracy X --until T)",
+    "needed": "ledger: left out although this scene needs it at this accuracy",
+}
 
 
 def show_ledger(lines: Sequence[LedgerLine], unmeasured: Sequence[str]) -> None:
-    """What was left out, why that is safe, what it saved."""
+    """What was left out, why that is safe, what it saved; apart, what nobody knows to be safe, and what is not."""
     out = console()
-    out.print(Text("  ledger: left out because this scene does not need it", style="bold cyan"))
+    for standing, title in _TITLES.items():
+        own = [line for line in lines if line.standing == standing]
+        if own or standing == "not needed":
+            out.print(Text(f"  {title}", style="bold red" if standing == "needed" else "bold cyan"))
+            _show(own)
+    if unmeasured:
+        indented(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
+
+
+def _show(lines: Sequence[LedgerLine]) -> None:
+    out = console()
     if not lines:
-        out.print("    nothing: everything in the description is needed")
+        out.print("    nothing")
     elif out.is_terminal and out.width >= WIDE:
         out.print(Padding(_table(lines), (0, 0, 0, 4)))
     else:
@@ -34,14 +57,12 @@ def show_ledger(lines: Sequence[LedgerLine], unmeasured: Sequence[str]) -> None:
             indented(_why(line), 6)
             for text in line.saved:
                 indented(Text(text), 6)
-    if unmeasured:
-        indented(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
 
 
 def _table(lines: Sequence[LedgerLine]) -> Table:
     table = Table(box=None, padding=(0, 2, 1, 0), header_style="bold")
     table.add_column("left out", ratio=3)
-    table.add_column("why it is safe", ratio=4)
+    table.add_column("why", ratio=4)
     table.add_column("with it, and without it", ratio=4)
     for line in lines:
         left = Text.assemble((line.kind, "bold"), f"\n{line.what}")

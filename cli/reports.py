@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
+    from mbsym.numerics.ledger.work import Wanted
     from mbsym.report.made_figures import MadeFigure
     from mbsym.report.rendering import Rendered
 
@@ -44,7 +45,7 @@ class Request:
     terms: int
     quiet: bool
     strict_claims: bool = False
-    ledger: bool = False
+    ledger: Wanted | bool = False  # or the accuracy that it is held against
     brief: bool = False
     width: int = 0
     angles: Angles | None = None  # None: what each kind of text usually has
@@ -96,7 +97,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
         if request.ledger:
             say(f"{path.name}: ledger")
             try:
-                found = _ledger(analysis, texts)
+                found = _ledger(analysis, texts, request.ledger)
             except Exception as error:  # finished reports are not lost to it
                 analysis.defects.append(error)
     missing = [file.filename for file in files if file.text is None]
@@ -120,13 +121,13 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     return made_figures(text, meaning(system), unchanged)
 
 
-def _ledger(analysis: Analysis, texts: dict[str, str | bytes]) -> Ledger:
+def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: Wanted | bool) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
     from mbsym.report.ledger import ledger_csv, with_ledger
     from mbsym.report.targets import TARGETS
 
-    found = ledger(analysis)
+    found = ledger(analysis, wanted=None if isinstance(wanted, bool) else wanted)
     results = TARGETS["json"].filename
     if results in texts:
         texts[results] = with_ledger(str(texts[results]), found)

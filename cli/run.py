@@ -12,6 +12,7 @@ from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
+from mbsym_cli.run_ledger import Asked, ledger_options
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 )
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
-@click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
+@ledger_options
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
@@ -52,7 +53,7 @@ def command(
     language: str | None,
     strict_claims: bool,
     brief: bool,
-    ledger: bool,
+    ledger: Asked,
     quiet: bool,
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
@@ -73,6 +74,8 @@ def command(
 
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
+    With --accuracy X --until T what the equations leave out (orders of gravity, negligible masses) is held against the
+    motion, as 'mbsym simulate --accuracy' does; what changes it too much is told to be needed.
 
     With --language ru or es the headings, captions, sentences and verdicts of the
     LaTeX reports are in Russian or Spanish; what claims are about, and why a
@@ -92,6 +95,7 @@ def command(
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --detail full
       mbsym run systems/satellite.yaml --ledger
+      mbsym run systems/satellite.yaml --ledger --accuracy 1e-6 --until 20
       mbsym run systems/satellite.yaml --format latex --language ru
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
       mbsym run systems/tethered-satellites.yaml --angles sums
@@ -109,6 +113,7 @@ def command(
     tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
     budget = asked.whole("--terms", terms, 1, 10**12)
     until = asked.number("--animate", animate)
+    told = ledger.read(asked)
     if animate is not None and "html" not in kinds:
         hint = "add html to --format, or use 'mbsym simulate --animate'"
         asked.complain("--animate", "conflicting-options", "the motion is shown in report.html", hint)
@@ -124,7 +129,7 @@ def command(
         budget,
         quiet,
         strict_claims,
-        ledger,
+        told,
         brief,
         width,
         form,

@@ -9,6 +9,7 @@ without   parameters taken as zero: a mass, a stiffness, a damping that this mot
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -19,7 +20,7 @@ from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
-from mbsym.numerics.scenario import Scenario, changed
+from mbsym.numerics.scenario import Scenario, changed, exact
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,27 @@ def droppable(system: System) -> tuple[str, ...]:
         tied |= names(x)
     used = {name for x in expressions((system.bodies, system.loads)) for name in names(x)}
     return tuple(name for name in system.parameter_names if name in used and name not in tied)
+
+
+def emptied(scenario: Scenario, without: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Bodies whose mass and inertia all become zero with the parameters ``without``, and which of these they hold."""
+    less = {**scenario.parameters, **dict.fromkeys(without, Fraction(0))}
+    found: dict[str, tuple[str, ...]] = {}
+    for body in scenario.system.bodies:
+        rows = () if body.inertia is None else body.inertia.tensor
+        values = (body.mass, *(x for row in rows for x in row))
+        held = set[str]().union(*(names(x) for x in values)) & set(without)
+        if held and all(exact(x, less) == 0 for x in values):
+            found[body.name] = tuple(name for name in scenario.system.parameter_names if name in held)
+    return found
+
+
+def parted(scenario: Scenario, model: Model) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What a model takes as zero: bodies that have no mass and no inertia left, and parameters that are none of
+    theirs."""
+    empty = emptied(scenario, model.without)
+    held = {name for found in empty.values() for name in found}
+    return tuple(empty), tuple(name for name in model.without if name not in held)
 
 
 def _fields(system: System) -> list[NewtonianGravity]:

@@ -16,6 +16,7 @@ from mbsym.numerics.kinds import (
     KERNEL,
     LEFT_OUT,
     LINEARITY,
+    MASSES,
     METHOD,
     PARTS,
     RESTING,
@@ -23,7 +24,7 @@ from mbsym.numerics.kinds import (
     WELDED,
 )
 from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
-from mbsym.numerics.models import Model, described
+from mbsym.numerics.models import Model, described, parted
 from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
 from mbsym.numerics.plan import MEASURED, PROVED, SECONDS, Item, Refused
 from mbsym.numerics.reduced import Reduced
@@ -77,8 +78,13 @@ def _models(settled: Settled) -> Iterator[Item]:
         yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
     if taken.model.without:
         why = "as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them"
-        left = taken.model.without
-        yield Item(LEFT_OUT, left, ", ".join(left), why, taken.worst, taken.how, taken.operations)
+        bodies, others = parted(scene.scenario, taken.model)
+        left = ", ".join(taken.model.without)
+        if bodies:
+            yield Item(MASSES, bodies, f"without {left}", why, taken.worst, taken.how, taken.operations)
+        if others:
+            error = None if bodies else taken.worst  # that of all together stands with the bodies
+            yield Item(LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
 
 
 def _why_model(model: ModelChoice) -> str:

@@ -98,7 +98,7 @@ def planned(
     times = np.asarray(times, dtype=float)
     end = float(times[-1])
     watch("the motion in outline")
-    scene, choice, remark = _outlined(scenario, accuracy, times)
+    scene, choice, remark = outlined(scenario, accuracy, times)
     model = _model(scene, pins, watch)
     resting = None if pins.whole or model.taken.model.linear else _resting(model.dynamics)
     worth, goal, too_simple = worth_of(scene, model.taken)
@@ -140,7 +140,7 @@ def planned(
 # --- the scene ---
 
 
-def _outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene, Choice, str]:
+def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene, Choice, str]:
     """The most faithful model with a coarse run, which says what quantities are measured by."""
     model, rich, remark = richest(scenario)
     end = float(times[-1])

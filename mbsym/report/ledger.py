@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
-from mbsym.numerics.ledger.entry import SECONDS, Ledger, Measure, Saving
+from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
 
-COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least")
+COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
 
 #: So many names are told on the terminal; the files hold all of them.
 MOST_NAMES = 8
@@ -19,13 +19,15 @@ MOST_NAMES = 8
 
 @dataclass(frozen=True)
 class LedgerLine:
-    """One saving as text: what was left out, why that is safe (and how it is known), what it saved."""
+    """One saving as text: what was left out, why that is safe (and how it is known), what it saved; whether the scene
+    needs it."""
 
     kind: str
     what: str
     why: str
     how: str
     saved: tuple[str, ...]
+    standing: str = NOT_NEEDED
 
 
 def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
@@ -37,6 +39,7 @@ def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
             item.why,
             item.how,
             tuple(_compared(measure) for measure in item.measures if measure.clear),
+            item.standing,
         )
         for item in found.savings
     )
@@ -66,7 +69,9 @@ def ledger_csv(found: Ledger) -> str:
         head = (saving.kind, "; ".join(saving.what), saving.why, saving.how)
         for item in saving.measures:
             numbers = (f"{x:.6g}" if item.unit == SECONDS else int(x) for x in (item.without, item.taken, item.saved))
-            writer.writerow((*head, item.quantity, item.unit, *numbers, "yes" if item.at_least else "no"))
+            writer.writerow(
+                (*head, item.quantity, item.unit, *numbers, "yes" if item.at_least else "no", saving.standing)
+            )
     return stream.getvalue()
 
 
@@ -86,7 +91,16 @@ def _saving(item: Saving) -> dict[str, Any]:
         }
         for measure in item.measures
     ]
-    return {"kind": item.kind, "what": list(item.what), "why": item.why, "how": item.how, "measures": measures}
+    return {
+        "kind": item.kind,
+        "what": list(item.what),
+        "why": item.why,
+        "how": item.how,
+        "measures": measures,
+        "standing": item.standing,
+        "error": item.error,
+        "tolerable": item.tolerable,
+    }
 
 
 def with_ledger(results: str, found: Ledger) -> str:

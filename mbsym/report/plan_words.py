@@ -12,6 +12,7 @@ from mbsym.numerics.kinds import (
     GRAVITY,
     LEFT_OUT,
     LINEARITY,
+    MASSES,
     METHOD,
     PARTS,
     RESTING,
@@ -47,6 +48,7 @@ TITLES = {
     GRAVITY: "gravity",
     LINEARITY: "equations",
     LEFT_OUT: "left out",
+    MASSES: "masses",
     RESTING: "resting",
     PARTS: "parts",
     WELDED: "welded",
@@ -113,7 +115,7 @@ def item_words(item: Item, plan: Plan) -> str:
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
         chosen = f"{chosen}, {fineness.chosen}, {duration(plan.seconds)} a run"
-    what = f"{', '.join(item.what)} " if item.kind in (RESTING, PARTS, WELDED) else ""
+    what = f"{', '.join(item.what)} " if item.kind in (MASSES, RESTING, PARTS, WELDED) else ""
     refused = "".join(f"; {refused_words(one, item.unit)}" for one in item.refused)
     return f"{what}{chosen}: {item.why}{refused}"
 

@@ -8,9 +8,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-#: How it is known that leaving something out changes nothing (PROVED, VERIFIED), or how much it changes (ESTIMATED);
-#: UNDECIDED where there are no numbers to estimate it with.
-PROVED, VERIFIED, ESTIMATED, UNDECIDED = "proved", "verified numerically", "estimated", "undecided"
+#: How it is known that leaving something out changes nothing (PROVED, VERIFIED), or how much it changes (MEASURED by a
+#: run without it, else ESTIMATED); UNDECIDED where there are no numbers to estimate it with.
+PROVED, VERIFIED, MEASURED, ESTIMATED, UNDECIDED = (
+    "proved",
+    "verified numerically",
+    "measured",
+    "estimated",
+    "undecided",
+)
+
+#: What follows: the scene does not need it; it does; or nobody knows until an accuracy is asked for.
+NOT_NEEDED, NEEDED, OPEN = "not needed", "needed", "open"
 
 TERMS, OPERATIONS, SECONDS, COUNT = "terms", "operations", "seconds", "count"
 
@@ -43,13 +52,29 @@ class Measure:
 
 @dataclass(frozen=True)
 class Saving:
-    """``what`` was left out; ``why`` is the justification and ``how`` its kind."""
+    """``what`` was left out; ``why`` is the justification and ``how`` its kind.
+
+    ``error`` is what that changes of the motion, relative to its size, and ``tolerable`` what it may change; both are
+    None where it changes nothing, or where nobody asked for an accuracy.
+    """
 
     kind: str
     what: tuple[str, ...]
     why: str
     how: str
     measures: tuple[Measure, ...]
+    error: float | None = None
+    tolerable: float | None = None
+
+    @property
+    def standing(self) -> str:
+        """NOT_NEEDED where leaving it out changes nothing, or no more than is tolerable; NEEDED where more; else OPEN.
+
+        Without an error to hold against an accuracy, an estimate of what is dropped decides nothing.
+        """
+        if self.error is not None and self.tolerable is not None:
+            return NOT_NEEDED if self.error <= self.tolerable else NEEDED
+        return NOT_NEEDED if self.how in (PROVED, VERIFIED) else OPEN
 
     @property
     def saves(self) -> bool:

@@ -13,6 +13,7 @@ from mbsym.numerics.kinds import (
     DROPPED,
     ENTRIES,
     GRAVITY,
+    LEFT_OUT,
     MASSLESS,
     NOT_ASKED,
     PARTS,
@@ -27,9 +28,9 @@ from mbsym.numerics.kinds import (
     VALUES,
     WELDED,
 )
-from mbsym.numerics.ledger import code, described, formulas, motion
+from mbsym.numerics.ledger import code, described, formulas, measured, motion
 from mbsym.numerics.ledger.entry import Ledger, Saving
-from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Work
+from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Wanted, Work
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
@@ -51,16 +52,18 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
     DEAD: code.dead_operations,
     STEADY: code.steady_operations,
     VALUES: code.values,
-    GRAVITY: described.gravity_orders,
+    GRAVITY: measured.gravity_orders,
+    LEFT_OUT: measured.simpler_model,
 }
 
 
-def ledger(analysis: Analysis, seconds: float = BUDGET) -> Ledger:
+def ledger(analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> Ledger:
     """What this run left out, why that is safe, and what it saved; call it when the run itself is over.
 
-    ``seconds`` bound the counterfactuals together: none is begun that would probably exceed them.
+    ``seconds`` bound the counterfactuals together: none is begun that would probably exceed them.  What the
+    equations leave out is held against ``wanted``, an accuracy over a time.
     """
-    work = Work(analysis, seconds)
+    work = Work(analysis, seconds, wanted)
     found: list[Saving] = []
     unmeasured = []
     for kind, savings in KINDS.items():

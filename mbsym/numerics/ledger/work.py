@@ -57,11 +57,20 @@ class Counted:
         return Measure(f"terms of {of}", TERMS, self.terms, here.terms), seconds
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """An ``accuracy`` (relative, of every coordinate and velocity) that a motion from 0 to ``time`` is to have."""
+
+    accuracy: float
+    time: float
+
+
 class Work:
     """The model of an analysis and its counterfactuals."""
 
-    def __init__(self, analysis: Analysis, seconds: float = BUDGET) -> None:
+    def __init__(self, analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> None:
         self.analysis = analysis
+        self.wanted = wanted
         self.system = analysis.system
         self._end = time.perf_counter() + seconds
 

@@ -1,0 +1,90 @@
+"""What the equations leave out, held against an accuracy: the motion without it beside the motion with it.
+
+Both are those of ``mbsym simulate --accuracy``: the same models, the same measure of their errors, the same part of the
+accuracy that a model may take.  Where no accuracy is asked for only the size of what is dropped is estimated, which
+decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite
+
+import numpy as np
+
+from mbsym.numerics.kinds import LEFT_OUT, LINEARITY, MASSES
+from mbsym.numerics.ledger import described
+from mbsym.numerics.ledger.entry import ESTIMATED, MEASURED, OPERATIONS, UNDECIDED, Measure, Saving
+from mbsym.numerics.ledger.work import Wanted, Work
+from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.model_choice import PART, Scene, Tried, model_chosen, model_settled
+from mbsym.numerics.models import Model, parted
+from mbsym.numerics.plan import MEASURED as BY_A_RERUN
+from mbsym.numerics.plan import Accuracy
+from mbsym.numerics.planning import outlined
+
+#: Times at which two motions are compared, besides the steps between.
+TIMES = 501
+
+
+def gravity_orders(work: Work) -> Iterator[Saving]:
+    """Terms of the Newtonian field above the chosen order: their size, or what they change of the motion."""
+    found = list(described.gravity_orders(work))
+    if work.wanted is None or not found:
+        yield from found
+        return
+    scene = _scene(work, work.wanted)
+    tried = None if scene is None else model_settled(scene, Model()).taken
+    for saving in found:
+        yield saving if tried is None else _held(saving, tried, work.wanted)
+
+
+def simpler_model(work: Work) -> Iterator[Saving]:
+    """What a run to the accuracy leaves out of the equations as well: all that is not linear, parameters, masses."""
+    scene = None if work.wanted is None else _scene(work, work.wanted)
+    if scene is None or work.wanted is None:
+        return
+    taken = model_chosen(scene).taken
+    model = taken.model
+    before = scene.rich.right_hand_side.operations
+    measures = (Measure("operations of the right-hand side at these values", OPERATIONS, before, taken.operations),)
+    why = f"simulate --accuracy {work.wanted.accuracy:g} leaves it out"
+    for kind, what in _left_out(scene, model):
+        yield _held(Saving(kind, what, why, ESTIMATED, measures), taken, work.wanted)
+
+
+def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]]]:
+    if model.linear:
+        yield LINEARITY, ("all that is not linear in the deviation",)
+    bodies, others = parted(scene.scenario, model)
+    if bodies:
+        yield MASSES, bodies
+    if others:
+        yield LEFT_OUT, others
+
+
+def _scene(work: Work, wanted: Wanted) -> Scene | None:
+    """The motion in outline; None without numbers, or where it does not come to the end."""
+    if work.scenario is None:
+        return None
+    work.require(work.cost[1])
+    try:
+        return outlined(work.scenario, Accuracy(wanted.accuracy), np.linspace(0, wanted.time, TIMES))[0]
+    except Breakdown:
+        return None
+
+
+def _held(saving: Saving, tried: Tried, wanted: Wanted) -> Saving:
+    """A saving with what it changes of the motion, beside what a model may change at this accuracy."""
+    tolerable = PART * wanted.accuracy
+    if not isfinite(tried.worst):
+        why = f"{saving.why}; what that changes of the motion could not be measured"
+        return replace(saving, why=f"{why}: {tried.why}" if tried.why else why, how=UNDECIDED)
+    how = MEASURED if tried.how == BY_A_RERUN else ESTIMATED
+    word = "no more" if tried.worst <= tolerable else "more"
+    why = (
+        f"{saving.why}; until {wanted.time:g} it changes the motion by {tried.worst:.1e} of its size, {word} than the "
+        f"{tolerable:g} that a model may at an accuracy of {wanted.accuracy:g}"
+    )
+    return replace(saving, why=why, how=how, error=tried.worst, tolerable=tolerable)
