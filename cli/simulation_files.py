@@ -85,11 +85,11 @@ def _happened(run: Simulation) -> dict[str, str]:
 
 
 def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
+    if run.section is None or not kinds:
+        return {}
     from mbsym.report.section_figure import section_figure
 
-    return (
-        {} if run.section is None or not kinds else section_figure(run.section, run.system, note(run.trajectory), kinds)
-    )
+    return section_figure(run.section, run.system, note(run.trajectory), kinds)
 
 
 def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:

@@ -28,6 +28,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.system import velocity_name
+from mbsym.numerics.kernels.cells import place_of, value_of
 from mbsym.numerics.kernels.interface import FLOAT64, Code
 from mbsym.numerics.kernels.stepwise import stepwise
 from mbsym.numerics.scenario import Scenario
@@ -75,6 +76,7 @@ def states_about(given: Scenario, inputs: Sequence[str]) -> list[list[float]] | 
     system = given.system
     state = map(float, (*given.positions, *given.velocities))
     start = dict(zip((*system.coordinates, *system.velocities), state, strict=True)) | {"t": 0.0}
+    start |= {name: value_of(name) for name in inputs if place_of(name) is not None}
     if any(name not in start for name in inputs):
         return None
     angles = angle_denominators(system)

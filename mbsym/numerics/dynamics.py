@@ -25,6 +25,7 @@ from mbsym.mechanics.programs import Programs, programs, scene_without_accelerat
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
 from mbsym.numerics.features import SLIDING, Features, features, held, sign_that_holds
+from mbsym.numerics.kernels.cells import Cells
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, bound, substituted
@@ -43,7 +44,7 @@ class Dynamics:
         self.inputs = ("t", *self.system.coordinates, *self.system.velocities)
         self.size = len(self.system.coordinates)
         self.apart = apart
-        self._on_sides: dict[tuple[int, ...], Dynamics] = {}
+        self._on_sides: dict[int | None, Frozen] = {}
 
     @cached_property
     def _programs(self) -> Programs:
@@ -74,11 +75,18 @@ class Dynamics:
         """(t, q, q') -> what stands under signs and moduli in the rates: where one is 0 they are not smooth."""
         return self.features.switches
 
-    def on_sides(self, sides: tuple[int, ...]) -> Dynamics:
-        """The same with the signs of its switches held, each -1 or 1, or 0 for one that stays where it changes."""
-        if sides not in self._on_sides:
-            self._on_sides[sides] = Frozen(self, sides)
-        return self._on_sides[sides]
+    def on_sides(self, sides: tuple[int, ...]) -> Frozen:
+        """The same with the signs of its switches held, each -1 or 1, or 0 for one that stays where it changes.
+
+        Until it is asked for with other sides: the code is the same for all that have the same 0, and is so told of
+        the sides; whoever runs it asks before every step.
+        """
+        sliding = sides.index(SLIDING) if SLIDING in sides else None
+        if sliding not in self._on_sides:
+            self._on_sides[sliding] = Frozen(self, sliding)
+        found = self._on_sides[sliding]
+        found.cells.values[:] = sides
+        return found
 
     @cached_property
     def pivots(self) -> Code:
@@ -192,11 +200,15 @@ class Dynamics:
 
 
 class Frozen(Dynamics):
-    """A scenario's dynamics with the signs of its switches held: smooth, and right on that side of every switch."""
+    """A scenario's dynamics with the signs of its switches held: smooth, and right on that side of every switch.
 
-    def __init__(self, whole: Dynamics, sides: tuple[int, ...]) -> None:
+    The signs stand in ``cells``; that of the switch number ``sliding`` is what keeps it at 0.
+    """
+
+    def __init__(self, whole: Dynamics, sliding: int | None) -> None:
         super().__init__(whole.scenario, whole.ring, whole.apart)
-        self.whole, self.sides = whole, sides
+        self.whole, self.sliding = whole, sliding
+        self.cells = Cells(len(whole.switches.outputs))
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
 
@@ -213,12 +225,20 @@ class Frozen(Dynamics):
     @cached_property
     def holding(self) -> Code:
         """(t, q, q') -> (s, 0 where that is a solution); see ``sign_that_holds``."""
-        return sign_that_holds(self.whole.right_hand_side, self.whole.switches, self.sides)
+        assert self.sliding is not None
+        others, node = dict(self._read), self.whole.switches.outputs[self.sliding]
+        del others[node.number]
+        return sign_that_holds(self.whole.right_hand_side, node, others)
 
     @cached_property
     def _signs(self) -> dict[int, Node]:
-        program, places = self._specialised, enumerate(self.whole.switches.outputs)
-        return {
-            node.number: self.holding.outputs[0] if self.sides[k] == SLIDING else program.number(self.sides[k])
-            for k, node in places
-        }
+        found = dict(self._read)
+        if self.sliding is not None:
+            found[self.whole.switches.outputs[self.sliding].number] = self.holding.outputs[0]
+        return found
+
+    @property
+    def _read(self) -> dict[int, Node]:
+        """The signs as they stand in memory, by the numbers of the switches."""
+        pairs = zip(self.whole.switches.outputs, self.cells.names, strict=True)
+        return {node.number: self._specialised.input(name) for node, name in pairs}

@@ -90,18 +90,16 @@ def held(code: Code, signs: Mapping[int, Node]) -> tuple[Node, ...]:
     return tuple(program.evaluate(code.outputs, inputs, program, standing))
 
 
-def sign_that_holds(rates: Code, switches: Code, sides: tuple[int, ...]) -> Code:
-    """(t, q, q') -> s and g'(-1) - 2 g'(0) + g'(1), where g of the one sliding switch stays 0 with s for its sign,
+def sign_that_holds(rates: Code, sliding: Node, others: Mapping[int, Node]) -> Code:
+    """(t, q, q') -> s and g'(-1) - 2 g'(0) + g'(1), where the one ``sliding`` switch g stays 0 with s for its sign,
 
         g' = g_t + g_x . x' = a + b s = 0,    s = -a/b,
 
     g' along the motion being linear in s where the second is 0 (Filippov, Differential equations with discontinuous
-    righthand sides, 1988, chapter 2; it is Utkin's equivalent control).  The other signs are those of ``sides``.
+    righthand sides, 1988, chapter 2; it is Utkin's equivalent control).  ``others`` are the signs of the
+    other switches, by their numbers.
     """
-    program, sliding = rates.program, switches.outputs[sides.index(SLIDING)]
-    others = {
-        node.number: program.number(side) for node, side in zip(switches.outputs, sides, strict=True) if side != SLIDING
-    }
+    program = rates.program
     slopes = gradient(program, sliding, [program.input(name) for name in rates.inputs])
 
     def rate(side: int) -> Node:

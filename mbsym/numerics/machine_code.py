@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from mbsym.numerics.compensation import compensated_code
@@ -24,5 +25,7 @@ def machine_code(dynamics: Any, name: str, scalar: str = FLOAT64) -> Code:
     if scalar != FLOAT64 or name not in COMPENSATED or not isinstance(given, Scenario):
         return code
     judged = range(len(code.outputs) // 2 if name == "right_hand_side" else 0, len(code.outputs))
-    found = compensated_code(given, code, judged)
-    return code if found is None else found.code
+    instructions = [code.program.instructions[number] for number in code.program.live(code.outputs)]
+    read = {str(one.payload) for one in instructions if one.operation == "input"} - set(code.inputs)
+    found = compensated_code(given, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
+    return code if found is None else replace(found.code, inputs=code.inputs)

@@ -197,7 +197,7 @@ def integrated(
         breakdown = diagnosed(dynamics, trouble, past)
     except KeyboardInterrupt:
         interrupted = True
-    seconds = time.perf_counter() - started
+    seconds = max(0.0, time.perf_counter() - started - work.compiling)
     kept = np.array(times[:reached], dtype=float)
     if breakdown is not None and breakdown.kind in (STEP_LIMIT, STUCK, STOPPED) and breakdown.time > kept[-1]:
         # The state in which it stopped is as good as any other: with rows far apart it may be all there is.

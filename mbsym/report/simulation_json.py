@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.model.quantities import energy_unit, units_by_name
+from mbsym.numerics.methods.interface import COUNTS
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.between_steps import between_steps_json
@@ -54,7 +55,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "step_limit": found.setting.step_limit,
         "parameters": {name: float(value) for name, value in scenario.parameters.items()},
         "initial": dict(zip([*system.coordinates, *system.velocities], state, strict=True)),
-        "work": {name: count for name, count in vars(found.work).items() if name != "changes"},
+        "work": {name: getattr(found.work, name) for name in COUNTS},
         "files": list(files),
         "versions": versions(),
         **_units(run),

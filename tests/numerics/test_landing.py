@@ -13,8 +13,10 @@ from scipy.integrate import quad, solve_ivp
 import mbsym
 from mbsym.numerics.accuracy import NoEstimate
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods import landing
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.methods import landing, runge_kutta
 from mbsym.numerics.methods.interface import Breakdown, Setting
+from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.landing import LandingRun
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
@@ -201,3 +203,41 @@ def test_a_feature_that_is_not_looked_for_is_noticed(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(LandingRun, "_window", lambda self, piece: None)
     run = mbsym.simulate(mbsym.loads(described("100*exp(-((t - 5.3)/0.02)**2)")), 20, method="taylor", estimate=True)
     assert isinstance(run.error, NoEstimate) or run.error.largest > 1e-3
+
+
+def test_all_sides_of_switches_share_one_compiled_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+    whole = runge_kutta.compiled
+    monkeypatch.setattr(runge_kutta, "compiled", lambda *given, **more: made.append(1) or whole(*given, **more))
+    text = described("500*pulse(t, 5, 5 + 1/500) + step(t - 7) - step(t - 8) - 3*sign(x - 100)")
+    run = run_of("dop853", text)
+    times = np.linspace(0.0, 6.9, 24)[1:]
+    states = run.fill(times)
+    assert len(made) == 1
+    # -3 sign(x - 100) is 3 here: x'' = 3 - x and the push.
+    assert np.max(np.abs(states[0] - push(times) - 3 * (1 - np.cos(times)))) < 2e-8
+    assert len(run.passed.switches) == 2
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32", "extended"])
+def test_signs_are_read_from_memory_by_every_kernel(scalar: str) -> None:
+    dynamics = Dynamics(scenario(mbsym.loads(described("-2*abs(x) + 5*sign(x_dot)", more="")).system))
+    points = np.array([[0.0] * 9, np.linspace(1, 3, 9), np.linspace(4, 6, 9)])
+    held = compiled_kernel(dynamics.on_sides((1, 1)), "right_hand_side", scalar)
+    wide = kernels({"f": dynamics.on_sides((1, 1)).right_hand_side}, scalar, wide=True)["f"]
+    signs = [node.number for node in dynamics.switches.outputs]
+    program = dynamics.switches.program
+    of_x = next(k for k, number in enumerate(signs) if program.instructions[number].payload == "x")
+    for by_x in (-1, 1):
+        for by_speed in (-1, 1):
+            dynamics.on_sides((by_x, by_speed) if of_x == 0 else (by_speed, by_x))
+            exact = -2 * by_x * points[1] + 5 * by_speed  # |x| is sign(x) x with the sign that is held
+            for found in (held(points), wide(points), held(points[:, 3])[:, None]):
+                expected = exact if found.shape[1] > 1 else exact[3:4]
+                assert np.allclose(found[1].astype(float), expected, rtol=1e-6, atol=0)
+
+
+def test_time_for_compiling_is_no_time_of_the_run() -> None:
+    run = run_of("dop853", described("-3/10*sign(x_dot)", start="position: 2"))
+    run.advance(4.0)
+    assert run.work.compiling > 0

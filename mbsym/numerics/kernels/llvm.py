@@ -29,6 +29,7 @@ import numpy as np
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
 from mbsym.numerics.kernels import sine_cosine
+from mbsym.numerics.kernels.cells import address_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.sine_cosine import splat, vector
 
@@ -363,6 +364,8 @@ class _Form:
         kind, local = self.kind, f"%v{number}"
         operands = [self.values[operand] for operand in used]
         match operands:
+            case [] if payload not in self.slots:
+                yield from self._cell(local, address_of(str(payload)))
             case []:
                 yield from self._address(f"%p{number}", "%in", self.slots[str(payload)])
                 yield f"  {local} = load {kind}, ptr %p{number}{self._align}"
@@ -382,6 +385,20 @@ class _Form:
             case [a, b]:
                 yield f"  {local} = {_ARITHMETIC[operation]} {kind} {a}, {b}"
         self.values[number] = local
+
+    def _cell(self, local: str, address: int) -> Iterator[str]:
+        """A number from memory, the same for all lanes."""
+        one, before = self.scalar.type, "poison"
+        single = local if self.lanes == 1 else f"{local}.s"
+        known = single if one == "double" else f"{local}.d"
+        yield f"  {known} = load double, ptr inttoptr (i64 {address} to ptr)"
+        if one != "double":
+            change = "fpext" if self.scalar.name == EXTENDED else "fptrunc"
+            yield f"  {single} = {change} double {known} to {one}"
+        for lane in range(self.lanes if self.lanes > 1 else 0):
+            after = local if lane == self.lanes - 1 else f"{local}.x{lane}"
+            yield f"  {after} = insertelement {self.kind} {before}, {one} {single}, i32 {lane}"
+            before = after
 
     def _rounding(self, operation: str, local: str, a: str, b: str) -> Iterator[str]:
         """(a + b) - fl(a + b) by two-sum, a b - fl(a b) by a fused operation; extended arithmetic does without."""

@@ -67,13 +67,17 @@ COUNTS = ("evaluations", "jacobians", "steps", "rejected")
 
 @dataclass
 class Work:
-    """What a run has cost so far, and which ``changes`` of the method it made on its way."""
+    """What a run has cost so far, and which ``changes`` of the method it made on its way.
+
+    ``compiling`` are seconds that went into machine code after the run was started.
+    """
 
     evaluations: int = 0
     jacobians: int = 0
     steps: int = 0
     rejected: int = 0
     changes: list[Change] = field(default_factory=list)
+    compiling: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,7 @@ class _Window:
 
 
 class LandingRun:
-    """Steps of a method's runs, one for every combination of sides that is met."""
+    """Steps of a method's runs: one for all sides of the switches, and one for each at which the motion stays."""
 
     def __init__(
         self, method: Method, dynamics: Dynamics, setting: Setting, scalar: str, initial: Any, at: float
@@ -94,12 +95,12 @@ class LandingRun:
         self._count = len(dynamics.features.switches.outputs)
         self._kinds = dynamics.features.kinds
         self._longest = _longest(method, setting)
-        self._runs: dict[tuple[int, ...], Run] = {}
+        self._runs: dict[int | None, Run] = {}
         self.work, self.passed = Work(), Passed()
         first = method.start(dynamics, setting, scalar, initial, at) if not self._count else None
         start = np.array([float(x) for x in dynamics.scenario.state]) if initial is None else np.asarray(initial)
         if first is not None:
-            self._runs[()] = first
+            self._runs[None] = first
             start = first.state
         self.restart(at, start)
 
@@ -197,10 +198,15 @@ class LandingRun:
             self.work.changes += run.work.changes[changes:]
 
     def _run(self, sides: tuple[int, ...]) -> Run:
-        if sides not in self._runs:
-            frozen = self._dynamics.on_sides(sides)
-            self._runs[sides] = self._method.start(frozen, self._setting, self._scalar, self.state, self.time)
-        return self._runs[sides]
+        if not sides:
+            return self._runs[None]
+        frozen = self._dynamics.on_sides(sides)
+        if frozen.sliding not in self._runs:
+            started = perf_counter()
+            found = self._method.start(frozen, self._setting, self._scalar, self.state, self.time)
+            self._runs[frozen.sliding] = found
+            self.work.compiling += perf_counter() - started
+        return self._runs[frozen.sliding]
 
     def _go_back(self, time: float, state: Any) -> None:
         self.time, self.state, self._ahead = time, state, None
@@ -256,7 +262,6 @@ class LandingRun:
             was = sides[k]
             if before and was == SLIDING:  # it leaves where the sign that held it has become that of a side
                 frozen = self._dynamics.on_sides(before)
-                assert isinstance(frozen, Frozen)
                 sides[k] = 1 if self._holding(frozen, self.time, self.state)[0] > 0 else -1
                 continue
             first = -was if was else 1
@@ -291,7 +296,6 @@ class LandingRun:
         if sides.count(SLIDING) > 1:
             raise self._endless("two of its switches would have to hold at once")
         frozen = self._dynamics.on_sides(sides)
-        assert isinstance(frozen, Frozen)
         sign, curvature = self._holding(frozen, self.time, self.state)
         if not abs(sign) <= 1 + 1e-9 or not abs(curvature) <= 1e-9 * max(1.0, abs(sign)):
             raise self._endless("no force between the two sides holds it there")
@@ -335,7 +339,6 @@ class LandingRun:
         values = np.array(self._switch_values(points)) * np.array(self._sides)[:, None]
         if SLIDING in self._sides:
             frozen = self._dynamics.on_sides(self._sides)
-            assert isinstance(frozen, Frozen)
             sign = once(frozen, "holding", lambda: kernel(frozen.holding))(points)[0]
             values[self._sides.index(SLIDING)] = 1.0 - sign * sign
         return values

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.dynamics import Dynamics, Frozen
+from mbsym.numerics.kernels.cells import place_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS
 from mbsym.numerics.methods.interface import (
@@ -63,7 +64,8 @@ def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
                 found = heyoka.expression(exact_number(instruction.payload, dtype))
             case "input", _:
                 name = str(instruction.payload)
-                found = heyoka.time if name == "t" else heyoka.expression(name)
+                cell = None if name in code.inputs else place_of(name)
+                found = heyoka.time if name == "t" else heyoka.expression(name) if cell is None else heyoka.par[cell]
             case "negative", [a]:
                 found = -a
             case "add", [a, b]:
@@ -147,6 +149,7 @@ class TaylorRun(Stepping):
         self._least = smallest
         self._dtype = SCALARS[scalar].dtype
         self._limit = setting.step_limit
+        self._cells = dynamics.cells if isinstance(dynamics, Frozen) else None
         self.order: int = self._taylor.order
         self.work = Work()
         self.restart(at, self._taylor.state if initial is None else initial)
@@ -155,6 +158,8 @@ class TaylorRun(Stepping):
         """Go on from another state."""
         self._taylor.time = self._dtype(time)
         self._taylor.state[:] = state
+        if self._cells is not None:
+            self._taylor.pars[:] = self._cells.values[: len(self._taylor.pars)]
         self._start: Any = None
         self.time, self.state = self.reached, np.array(self._taylor.state)
 
