@@ -52,13 +52,20 @@ def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLO
     That is how the run begins: it changes between this and an implicit method when the motion becomes stiff on the way.
     """
     first = _at_first(dynamics, tolerance, time_, scalar)
-    explicit, implicit = METHODS[EXPLICIT[0]], METHODS[ALONG]
-    if scalar != FLOAT64 or first.method not in (explicit, implicit):
+    if scalar != FLOAT64:
         return first
+    # It is between switches of the rates that the method may change.
+    return replace(first, method=resumed(first.method.traits.name))
+
+
+def resumed(name: str) -> Method:
+    """What goes on from where a run of ``choose`` was, by the method ``name``; any other method is just that one."""
+    explicit, implicit = METHODS[EXPLICIT[0]], METHODS[ALONG]
+    if METHODS[name] not in (explicit, implicit):
+        return METHODS[name]
     assert isinstance(explicit, Landing)
     assert isinstance(implicit, Landing)
-    # It is between switches of the rates that the method may change.
-    return replace(first, method=Landing(Switching(explicit.inner, implicit.inner, first.method is implicit)))
+    return Landing(Switching(explicit.inner, implicit.inner, METHODS[name] is implicit))
 
 
 def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -> Choice:

@@ -45,6 +45,8 @@ def read_earlier(path: Path, system: System) -> Earlier:
     if not isinstance(state, dict) or list(state) != names:
         raise Unfit("its last state is not that of these coordinates")
     arithmetic, method = content["arithmetic"], content["method"]["name"]
+    if content.get("method_changes"):
+        method = _last_method(content["method_changes"], method)
     method = "auto" if method == "parts" else method  # parts by different methods are found again
     if arithmetic not in TOLERANCE or method not in ("auto", *METHODS):
         raise Unfit(f"there is no method {method} in {arithmetic}")
@@ -61,7 +63,19 @@ def read_earlier(path: Path, system: System) -> Earlier:
     tolerance, step = (None if content[key] is None else _number(content[key], float) for key in ("tolerance", "step"))
     values = {**content["parameters"], **content["initial"]}
     exact = {name: _number(value, float) for name, value in values.items()}
-    return Earlier(times, states, spacing, exact, method, tolerance, step, arithmetic)
+    change = content["method"].get("may_change") is True
+    return Earlier(times, states, spacing, exact, method, tolerance, step, arithmetic, change)
+
+
+def _last_method(changes: Any, first: str) -> str:
+    """What a run went by in the end.  Raises Unfit."""
+    if first == "parts":
+        return first
+    last = changes[-1] if isinstance(changes, list) else None
+    if not isinstance(last, dict) or not isinstance(last.get("method"), str):
+        raise Unfit("it is damaged: its method_changes are none")
+    method: str = last["method"]
+    return method
 
 
 def changed(earlier: Earlier, scenario: Scenario) -> Iterator[str]:

@@ -24,6 +24,7 @@ from mbsym.report.events_json import events_json
 from mbsym.report.plan_words import model_json, plan_json
 from mbsym.report.simulation_words import conservation_json, error_json
 from mbsym.simulation import Simulation
+from mbsym.simulation.choosing import may_change
 from mbsym.source.meaning import meaning
 
 #: The version of ``schemas/simulation.json`` that it follows.
@@ -46,7 +47,12 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},
         "reached": {"time": float(found.times[-1]), "samples": len(found.times), "state": _last(found)},
         "continued": None if earlier is None else {"from": earlier.time, "samples": len(earlier.times)},
-        "method": {"name": traits.name.lower(), "title": traits.title, "why": chosen.why},
+        "method": {
+            "name": traits.name.lower(),
+            "title": traits.title,
+            "why": chosen.why,
+            "may_change": may_change(run.request),
+        },
         "arithmetic": run.arithmetic,
         "tolerance": found.setting.tolerance,
         "step": found.setting.step,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from mbsym.numerics.choice import Choice, choose
+from mbsym.numerics.choice import Choice, choose, resumed
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.reduced import Reduced
@@ -43,7 +44,15 @@ def _choice(dynamics: Dynamics, request: Request, tolerance: float) -> Choice:
     if request.method == "auto":
         return choose(dynamics, tolerance, request.time, request.arithmetic)
     decay, frequency = rates(dynamics)
-    return Choice(METHODS[request.method], _asked(request), decay, frequency)
+    method = resumed(request.method) if may_change(request) else METHODS[request.method]
+    return Choice(method, _asked(request), decay, frequency)
+
+
+def may_change(request: Request) -> bool:
+    """Whether the method may change along the run: where none was asked for, be it in the run that it goes on from."""
+    earlier = request.earlier
+    going_on = earlier is not None and earlier.change and earlier.method == request.method
+    return request.arithmetic == FLOAT64 and (request.method == "auto" or going_on)
 
 
 def _words(choice: Choice) -> tuple[str, str]:

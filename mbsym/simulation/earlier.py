@@ -19,7 +19,7 @@ class Earlier:
     """The rows of an earlier run, from t = 0 to where it ended: times (m,) and states (2n, m).
 
     ``spacing`` is the distance of rows that was asked for; ``values`` are parameters and the state at t = 0 by their
-    names, and the rest is how it was integrated.
+    names, and the rest is how it was integrated: ``method`` is the last one, which may ``change`` on the way.
     """
 
     times: Any
@@ -30,6 +30,7 @@ class Earlier:
     tolerance: float | None
     step: float | None
     arithmetic: str
+    change: bool = False
 
     @property
     def time(self) -> float:

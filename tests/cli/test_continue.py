@@ -191,3 +191,47 @@ def test_nothing_goes_on_after_a_pole(tmp_path: Path) -> None:
     done = mbsym(path, "--time", 3, "-f", "csv", "--continue", tmp_path / "out" / "simulation.json", "--out", tmp_path)
     assert done.exit_code == 2
     assert "there is nothing to go on from" in done.stderr
+
+
+VAN_DER_POL = """
+mbsym: 1
+name: van der Pol
+parameters: {mu: positive}
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - generalized force: {x: mu*(1-x**2)*x_dot}
+values: {mu: 100000}
+initial: {x: {position: 0, velocity: 1/100}}
+"""
+
+
+def test_a_run_that_ended_stiff_goes_on_by_its_last_method(tmp_path: Path) -> None:
+    """On the slow branch x' (1 - x^2) mu = x but for O(1/mu^2): log x - x^2/2 grows by t/mu (Hairer & Wanner II, IV.1).
+
+    An explicit method would take 1e5 steps and more for a unit of time there.
+    """
+    path = tmp_path / "pol.yaml"
+    path.write_text(VAN_DER_POL, encoding="utf-8")
+    limit = ("-f", "csv", "--no-estimate", "--step-limit", "20000", "--out", tmp_path)
+    assert mbsym(path, "--time", 10000, "--every", 1000, *limit).exit_code == 0
+    first = summary(tmp_path)
+    assert first["method"]["may_change"]
+    assert first["method_changes"][-1]["method"] == "radau"
+    done = mbsym(path, "--time", 30000, "--continue", tmp_path / "simulation.json", *limit)
+    assert done.exit_code == 0, done.output
+    told = summary(tmp_path)
+    assert told["method"]["name"] == "radau"
+    assert told["method"]["may_change"]
+    rows = table(tmp_path / "trajectory.csv")
+    late = rows["t"] >= 9999
+    x, t = rows["x"][late], rows["t"][late]
+    course = np.log(np.abs(x)) - x**2 / 2
+    assert len(t) == 21
+    assert np.allclose(course - course[0], (t - t[0]) / 1e5, rtol=0, atol=1e-6)
+    told["method_changes"] = [{}]
+    (tmp_path / "simulation.json").write_text(json.dumps(told), encoding="utf-8")
+    refused = mbsym(path, "--time", 40000, "--continue", tmp_path / "simulation.json", *limit)
+    assert refused.exit_code == 2
+    assert "method_changes" in refused.output

@@ -262,3 +262,17 @@ def test_planar_motion_of_a_spatial_system_by_steps(name: str) -> None:
     with pytest.raises(Breakdown) as failed:
         few.fill(np.linspace(0, 1000, 20_001))
     assert len(failed.value.filled) == len(failed.value.state) == len(rows)
+
+
+@pytest.mark.parametrize("name", ["taylor", "dop853", "rk45"])
+def test_a_system_at_rest_steps_on(name: str) -> None:
+    """Nothing moves, so that no error bounds a step: it has an end all the same."""
+    text = "mbsym: 1\nname: rest\nbodies:\n  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, "
+    text += "coordinates: [x]}\nloads:\n  - spring: {coordinate: x, stiffness: 3}\ninitial: {x: 0}\n"
+    run = METHODS[name].start(Dynamics(scenario(mbsym.loads(text).system)), Setting(1e-10))
+    for _ in range(3):
+        piece = run.step()
+        assert piece.end > piece.start
+        assert np.all(np.isfinite(piece(np.linspace(piece.start, piece.end, 5))))
+        assert not np.any(piece(piece.end))
+    assert not np.any(run.fill(np.array([float(run.time) + 1, float(run.time) + 2000.0])))

@@ -39,6 +39,9 @@ from mbsym.numerics.methods.stepping import Stepping
 #: Beyond so many operations heyoka is told to compile loops instead of straight code, which is slower to run.
 STRAIGHT = 100
 
+#: No step is longer, relative to the time.
+FAR = 100.0
+
 #: heyoka's own loop is left after so many steps, so that Ctrl-C works.
 STEPS_AT_A_TIME = 2_000
 
@@ -213,14 +216,14 @@ class TaylorRun(Stepping):
         if work.steps >= self._limit:
             raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
         now, before = taylor.time, np.array(taylor.state)
-        room = None if until is None else self._dtype(until) - now
-        outcome, step = taylor.step(write_tc=True) if room is None else taylor.step(room, write_tc=True)
+        room = self._dtype(FAR * (1 + abs(now))) if until is None else self._dtype(until) - now  # at rest: no bound
+        outcome, step = taylor.step(room, write_tc=True)
         work.steps += 1
         work.evaluations += self.order
-        if outcome == self._bounded:
+        if outcome == self._bounded and until is not None:
             taylor.time = self._dtype(until)
         else:
-            self._judge(outcome != self._success, step, now, before)
+            self._judge(outcome not in (self._success, self._bounded), step, now, before)
         self._start = now
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
