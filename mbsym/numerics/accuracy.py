@@ -159,6 +159,8 @@ def _compared(
 
 def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
     """The error of a run that no other method can judge, by an extrapolation in 160 bits at some places."""
+    if not dynamics.features.none:  # an extrapolation would pass what is narrow, and knows nothing of switches
+        return NoEstimate(Lacking.FINEST)
     end = float(found.times[-1])
     rows = np.unique(np.linspace(0, len(found.times) - 1, min(len(found.times), PLACES)).astype(int))
     places = np.union1d(uneven(0.0, end, PLACES), found.times[rows])

@@ -209,6 +209,7 @@ class Frozen(Dynamics):
         super().__init__(whole.scenario, whole.ring, whole.apart)
         self.whole, self.sliding = whole, sliding
         self.cells = Cells(len(whole.switches.outputs))
+        self.inputs, self.size = whole.inputs, whole.size  # a state may go on behind (q, q')
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
 

@@ -57,6 +57,9 @@ SOME_SECONDS = 1.0
 #: No step of an explicit or implicit reference is longer than this part of the whole.
 PARTS = 2_000
 
+#: Where switches and narrow loads are looked for in every step, steps are few, and dear.
+FEW_PARTS = 100
+
 #: Why there is no reference although solutions came to the end.
 DISAGREE = "no two solutions agree"
 
@@ -77,6 +80,9 @@ def whole_reference(
     started = time.perf_counter()
     failed: Breakdown | None = None
     limits = [*((way, share, seconds) for way, share in WAYS), (_explicit, 1.0, at_most or seconds)]
+    # Steps in many bits know nothing of switches, and would pass what is narrow: others end, or are short, there.
+    if not dynamics.features.none:
+        limits = [(way, share, limit) for way, share, limit in limits if way is not _extrapolated]
     for way, share, limit in limits:
         now = time.perf_counter()
         left = limit - (now - started)
@@ -106,6 +112,11 @@ class _Search:
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.dynamics.system.coordinates, *self.dynamics.system.velocities)
+
+    @property
+    def longest(self) -> float:
+        """No step of an explicit or implicit reference is longer."""
+        return self.end / (PARTS if self.dynamics.features.none else FEW_PARTS)
 
     def reached(self, t: float) -> None:
         """Tells, and raises Breakdown where the time is over, or will be long before the end."""
@@ -197,7 +208,7 @@ def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
 
 def _explicit(search: _Search) -> Reference:
     scalar = EXTENDED if available(EXTENDED) else FLOAT64
-    longest = search.end / PARTS
+    longest = search.longest
     first = METHODS["dop853"], Setting(1e-18, longest=longest)
     for name, tolerance in (("taylor", 1e-18), ("rk45", 1e-13)):
         try:
@@ -208,7 +219,7 @@ def _explicit(search: _Search) -> Reference:
 
 
 def _implicit(search: _Search) -> Reference:
-    longest = search.end / PARTS
+    longest = search.longest
     failed: Breakdown | None = None
     for tolerance in (1e-12, 1e-9):
         first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("radau", "lsoda"))

@@ -30,7 +30,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.passed import Passed, met_by
+from mbsym.numerics.methods.passed import Passed, met_by, up_to
 
 #: No initial state is beyond this: the world measures 1e27 metres.
 LARGEST_START = 1e30
@@ -204,7 +204,7 @@ def integrated(
         states[:, reached], kept = breakdown.state, np.append(kept, breakdown.time)
         reached += 1
     matrix = np.ascontiguousarray(states[:, :reached])
-    return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted, met_by(run))
+    return Integrated(kept, matrix, replace(work), seconds, breakdown, interrupted, up_to(met_by(run), float(kept[-1])))
 
 
 def chunks(run: Run, times: Any, bound: float) -> Iterator[Any]:

@@ -23,9 +23,10 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.dynamics import Dynamics, Frozen
+from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Run, Setting, Traits, Work
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.kept import compiled_kernel, once
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.stepping import Stepping
 
@@ -57,9 +58,10 @@ def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float,
     """(max -Re lambda, max |Im lambda|) of the Jacobian's eigenvalues at a state, the initial one by default.
 
     The Jacobian is formed by central differences, which is close enough here and needs no further code to be compiled.
-    Zeros where it is not finite.
+    Zeros where it is not finite.  Where the rates jump they are those on one side: differences across a jump are none.
     """
     x = np.array([float(x) for x in (dynamics.scenario.state if state is None else state)])
+    dynamics = _on_one_side(dynamics, t, x)
     n = len(x)
     step = 1e-6 * (1 + np.abs(x))
     moved = np.hstack([np.diag(step), -np.diag(step)]) + x[:, None]
@@ -70,6 +72,15 @@ def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float,
         return 0.0, 0.0
     found = np.linalg.eigvals(matrix)
     return max(0.0, float(np.max(-found.real))), float(np.max(np.abs(found.imag)))
+
+
+def _on_one_side(dynamics: Dynamics, t: float, x: Any) -> Dynamics:
+    """The dynamics with its switches held as they stand at a state; those that are at 0 on their positive side."""
+    if isinstance(dynamics, Frozen) or not dynamics.switches.outputs:
+        return dynamics
+    code = dynamics.switches
+    values = once(dynamics, ("features", "switches"), lambda: kernel(code))(np.concatenate(([t], x)))
+    return dynamics.on_sides(tuple(-1 if value < 0 else 1 for value in values))
 
 
 class Switching:

@@ -111,13 +111,14 @@ class LandingRun:
         self._ahead: Run | None = None
         self._windows: list[_Window] = []
         self._together = 0
+        self._beyond: tuple[Piece, Any] | None = None  # a step that ends after ``time``, and the state there
 
     # --- what a run offers ---
 
     def advance(self, until: float) -> Any:
         """The state (q, q') at ``until``; raises Breakdown."""
-        while self.time < until:
-            self.step(until)
+        if until > self.time:
+            self.fill(np.array([until], dtype=float))
         return self.state
 
     def fill(self, times: Any) -> Any:
@@ -128,7 +129,8 @@ class LandingRun:
         found[:, :done] = np.asarray(self.state)[:, None]
         try:
             while done < len(at):
-                piece = self.step(at[-1])  # bounded also where nothing moves until something is switched on
+                # Steps of one length end at the last row: there is more in a step than in what lies between.
+                piece = self.step(at[-1]) if self._method.traits.fixed else self._onwards(float(at[-1]))
                 last = int(np.searchsorted(at, piece.end, side="right"))
                 if last > done:
                     found[:, done:last] = piece(at[done:last])
@@ -136,12 +138,29 @@ class LandingRun:
         except Breakdown as trouble:
             trouble.filled = found[:, :done]
             raise
+        if done and self.time > at[-1]:
+            # Steps do not depend on where rows are asked for: the last one goes on where the next question begins.
+            self._beyond = piece, self.state
+            self.time, self.state = float(at[-1]), found[:, -1].copy()
         return found
+
+    def _onwards(self, last: float) -> Piece:
+        """A step of the method's own choosing; where none can be made, one that ends at ``last``."""
+        start = self.time
+        try:
+            return self.step()
+        except Breakdown:
+            if self.time != start or not last > start:
+                raise
+            self._ahead = None
+            return self.step(last)
 
     def step(self, until: float | None = None) -> Piece:
         """The solution to the end of a step, to a switch, or to ``until``; raises Breakdown."""
         if until is not None and not until > self.time:
             raise ValueError(f"a step to {until:.9g} from {self.time:.9g}")
+        if self._beyond is not None:
+            return self._rest(until)
         if self._sides is None:
             self._sides = self._choose((), ())
         for _ in range(MOST_TOGETHER):
@@ -153,6 +172,16 @@ class LandingRun:
             self._note_switch()
             self._switch(turned)
         raise self._endless("its switches lead back to each other")
+
+    def _rest(self, until: float | None) -> Piece:
+        """What is left of a step of which a part was asked for, or another part of it."""
+        assert self._beyond is not None
+        (piece, state), start = self._beyond, self.time
+        if until is not None and until < piece.end:
+            self.time, self.state = until, np.array(piece(np.array([until])))[:, 0]
+        else:
+            self.time, self.state, self._beyond = piece.end, state, None
+        return Piece(start, self.time, piece.curve)
 
     # --- one step ---
 

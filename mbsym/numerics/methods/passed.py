@@ -41,6 +41,17 @@ def met_by(run: Run | None) -> Passed | None:
     return found
 
 
+def up_to(passed: Passed | None, end: float) -> Passed | None:
+    """What was met until ``end``: the last step of a run may go beyond."""
+    if passed is None:
+        return None
+    return Passed(
+        [time for time in passed.switches if time <= end],
+        [one for one in passed.narrow if one.time - one.width <= end],
+        [time for time in passed.unresolved if time <= end],
+    )
+
+
 def together(runs: Iterable[Run]) -> Passed | None:
     """What runs of parts of a system have met."""
     found = [one for run in runs if (one := met_by(run)) is not None]
