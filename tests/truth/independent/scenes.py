@@ -35,10 +35,10 @@ mbsym: 1
 name: swinging Atwood machine
 bodies:
   - {name: counterweight, attached to: 0, connection point: [1, 0, r], mass: 3}
-  - {name: string, attached to: 0, rotation: {axes: [2], angles: [theta]}, coordinates: [theta]}
+  - {name: string, attached to: 0, rotation: {axes: [2], angles: [theta]}, coordinates: [theta], mass: 0}
   - {name: bob, attached to: string, connection point: [0, 0, -r], mass: 1, coordinates: [r]}
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
 initial: {r: 1, theta: pi/2}
 """
 
@@ -86,10 +86,10 @@ ELASTIC = """
 mbsym: 1
 name: elastic pendulum
 bodies:
-  - {name: rod, attached to: 0, rotation: {axes: [2], angles: [theta]}, coordinates: [theta]}
+  - {name: rod, attached to: 0, rotation: {axes: [2], angles: [theta]}, coordinates: [theta], mass: 0}
   - {name: bob, attached to: rod, connection point: [0, 0, -r], mass: 1/2, coordinates: [r]}
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
   - potential: 40*(r - 1)**2/2
 initial: {theta: 1, r: 5/4}
 """
@@ -113,7 +113,8 @@ bodies:
     rotation: {axes: [3], angles: [phi]}
     coordinates: [phi]
     mass: 1
-    inertia: {about: mass centre, tensor: [[1/100, 0, 0], [0, 1/100, 0], [0, 0, 1/100]]}
+    inertia about: mass centre
+    inertia: {tensor: [[1/100, 0, 0], [0, 1/100, 0], [0, 0, 1/100]]}
   - name: pendulum
     attached to: arm
     connection point: [1/5, 0, 0]
@@ -122,7 +123,7 @@ bodies:
     mass center: [0, 0, 3/10]
     mass: 1/10
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
 initial: {phi: {position: 0, velocity: 2}, theta: 3/10}
 """
 
@@ -186,7 +187,7 @@ BEAM = (
         f"coordinates: [q{i}], mass center: [1/10, 0, 0], mass: 1/10}}\n"
         for i in range(1, LINKS + 1)
     )
-    + "loads:\n  - uniform gravity: [0, -9.81, 0]\n  - potential: 5*("
+    + "loads:\n  - uniform gravity: {vector: [0, -9.81, 0]}\n  - potential: 5*("
     + " + ".join(f"({turn})**2" for turn in _TURNS)
     + ")\n  - rayleigh: 1/50*("
     + " + ".join(f"({rate})**2" for rate in _RATES)
@@ -318,7 +319,7 @@ bodies:
     mass center: [0, 0, -1/2]
     mass: 1/1000000
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
 initial: {a: 1, b: -1/2}
 """
 
@@ -347,9 +348,10 @@ bodies:
     coordinates: [phi, theta, psi]
     mass center: [0, 0, 1/10]
     mass: 1
-    inertia: {about: joint, tensor: [[1/50, 0, 0], [0, 1/50, 0], [0, 0, 1/100]]}
+    inertia about: joint
+    inertia: {tensor: [[1/50, 0, 0], [0, 1/50, 0], [0, 0, 1/100]]}
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
 initial: {phi: 0, theta: 1/2, psi: {position: 0, velocity: 200}}
 """
 
@@ -373,7 +375,7 @@ THREE = """
 mbsym: 1
 name: three links in a tilted plane
 bodies:
-  - {name: plane, attached to: 0, rotation: {axes: [1], angles: [pi/6]}}
+  - {name: plane, attached to: 0, rotation: {axes: [1], angles: [pi/6]}, mass: 0}
   - name: one
     attached to: plane
     rotation: {axes: [3], angles: [q1]}
@@ -395,7 +397,7 @@ bodies:
     mass center: [1, 0, 0]
     mass: 1
 loads:
-  - uniform gravity: [0, 0, -9.81]
+  - uniform gravity: {vector: [0, 0, -9.81]}
 initial: {q1: 0, q2: 1/2, q3: 1}
 """
 
