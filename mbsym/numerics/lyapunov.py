@@ -73,7 +73,7 @@ class Exponents:
     def parting(self) -> Parting:
         """The largest exponent beside its uncertainty, and beside log(T)/T to which that of regular motion falls."""
         first, doubt = float(self.values[0]), 3 * float(self.uncertainty[0])
-        regular = np.log(max(self.time, np.e)) / self.time
+        regular = max(float(np.log(self.time)), 1.0) / self.time
         if first > doubt and first > 3 * regular and not self.falling:
             return Parting.POSITIVE
         if first < -doubt and first < -3 * regular:

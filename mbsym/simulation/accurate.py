@@ -12,7 +12,9 @@ from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.choice import rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
+from mbsym.numerics.pilot import finest
 from mbsym.numerics.plan import ENERGY, INTEGRATION, MODEL, Accuracy, Bound, Plan
 from mbsym.numerics.plan_bounds import DOUBLED
 from mbsym.numerics.planning import FREE, Pins, planned
@@ -95,7 +97,8 @@ def simulate_accurately(
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
     found = simulate(scenario, settled, watch, stage)
     for again in range(REPEATS + 1):
-        last = again == REPEATS or pins.setting is not None
+        finer = _finer(plan)
+        last = again == REPEATS or pins.setting is not None or finer == plan.setting
         missed = _missed(plan, found, 1.0 if last else DOUBLED)
         if not missed:
             break
@@ -103,7 +106,7 @@ def simulate_accurately(
             plan = replace(plan, contradicted=True, remarks=(*plan.remarks, missed))
             break
         missed += ": repeated more finely"
-        plan = replace(plan, setting=_finer(plan.setting), remarks=(*plan.remarks, missed))
+        plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
         found = simulate(scenario, settled, watch, stage)
     plan = replace(plan, bounds=_raised(plan, found))
@@ -167,11 +170,14 @@ def _missed(plan: Plan, found: Simulation, times: float) -> str:
     return ""
 
 
-def _finer(setting: Setting) -> Setting:
+def _finer(plan: Plan) -> Setting:
+    """A finer setting of the same method; the same where its arithmetic has none."""
+    setting = plan.setting
     if setting.step is not None:
         return replace(setting, step=setting.step * FINER["step"])
     assert setting.tolerance is not None
-    return replace(setting, tolerance=setting.tolerance * FINER["tolerance"])
+    least = min(setting.tolerance, finest(METHODS[plan.method], plan.scalar))
+    return replace(setting, tolerance=float(f"{max(setting.tolerance * FINER['tolerance'], least):.1e}"))
 
 
 def _shown(setting: Setting) -> str:
