@@ -19,6 +19,7 @@ from mbsym.numerics.kinds import (
     SCALAR,
     WELDED,
 )
+from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.models import Model
 from mbsym.numerics.plan import (
     ARITHMETIC,
@@ -38,6 +39,7 @@ from mbsym.numerics.plan import (
 )
 
 if TYPE_CHECKING:
+    from mbsym.expressions.condition import Condition
     from mbsym.simulation import Request
 
 #: How a share is known, in words.
@@ -154,7 +156,21 @@ def repeating_options(request: Request) -> list[str]:
     found += ["--linear"] if request.model.linear else []
     found += [word for name in request.model.without for word in ("--without", name)]
     found += ["--whole"] if request.whole else []
+    found += ["--certify", _number(request.certify)] if request.certify is not None else []
+    found += ["--step-limit", str(request.step_limit)] if request.step_limit != Setting.step_limit else []
+    found += ["--invariants"] if request.invariants else []
+    watched = request.events
+    found += [word for one in watched.events for word in ("--event", _written(one))]
+    found += [word for one in watched.stops for word in ("--stop", _written(one))]
+    if watched.section is not None:
+        axes = ", ".join(axis.text for axis in watched.section.axes)
+        found += ["--section", _written(watched.section.condition), "--axes", axes]
     return found
+
+
+def _written(condition: Condition) -> str:
+    """With its title, where it has one of its own."""
+    return condition.text if condition.title == condition.text else f"{condition.title}: {condition.text}"
 
 
 def _number(x: float) -> str:

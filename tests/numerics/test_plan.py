@@ -13,6 +13,7 @@ from scipy.special import ellipj, ellipk
 
 import mbsym
 from mbsym.numerics import pilot, plan_bounds, planning
+from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
@@ -21,6 +22,7 @@ from mbsym.numerics.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.yardstick import Yardstick
 from mbsym.simulation import Request, simulate
+from mbsym.simulation.accurate import simulate_accurately
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 
@@ -327,3 +329,20 @@ def test_laws_of_accuracies() -> None:
     assert list(Accuracy(1e-2, {ENERGY: 1e-9}).targets(names)) == [1e-2, 1e-2, 1e-9]
     assert Accuracy(1e-2, {ENERGY: 1e-9}).finest == 1e-9
     assert plan_bounds.DOUBLED >= 2
+
+
+def test_a_bound_is_never_below_what_the_run_s_own_estimate_finds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: a pilot that finds every setting a hundred times better than it is."""
+    told = plan_bounds.shares_of
+
+    def flattering(*arguments: Any) -> Any:
+        return tuple((name, errors / 100, how) for name, errors, how in told(*arguments))
+
+    monkeypatch.setattr(planning, "shares_of", flattering)
+    given = scenario(mbsym.load(SYSTEMS / "double-pendulum.yaml", ()).system)
+    found = simulate_accurately(given, Request(2.0, samples=21), Accuracy(1e-6))
+    assert isinstance(found.error, ErrorEstimate)
+    assert found.plan is not None
+    assert found.error.largest <= found.plan.bound.total
+    quantity = max(found.error.quantities, key=lambda one: one.largest / one.scale)
+    assert found.plan.bound.quantity == quantity.name
