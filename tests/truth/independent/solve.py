@@ -1,5 +1,5 @@
 """Solves the scenes by hand-written equations at 200 bits: python -m truth.independent.solve writes ``solutions.json``
-(with ``sizes`` for its argument: ``sizes.json``).
+(with ``sizes`` for its argument: ``sizes.json`` and ``peak.json``).
 
 Taylor series of order 80, coefficient by coefficient, with steps so short that the last terms vanish.  How far two
 solutions with different orders and steps agree is written beside each: that many digits are printed.
@@ -22,6 +22,9 @@ from truth.independent.scenes import SCENES, Scene
 HERE = Path(__file__).resolve().parent
 BITS = 200
 
+#: Orders and shares of steps of the two solutions that are compared.
+LADDER = ((80, 1.0), (64, 0.7))
+
 #: Places in the whole time at which solutions are compared: irregular, so that no period hides an error.
 COUNT = 60
 
@@ -37,11 +40,16 @@ def number(text: str) -> arb:
     return arb.pi() / 2 if text == "pi/2" else arb(text)
 
 
-def solved(scene: Scene, times: Sequence[float], order: int, short: float) -> list[list[arb]]:
-    """States at the times by Taylor series of one order; steps are ``short`` of what the last terms allow."""
+def solved(
+    scene: Scene, times: Sequence[float], order: int, short: float, place: int | None = None, start: Sequence[str] = ()
+) -> list[list[arb]]:
+    """States at the times by Taylor series of one order; steps are ``short`` of what the last terms allow.
+
+    From a known state ``start`` at one of the ``places``, where that is given.
+    """
     assert scene.rates is not None
-    found, now = [], arb(0)
-    x = [number(text) for text in scene.start]
+    found, now = [], arb(0 if place is None else places(scene.time)[place])
+    x = [number(text) for text in start or scene.start]
     for until in times:
         goal = arb(until)
         while True:
@@ -122,10 +130,36 @@ def sizes(scene: Scene) -> list[float]:
     return [float(f"{value:.4g}") for value in np.max(np.abs(found.y), axis=1)]
 
 
+def peak() -> dict[str, Any]:
+    """Times about the highest velocity of van der Pol's oscillator, and its states there, from the place before.
+
+    The jump is over in a hundredth of a second: between it and the next place errors of its time have died out.
+    """
+    from scipy.integrate import solve_ivp
+
+    scene = next(scene for scene in SCENES if scene.name == "van der pol")
+
+    def slopes(t: float, x: Any) -> list[float]:
+        return [x[1], 100 * (1 - x[0] * x[0]) * x[1] - x[0]]
+
+    found = solve_ivp(slopes, (0.0, scene.time), [2.0, 0.0], method="LSODA", rtol=1e-9, atol=1e-12, max_step=0.05)
+    top = float(found.t[int(np.argmax(np.abs(found.y[1])))])
+    known = json.loads((HERE / "solutions.json").read_text(encoding="utf-8"))[scene.name]["states"]
+    before = max(k for k, t in enumerate(places(scene.time)) if t < top - 0.1)
+    times = [top + 0.001 * k for k in range(-8, 9)]
+    with ctx.workprec(BITS + 40):
+        found_states = [solved(scene, times, order, short, before, known[before]) for order, short in LADDER]
+        one, other = ([[value.str(22, radius=False) for value in row] for row in rows] for rows in found_states)
+    with mpmath.workdps(60):
+        apart = agreement(*([[mpmath.mpf(text) for text in row] for row in rows] for rows in (one, other)))
+    return {"times": times, "states": one, "agreement": apart}
+
+
 def write_sizes() -> None:
     """``sizes.json``; scenes in closed form have no peaks between the places that matter."""
     content = {scene.name: sizes(scene) for scene in SCENES if scene.rates is not None}
     (HERE / "sizes.json").write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8")
+    (HERE / "peak.json").write_text(json.dumps(peak(), indent=0) + "\n", encoding="utf-8")
 
 
 def main(names: Sequence[str]) -> None:
