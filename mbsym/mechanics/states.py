@@ -18,8 +18,14 @@ from mbsym.model.system import System
 SEED = 1788
 
 
-def _values(system: System, ring: Ring, source: random.Random) -> dict[str, fmpq]:
-    values = {name: fmpq(source.randint(1, 40), source.randint(1, 24)) for name in ring.names()}
+#: Of numbers so fine one state tells more than several of coarse ones: a polynomial of total degree d that is not zero
+#: vanishes at a share of at most d/(8 FINE) of them.
+FINE = 1 << 40
+
+
+def _values(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
+    """Between 1/24 and 40, quotients of multiples of 1/``fine``."""
+    values = {name: fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine)) for name in ring.names()}
     for parameter in system.parameters:
         if parameter.sign in ("negative", "nonpositive"):
             values[parameter.name] = -values[parameter.name]
@@ -34,31 +40,34 @@ def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
         yield State(Rationals(_tangents(ring, source), ring.angles), values)
 
 
-def _tangents(ring: Ring, source: random.Random) -> dict[str, fmpq]:
-    return {name: fmpq(source.randint(-9, 9) or 1, source.randint(1, 9)) for name in ring.angles}
+def _tangents(ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
+    return {
+        name: fmpq(source.randint(-9 * fine, 9 * fine) or fine, source.randint(fine, 9 * fine)) for name in ring.angles
+    }
 
 
-def ball_states(system: System, ring: Ring, count: int) -> Iterator[State]:
+def ball_states(system: System, ring: Ring, count: int, fine: int = 1) -> Iterator[State]:
     """States in which irrational functions have rigorous enclosures."""
     source = random.Random(SEED)
     for _ in range(count):
-        values = {name: arb(value) for name, value in _values(system, ring, source).items()} | {"pi": arb.pi()}
+        values = {name: arb(value) for name, value in _values(system, ring, source, fine).items()} | {"pi": arb.pi()}
         yield State(Balls(values), values)
 
 
-def enclosed_states(system: System, ring: Ring, count: int) -> Iterator[State]:
+def enclosed_states(system: System, ring: Ring, count: int, fine: int = 1) -> Iterator[State]:
     """States for identities of the ring whose values are irrational.
 
     Where every angle is a linear form, all but roots and functions is rational there, which makes long polynomials
-    cheap; q, sin q and cos q are then independent, as they are in rational states.
+    cheap; q, sin q and cos q are then independent, as they are in rational states.  ``fine``: the numbers are quotients
+    of multiples of 1/fine.
     """
     if not has_linear_angles(system):
-        yield from ball_states(system, ring, count)
+        yield from ball_states(system, ring, count, fine)
         return
     source = random.Random(SEED)
     for _ in range(count):
-        exact = _values(system, ring, source)
-        numbers = BallsAtRationals(_tangents(ring, source), ring.angles, exact)
+        exact = _values(system, ring, source, fine)
+        numbers = BallsAtRationals(_tangents(ring, source, fine), ring.angles, exact)
         yield State(numbers, {**numbers.values, "pi": arb.pi()})
 
 
