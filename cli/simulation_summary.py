@@ -89,7 +89,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
             yield "" if place else "certified", text
     for text in (*warnings(run.conservation, run.error), *passed_over(run, printable(file))):
         yield "warning", text
-    ratio, at = least_pivot(run.dynamics, found)
+    ratio, at = least_pivot(run.dynamics, found) if found.least_pivot is None else found.least_pivot
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
         yield (
             "warning",

@@ -58,6 +58,7 @@ class Trajectory:
     (m,).  ``breakdown`` says why the trajectory ends before the last time asked for; ``interrupted`` that the user
     stopped it.  ``between`` is the largest kinetic energy between samples that are few: a motion sampled at whole
     periods seems to rest.  ``passed`` is what is not smooth, or narrow, on the way; None where there is no such thing.
+    ``least_pivot`` is how far a pivot of M fell, and when (see there); None where nobody has looked.
     """
 
     system: System
@@ -75,6 +76,7 @@ class Trajectory:
     interrupted: bool = False
     between: float = 0.0
     passed: Passed | None = None
+    least_pivot: tuple[float, float] | None = None
 
     @property
     def largest_kinetic(self) -> float:

@@ -5,13 +5,14 @@ A force that acts between two rows and at neither of them changes an energy; who
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method
-from mbsym.numerics.simulate import Trajectory, simulate
+from mbsym.numerics.simulate import Trajectory, least_pivot, simulate
 
 #: Steps whose ends are looked at one by one, and places in what is left of the interval.
 MOST, PLACES = 4_000, 4_000
@@ -38,3 +39,28 @@ def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: 
     times = np.unique(np.concatenate([places, rest, found.times]))
     more = simulate(dynamics, method, found.setting, times.tolist(), scalar)
     return more if more.whole else found
+
+
+def nearest_to_singular(
+    dynamics: Dynamics, found: Trajectory, dense: Trajectory, method: Method, scalar: str
+) -> tuple[float, float]:
+    """(ratio, t) of ``least_pivot`` over rows and ends of steps, which crowd where M is nearly singular.
+
+    ``dense`` is what ``between_rows`` made of ``found``.  Rows alone are looked at where a run took long, ended early,
+    or has more than ``MOST`` steps, beyond those.
+    """
+    lowest = least_pivot(dynamics, dense)
+    if dense is not found or not found.whole or found.seconds > LONG:
+        return lowest
+    end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
+    times, states = [float(run.time)], [np.array(run.state)]
+    try:
+        with np.errstate(all="ignore"):
+            while times[-1] < end and len(times) < MOST:
+                run.step(end)
+                times.append(float(run.time))
+                states.append(np.array(run.state))
+    except Breakdown:
+        pass  # a step made otherwise than the run's own; those before it count
+    ends = replace(found, times=np.array(times), states=np.column_stack(states))
+    return min(lowest, least_pivot(dynamics, ends))

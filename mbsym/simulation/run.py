@@ -26,7 +26,7 @@ from mbsym.numerics.models import scenario_of
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
-from mbsym.numerics.unseen import between_rows
+from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import Request, wrong_with
@@ -84,6 +84,8 @@ def simulate(
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
         dense = between_rows(dynamics, found, chosen.method, request.arithmetic)
+        pivot = nearest_to_singular(dynamics, found, dense, chosen.method, request.arithmetic)
+        found, dense = replace(found, least_pivot=pivot), replace(dense, least_pivot=pivot)
         both = energies(dynamics, dense, held)
         kept = kept_integrals(dynamics, found, integrals, held, dense)
         if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):

@@ -578,6 +578,16 @@ def test_a_near_singularity_is_mentioned() -> None:
     assert least_pivot(dynamics_of(DOUBLE), found)[0] > 0
 
 
+@pytest.mark.parametrize("rows", [2, 2001])
+@pytest.mark.parametrize("aside", ["1e-6", "1/2"])
+def test_a_near_singularity_is_seen_between_rows(rows: int, aside: str, tmp_path: Path) -> None:
+    """A spherical pendulum passes by its pole after a quarter of a swing, where M loses rank, or wide of it."""
+    asked = ("--time", "0.8", "--samples", rows, "--set", f"psi_dot={aside}", "-f", "csv", "-o", tmp_path)
+    done = mbsym(SPHERICAL, *asked)
+    assert done.exit_code == 0, done.output
+    assert ("nearly singular" in done.output) == (aside == "1e-6")
+
+
 def test_a_step_limit_keeps_what_there_was(tmp_path: Path) -> None:
     done = mbsym(DOUBLE, "--time", 60, "--step-limit", 200, "-f", "csv", "-o", tmp_path)
     assert done.exit_code == 3
