@@ -25,6 +25,7 @@ METHOD, FINENESS, SCALAR, KERNEL = "method", "tolerance", "arithmetic", "kernel"
 MASSLESS, POINTS, AXES = "massless bodies", "point masses", "unused axes"
 TURNS = "constant rotations"
 CYCLIC = "cyclic coordinates"
+SKEW = "motion in a skew plane"
 DROPPED = "parameters that drop out"
 ENTRIES, SUBSYSTEMS, NOT_ASKED = "entries that vanish", "subsystems", "outputs nobody asked for"
 SYMMETRY, SPARSITY, ROUTE = "symmetry of M", "sparsity of M", "route to q''"
@@ -54,7 +55,7 @@ WAYS: Mapping[str, str | None] = {
 #: Kinds that change nothing of a motion but rounding: the same equations, with fewer instructions or none to write.
 SAME_EQUATIONS = frozenset(
     (
-        *(MASSLESS, POINTS, AXES, TURNS, CYCLIC, DROPPED, ENTRIES, SUBSYSTEMS, NOT_ASKED),
+        *(MASSLESS, POINTS, AXES, TURNS, CYCLIC, SKEW, DROPPED, ENTRIES, SUBSYSTEMS, NOT_ASKED),
         *(SYMMETRY, SPARSITY, ROUTE, DEAD, STEADY, ZEROS, VALUES),
     )
 )

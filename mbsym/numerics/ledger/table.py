@@ -20,6 +20,7 @@ from mbsym.numerics.kinds import (
     POINTS,
     RESTING,
     ROUTE,
+    SKEW,
     SPARSITY,
     STEADY,
     SUBSYSTEMS,
@@ -28,7 +29,7 @@ from mbsym.numerics.kinds import (
     VALUES,
     WELDED,
 )
-from mbsym.numerics.ledger import code, described, formulas, measured, motion
+from mbsym.numerics.ledger import code, described, formulas, measured, motion, plane
 from mbsym.numerics.ledger.entry import Ledger, Saving
 from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Wanted, Work
 
@@ -41,6 +42,7 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
     POINTS: described.point_masses,
     AXES: described.unused_axes,
     TURNS: described.constant_rotations,
+    SKEW: plane.skew_plane,
     CYCLIC: motion.cyclic_coordinates,
     DROPPED: motion.dropped_parameters,
     ENTRIES: formulas.vanishing_entries,
