@@ -101,5 +101,6 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
             yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
         yield from (Suggestion(one.name, "name", one.meaning or "prescribed", one.name) for one in system.prescribed)
         yield from (Suggestion(one.name, "name", "a notation", one.name) for one in system.notation)
+        yield from (Suggestion(one.name, "function", "a table", f"{one.name}(") for one in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
     yield Suggestion("pi", "word", "3.14159...", "pi")

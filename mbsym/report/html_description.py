@@ -52,6 +52,11 @@ def expression(value: Expression, names: MathNames) -> Markup:
     return Markup(_expression(value, names)[0])
 
 
+def point_of_table(x: Fraction, y: Fraction, names: MathNames) -> str:
+    """(x, y)."""
+    return bracketed(f"{expression(Number(x), names)}{mo(',')}{expression(Number(y), names)}")
+
+
 def _expression(value: Expression, names: MathNames) -> tuple[str, int]:
     """(MathML, precedence): 1 sum, 2 product, 3 power, 4 atom."""
     match value:

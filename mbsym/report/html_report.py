@@ -26,7 +26,7 @@ from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repai
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
-from mbsym.report.html_description import expression, load_in_words
+from mbsym.report.html_description import expression, load_in_words, point_of_table
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
@@ -64,6 +64,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
         "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
         "expression": lambda value: expression(value, names),
+        "points": lambda value: Markup(", ".join(shown.math(point_of_table(x, y, names)) for x, y in value)),
         "vector": lambda values: Markup(shown.row([expression(x, names) for x in values])),
         "tensor": lambda rows: Markup(shown.table([[expression(x, names) for x in line] for line in rows])),
         "printed": lambda value: expression(value, printed),

@@ -49,6 +49,12 @@ def expression(value: Expression, names: LatexNames) -> str:
     return _expression(value, names)[0]
 
 
+def points(value: Sequence[tuple[Fraction, Fraction]], names: LatexNames) -> str:
+    """The points of a table; a line may end behind each."""
+    written = (f"({expression(Number(x), names)},\\, {expression(Number(y), names)})" for x, y in value)
+    return ",\\; \\allowbreak ".join(written)
+
+
 def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
     """(text, precedence): 1 sum, 2 product, 3 power, 4 atom."""
     match value:

@@ -26,7 +26,7 @@ from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
-from mbsym.report.latex_description import call, expression, load_in_words
+from mbsym.report.latex_description import call, expression, load_in_words, points
 from mbsym.report.latex_diagram import diagram
 from mbsym.report.latex_form import Form, heading, subheading
 from mbsym.report.latex_formulas import (
@@ -149,6 +149,7 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "dotted": lambda name: names[name].accented("dot"),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
+        "points": lambda value: points(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
         "matrix": lambda value: matrix(value, long, widest, measured),
         "tensor": lambda value: tensor(value, names, widest),

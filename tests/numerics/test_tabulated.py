@@ -11,11 +11,13 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 import mbsym
+from mbsym.editing import suggestions
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
+from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text, to_yaml
 
 POINTS = ((0, 0), (0.5, 2.5), (1.25, -1), (3, 0.75))
@@ -129,3 +131,22 @@ def test_dimensions() -> None:
     system, complaints = read(both)
     assert system is None
     assert "the argument of push" in next(item.message for item in complaints)
+
+
+def test_reports_list_the_points() -> None:
+    analysis = mbsym.loads(CUBIC.replace("0.75]]", "-1/3]]"))
+    assert not any(check.failed for check in analysis.checks)
+    latex = TARGETS["latex"].render(analysis, (1, 2, 3))
+    assert r"Table $\operatorname{push}$, a natural cubic spline, its end values outside: $(0,\, 0),\; " in latex
+    assert r"(1.25,\, -1),\; \allowbreak (3,\, \frac{-1}{3})$." in latex
+    assert r"\operatorname{push}(t)" in latex
+    page = TARGETS["html"].render(analysis, (1, 2, 3))
+    assert "Table <i>push</i>, a natural cubic spline, its end values outside: <math>" in page
+    assert "<mn>0.5</mn><mo>,</mo><mn>2.5</mn>" in page
+
+
+def test_the_editor_offers_tables() -> None:
+    head, tail = LINEAR.split("push(t)")
+    line, column = head.count("\n"), len(head.rpartition("\n")[2])
+    found = suggestions(head + tail, line, column, read(LINEAR)[0])
+    assert "push" in [one.label for one in found]
