@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.side_by_side import TABLEAUX, Compiled, Fate, SideBySide, compiled
+from mbsym.numerics.one_by_one import OneByOne, WithParameters
+from mbsym.numerics.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.variation import Members
 
 #: Quantiles of the statistics: the median, and the bands of 50 % and 90 % about it.
@@ -143,8 +144,8 @@ def ensemble(
     Ctrl-C ends it: what has been computed is kept.  Memory is needed for the members' states and a block of times.
     """
     times = np.asarray(times, float)
-    made = compiled(found.dynamics.right_hand_side, TABLEAUX[method], len(found.starts))
-    run = SideBySide(made, setting, found.starts, found.parameters, threads)
+    begin = _beginning(found, method, threads)
+    run = begin(setting, slice(None))
     started = time.perf_counter()
     parts = [statistics(found.starts[None])]
     rows = max(1, BLOCK // max(1, found.starts.size))
@@ -161,7 +162,7 @@ def ensemble(
     seconds = time.perf_counter() - started
     compared = Compared((), np.zeros(len(final)), np.zeros(len(final)))
     if not interrupted:
-        compared = _compared(found, made, setting, times, run)
+        compared = _compared(found, begin, setting, times, run)
     accepted, rejected = run.steps
     fates = tuple(run.fates[member] for member in sorted(run.fates))
     steps = int(np.sum(accepted) + np.sum(rejected))
@@ -177,13 +178,26 @@ def ensemble(
         compared,
         steps,
         run.threads,
-        made.lanes,
+        run.lanes,
         seconds,
         interrupted,
     )
 
 
-def _compared(found: Members, made: Compiled, setting: Setting, times: Any, run: SideBySide) -> Compared:
+#: Runs of some members at a setting, from the start.
+_Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
+
+
+def _beginning(found: Members, method: str, threads: int | None) -> _Beginning:
+    """Side by side; one by one where steps have to end at switches, or be short beside what is narrow."""
+    if not found.dynamics.features.none:
+        whole = WithParameters(found.dynamics)
+        return lambda setting, some: OneByOne(whole, method, setting, found.starts[:, some], found.parameters[:, some])
+    made = compiled(found.dynamics.right_hand_side, TABLEAUX[method], len(found.starts))
+    return lambda setting, some: SideBySide(made, setting, found.starts[:, some], found.parameters[:, some], threads)
+
+
+def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
     """Some members, those with the most steps among them, once more: a hundredth of the tolerance, half the step."""
     whole = [member for member in range(run.members) if member not in run.fates]
     clamped = setting.tolerance is not None and setting.tolerance < FINEST
@@ -201,10 +215,7 @@ def _compared(found: Members, made: Compiled, setting: Setting, times: Any, run:
     )
     places = list(chosen)
     ends = times[1:] if len(times) * len(places) * len(found.starts) <= BLOCK else times[-1:]
-    states = [
-        SideBySide(made, one, found.starts[:, places], found.parameters[:, places]).block(ends)
-        for one in (setting, finer)
-    ]
+    states = [begin(one, places).block(ends) for one in (setting, finer)]
     differences = np.max(np.abs(states[0] - states[1]), axis=(0, 2))
     sizes = np.max(np.abs(states[1]), axis=(0, 2))
     return Compared(chosen, differences, sizes)

@@ -151,6 +151,11 @@ class SideBySide:
         return np.ascontiguousarray(grouped[:, :rows].transpose(1, 0, 2).reshape(rows, self.groups * self.made.lanes))
 
     @property
+    def lanes(self) -> int:
+        """Members in one register."""
+        return self.made.lanes
+
+    @property
     def steps(self) -> Any:
         """(accepted, rejected) of every member, so far; of fixed steps, those that were made."""
         if not self.made.tableau.errors:

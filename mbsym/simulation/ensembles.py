@@ -51,7 +51,7 @@ def simulate_many(
     method = "dop853" if request.method == "auto" else request.method
     fixed = request.step is not None
     tolerance = None if fixed else request.tolerance or TOLERANCE["float64"]
-    setting = Setting(tolerance, request.step, request.step_limit)
+    setting = Setting(tolerance, request.step, request.step_limit, request.longest)
     return ensemble(found, method, setting, _times(request, scenario), threads, watch)
 
 

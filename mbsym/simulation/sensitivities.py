@@ -68,7 +68,7 @@ def sensitivities(
     times = sample_times(request, 0.0, scenario.system)
     if request.every is None and request.samples is None and step is None:
         times = np.linspace(0.0, request.time, SAMPLES)
-    setting = Setting(tolerance, step, request.step_limit)
+    setting = Setting(tolerance, step, request.step_limit, request.longest)
     found = integrated(augmented, method, setting, times)
     states, values = split(found.states, len(scenario.positions))
     error = _error(augmented, method, setting, found) if found.breakdown is None else float("nan")
@@ -82,6 +82,7 @@ def _error(augmented: Variational, method: Method, setting: Setting, found: Any)
         None if setting.tolerance is None else setting.tolerance / FINER,
         None if setting.step is None else setting.step / 2,
         4 * setting.step_limit,
+        setting.longest,
     )
     better = integrated(augmented, method, finer, found.times)
     if better.breakdown is not None:

@@ -101,3 +101,31 @@ def test_switches_beyond_the_end_are_not_told() -> None:
     found = mbsym.simulate(mbsym.loads(text("3*step(t - 5.1)")), 5, estimate=False)
     assert found.trajectory.passed is not None
     assert found.trajectory.passed.switches == []
+
+
+@pytest.mark.parametrize("force", [PUSH, SMOOTH, DRY])
+def test_members_of_an_ensemble_feel_what_is_narrow_and_what_jumps(force: str) -> None:
+    """Side by side every member stepped over the push; with dry friction none came to the end."""
+    found = mbsym.ensemble(mbsym.loads(text(force)), 20, {"x": (0.9, 1.0, 2)}, samples=3)
+    assert not found.fates
+    assert found.final[0, 1] == pytest.approx(exact(force, 20.0), abs=1e-8)
+
+
+def test_a_parameter_that_varies_meets_its_own_push() -> None:
+    """x'' = -x + F pulse: what the push adds is proportional to F."""
+    named = text("F*pulse(t, 5, 5.002)").replace("bodies:", "parameters: {F: real}\nbodies:") + "values: {F: 1}\n"
+    found = mbsym.ensemble(mbsym.loads(named), 20, {"F": (0, 100, 3)}, samples=3)
+    own, whole = np.cos(20.0), exact(PUSH, 20.0)
+    assert found.final[0] == pytest.approx([own, 0.5 * (own + whole), whole], abs=1e-8)
+
+
+def test_the_longest_step_holds_for_many_motions_and_for_derivatives() -> None:
+    from mbsym.numerics.scenario import scenario as given
+    from mbsym.numerics.variation import Grid
+    from mbsym.simulation import Request
+    from mbsym.simulation.ensembles import Spread, simulate_many
+
+    one = given(mbsym.loads(text("sin(t)")).system)
+    found = simulate_many(one, Spread(Request(8.0, longest=0.01), (Grid("x", 0.5, 1.0, 2),)))
+    assert found.setting.longest == 0.01
+    assert found.steps >= 2 * 800
