@@ -39,6 +39,9 @@ AGAINST_FIXED = 1e-15
 #: No step of the better run is longer than this part of the whole time.
 PARTS = 2_000
 
+#: Where the run's own steps are bounded, those of the better one are bounded by so much less.
+SHORTER = 0.5
+
 #: Nothing new is compiled for a right-hand side with more operations.
 LONG = 20_000
 
@@ -188,6 +191,8 @@ def _candidates(
     setting, end = found.setting, float(found.times[-1])
     name, operations = method.traits.name, max(1, dynamics.right_hand_side.operations)
     limit, longest = max(20_000, AFFORDABLE // (14 * operations)), end / PARTS
+    if setting.longest is not None:  # where that rules the steps of both, they would be the same run
+        longest = min(longest, SHORTER * setting.longest)
     explicit = completed(METHODS["dop853"])
     wanted = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
     more = [kind for kind in (EXTENDED, FLOAT64) if available(kind) and _rounding(kind) < _rounding(scalar)]

@@ -273,3 +273,22 @@ initial: {x: {position: 1, velocity: -1}}
     assert isinstance(run.error, NoEstimate)
     assert run.error.why is Lacking.BREAKS_DOWN
     assert list(error_lines(run.error)) == [f"not estimated: {Lacking.BREAKS_DOWN.value}"]
+
+
+def test_steps_that_a_longest_step_rules_are_not_compared_with_the_same_steps() -> None:
+    """x'' = -x in steps of 1 whatever the tolerance: held against cos t."""
+    text = """
+mbsym: 1
+name: p
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - potential: x**2/2
+initial: {x: 1}
+"""
+    request = {"method": "dop853", "tolerance": 0.1, "max_step": 1.0}
+    found = mbsym.simulate(mbsym.loads(text), 2000.0, samples=4001, estimate=True, **request)
+    assert isinstance(found.error, ErrorEstimate)
+    error = float(np.max(np.abs(found.at(found.times)[0] - np.cos(found.times))))
+    assert error > 1e-5
+    assert found.error.largest == pytest.approx(error, rel=0.2)
