@@ -121,14 +121,15 @@ def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
     if not isinstance(found.error, ErrorEstimate):
         return plan.bounds
     errors = {one.name: one.largest / one.scale for one in found.error.quantities}
-    bounds = [_with_error(one, errors.get(one.quantity, 0.0)) for one in plan.bounds]
-    for place, bound in enumerate(bounds):
+    others = {name: error for name, error in errors.items() if name not in plan.accuracy.named}
+    bounds = []
+    for bound in plan.bounds:
         if bound.quantity in plan.accuracy.named:
+            bounds.append(_with_error(bound, errors.get(bound.quantity, 0.0)))
             continue
-        others = {name: error for name, error in errors.items() if name not in plan.accuracy.named}
         worst = max(others, key=lambda name: others[name])
-        if others[worst] > _integrated(bound):
-            bounds[place] = _with_error(replace(bound, quantity=worst), others[worst])
+        quantity = worst if others[worst] > _integrated(bound) else bound.quantity
+        bounds.append(_with_error(replace(bound, quantity=quantity), others[worst]))
     return tuple(bounds)
 
 
