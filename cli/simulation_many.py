@@ -112,6 +112,7 @@ def _check_method(wanted: Asked, options: Options) -> None:
         ("--whole", request.whole),
         ("--estimate", request.estimate is not None),
         ("--event, --stop or --section", bool(request.events)),
+        ("--certify", request.certify is not None),
     )
     for option, asked in flags:
         if asked:
