@@ -27,7 +27,7 @@ import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, BinaryIO
+from typing import IO, BinaryIO, cast
 
 from mbsym.source.render import escaped
 
@@ -300,6 +300,15 @@ def _flush_folder(folder: Path) -> None:
             os.fsync(handle)
         finally:
             os.close(handle)
+
+
+@contextmanager
+def room_beside(folder: Path) -> Iterator[BinaryIO]:
+    """A file without a name on the disk of a folder, which need not be there yet: gone with the process, however it
+    ends."""
+    place = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.is_dir())
+    with tempfile.TemporaryFile(prefix=_PART, dir=place) as stream:
+        yield cast(BinaryIO, stream)
 
 
 # --- folders ----------------------------------------------------------------------------------------------------------

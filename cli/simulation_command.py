@@ -15,7 +15,7 @@ from mbsym_cli.simulation_choice import with_goal
 from mbsym_cli.simulation_continue import check_values
 from mbsym_cli.simulation_many import Many, read_many
 from mbsym_cli.simulation_options import Group
-from mbsym_cli.simulation_request import Flags, read_request
+from mbsym_cli.simulation_request import Flags, check_held, read_request
 from mbsym_cli.simulation_run import run
 
 
@@ -36,6 +36,7 @@ def simulated(
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, system, asked))
     check_values(wanted.request, given, asked)
+    check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, asked)
     wanted = with_goal(further["choosing"], system, wanted, settings, bool(many.vary or many.sensitivity), asked)
     if asked.refused(None if system is None else file) or given is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from mbsym_cli.simulation_request import FIGURES, Asked
 from mbsym_cli.simulation_summary import note
 
 if TYPE_CHECKING:
+    from mbsym.numerics.body_motion import BodyMotions
     from mbsym.simulation import Simulation
 
 #: More samples than this are not drawn.
@@ -28,6 +29,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     Files of an earlier simulation go with it: they would contradict simulation.json.  What stops the drawing, as Ctrl-C
     does, stops it only when the rest is delivered.
     """
+    from mbsym.report.bodies_csv import bodies_parts
     from mbsym.report.certificate import enclosure_csv
     from mbsym.report.simulation_json import simulation_json
     from mbsym.report.trajectory_csv import trajectory_parts
@@ -42,7 +44,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
     files |= {f"{stem}{mark}.csv": text for stem, text in _happened(run).items()}
     if "bodies-csv" in asked.formats:
-        files[f"bodies{mark}.csv"] = _bodies(run)
+        files[f"bodies{mark}.csv"] = bodies_parts(_bodies(run), run.system)
     kinds = [kind for kind in asked.formats if kind in FIGURES]
     stopped: BaseException | None = None
     try:
@@ -61,14 +63,15 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     return paths
 
 
-def _bodies(run: Simulation) -> str:
+def _bodies(run: Simulation) -> Iterator[BodyMotions]:
+    """What the bodies do, some rows after the other."""
     from mbsym.numerics.between import accelerations
-    from mbsym.numerics.body_motion import body_motions
-    from mbsym.report.bodies_csv import bodies_csv
+    from mbsym.numerics.body_motion import followed_bodies
 
-    found = run.trajectory
-    rates = accelerations(run.dynamics, found.times, found.states)
-    return bodies_csv(body_motions(run.scenario, found.times, found.states, rates), run.system)
+    found, motions = run.trajectory, followed_bodies(run.scenario)
+    own = [(found.times, found.states)]
+    for times, states in own if found.table is None else ((rows[0], rows[1:]) for rows, _ in found.table.blocks()):
+        yield motions(times, states, accelerations(run.dynamics, times, states))
 
 
 def _happened(run: Simulation) -> dict[str, str]:

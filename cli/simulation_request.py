@@ -89,15 +89,33 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
-    from mbsym.numerics.columns import most_rows
+    from mbsym.numerics.columns import most_rows_in_file
 
     rows, option = samples, "--samples"
     if every is not None:
         rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
-    most = most_rows(system)
+    most = most_rows_in_file(system)
     if rows is not None and rows > most:
         hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
         asked.complain(option, "too-large", f"{rows} rows are too many", hint)
+
+
+def check_held(request: Request, system: System | None, many: bool, asked: Options) -> None:
+    """Complains about rows that have to be in memory together, and do not fit: the others go to a file."""
+    from mbsym.numerics.columns import most_rows
+
+    why = {
+        "--certify": request.certify is not None,
+        "--continue": request.earlier is not None,
+        "--vary, --sensitivity": many,
+    }
+    needing = [option for option, there in why.items() if there]
+    rows = request.rows if request.earlier is None else request.samples
+    if system is None or not needing or rows is None or rows <= most_rows(system):
+        return
+    hint = f"at most {most_rows(system)} for this system, or leave out {', '.join(needing)}"
+    option = "--every" if request.every is not None else "--samples"
+    asked.complain(option, "too-large", f"{rows} rows are too many to be held in memory, as they have to be here", hint)
 
 
 def _check_method(system: System | None, request: Request, texts: Mapping[str, str | None], asked: Options) -> None:

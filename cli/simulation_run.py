@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
+from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulation_files import write_files
@@ -32,12 +34,14 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
     try:
         if wanted.goal is not None and wanted.goal.only_plan:
             return only_planned(file, given, wanted)
-        with _watching(file, wanted) as (watch, stage):
-            if wanted.goal is not None:
-                found = simulated_to(wanted.goal, given, wanted.request, watch, stage)
-            else:
-                found = simulate(given, wanted.request, watch, stage)
-        return _delivered(file, folder, found, wanted)
+        with room_beside(folder) as store:
+            request = replace(wanted.request, store=store)
+            with _watching(file, wanted) as (watch, stage):
+                if wanted.goal is not None:
+                    found = simulated_to(wanted.goal, given, request, watch, stage)
+                else:
+                    found = simulate(given, request, watch, stage)
+            return _delivered(file, folder, found, wanted)
     except NoEvent as error:
         options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
         options.refused(file)

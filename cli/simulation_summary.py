@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from mbsym.numerics.simulate import Trajectory
     from mbsym.simulation import Simulation
 
+#: Of more rows than this the first ones tell whether rows stand at the ends of steps.
+MOST_LOOKED_AT = 20_001
+
 #: Below this much of what it was a pivot of M costs digits worth a warning.
 NEARLY_SINGULAR = 1e-8
 
@@ -38,7 +41,7 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
 
 def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
-    from mbsym.numerics.simulate import least_pivot
+    from mbsym.numerics.breakdowns import least_pivot
     from mbsym.report.between_steps import passed_over, switch_line
     from mbsym.report.certificate import certificate_lines
     from mbsym.report.events_words import events_lines
@@ -57,7 +60,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     reached = "" if found.whole else f", reached {with_unit(f'{found.times[-1]:.9g}', unit)}"
     if run.happened is not None and run.happened.ended is not None:
         reached = (
-            f", of which {len(found.times)} up to t = {with_unit(f'{found.times[-1]:.9g}', unit)}, where it was stopped"
+            f", of which {found.samples} up to t = {with_unit(f'{found.times[-1]:.9g}', unit)}, where it was stopped"
         )
     yield "time", f"0 to {with_unit(f'{request.time:g}', unit)}, {len(chosen.times)} samples{reached}"
     if request.earlier is not None:
@@ -115,7 +118,7 @@ def _method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
 
 def _between(times: Any, step: float) -> str:
     """How rows that no step ends at came about."""
-    passed = np.asarray(times[:-1]) / step
+    passed = np.asarray(times[: min(len(times) - 1, MOST_LOOKED_AT)]) / step
     if np.allclose(passed, np.round(passed), rtol=1e-12, atol=1e-6):
         return ""
     return "; rows between the ends of steps by the polynomial that fits q, q', q'' there"
@@ -158,7 +161,7 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
-    samples, where = counted(len(found.times), "sample", "samples"), printable(paths[0].parent)
+    samples, where = counted(found.samples, "sample", "samples"), printable(paths[0].parent)
     kept = f"{samples} up to t = {with_unit(f'{found.times[-1]:.9g}', time)} kept in {where}"
     code, at = ended.kind.replace(" ", "-"), with_unit(f"{ended.time:.9g}", time)
     return "\n".join(

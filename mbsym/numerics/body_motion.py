@@ -11,7 +11,7 @@ straight-line program for r_C, along q' and q'', not differences.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,7 +26,7 @@ from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import INERTIAL, acceleration_name
-from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.interface import Code, Kernel
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import bound, substituted
@@ -57,6 +57,13 @@ def body_motions(
 
     Raises Failure where there is no program for the force function.
     """
+    return followed_bodies(scenario, frame, ring)(times, states, rates)
+
+
+def followed_bodies(
+    scenario: Scenario, frame: str = INERTIAL, ring: Ring | None = None
+) -> Callable[[Any, Any, Any], BodyMotions]:
+    """``body_motions`` of times, states and rates, for whoever has them bit by bit."""
     system = scenario.system
     program = Program()
     environment = program_environment(system, program)
@@ -84,9 +91,14 @@ def body_motions(
     )
     inputs = ("t", *system.coordinates, *system.velocities, *map(acceleration_name, system.coordinates))
     compiled = kernels({"bodies": Code(fresh, inputs, (*nodes, *first, *second))})
+    return lambda times, states, rates: _evaluated(compiled["bodies"], names, frame, times, states, rates)
+
+
+def _evaluated(kernel: Kernel, names: tuple[str, ...], frame: str, times: Any, states: Any, rates: Any) -> BodyMotions:
     moments = np.vstack([times, np.asarray(states, dtype=float), np.asarray(rates, dtype=float)])
     with np.errstate(all="ignore"):
-        found = np.array(compiled["bodies"](moments), dtype=float)
+        found = np.array(kernel(moments), dtype=float)
+    each = 3 + 9 + 3 + 1
     m, count = moments.shape[1], len(names)
     own = found[: each * count].reshape(count, each, m)
     moving = found[each * count + 1 :].reshape(2, count, 3, m)

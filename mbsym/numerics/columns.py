@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mbsym.model.system import System
 
-#: A table has at most so many numbers.
-MOST_NUMBERS = 10_000_000
+#: A table in memory has at most so many numbers, and one in a file, where they take 25 bytes each at most.
+MOST_NUMBERS, MOST_IN_FILE = 10_000_000, 2_000_000_000
 
 
 def columns(system: System, natural: bool = True) -> tuple[str, ...]:
@@ -18,5 +18,10 @@ def columns(system: System, natural: bool = True) -> tuple[str, ...]:
 
 
 def most_rows(system: System, more: int = 0) -> int:
-    """How many rows fit into a table, with so many columns more."""
+    """How many rows fit into a table in memory, with so many columns more."""
     return MOST_NUMBERS // (len(columns(system, natural=False)) + more)
+
+
+def most_rows_in_file(system: System) -> int:
+    """How many rows a table has that goes to its file part by part."""
+    return MOST_IN_FILE // len(columns(system, natural=False))

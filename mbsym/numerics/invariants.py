@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,6 +58,12 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
         unit = integral_unit(system, integral.kind, integral.of)
         found.append(Invariant(integral.name, column, integral.status == PROVED, code, unit))
     return tuple(found)
+
+
+def along(known: Sequence[Invariant]) -> Callable[[Any], dict[str, Any]]:
+    """Of (t, q, q') in columns the values of first integrals, by the names of their columns."""
+    compiled = kernels({item.column: item.code for item in known})
+    return lambda points: {name: kernel(np.asarray(points, dtype=float))[0] for name, kernel in compiled.items()}
 
 
 def values(known: Sequence[Invariant], times: Any, states: Any) -> list[tuple[Any, float]]:

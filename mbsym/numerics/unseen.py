@@ -10,9 +10,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method
-from mbsym.numerics.simulate import Trajectory, least_pivot, simulate
+from mbsym.numerics.simulate import Trajectory, simulate
 
 #: Steps whose ends are looked at one by one, and places in what is left of the interval.
 MOST, PLACES = 4_000, 4_000
@@ -23,7 +24,7 @@ LONG = 2.0
 
 def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> Trajectory:
     """The trajectory with more rows, where its steps are many beside its rows; else as it is."""
-    if not found.whole or found.seconds > LONG or 2 * found.work.steps < len(found.times):
+    if not found.whole or found.seconds > LONG or 2 * found.work.steps < found.samples:
         return found
     end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
     places = [0.0]

@@ -14,7 +14,7 @@ units of the description; where it declares them, they stand behind the names (`
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from mbsym.model.quantities import (
@@ -28,7 +28,7 @@ from mbsym.model.quantities import (
 )
 from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
-from mbsym.report.trajectory_csv import written
+from mbsym.report.trajectory_csv import parts
 
 _VECTORS = (
     ("position", "places"),
@@ -40,11 +40,26 @@ _VECTORS = (
 
 def bodies_csv(found: BodyMotions, system: System | None = None) -> str:
     """The file's text, with the units of ``system``."""
+    return "".join(bodies_parts([found], system))
+
+
+def bodies_parts(blocks: Iterable[BodyMotions], system: System | None = None) -> Iterator[str]:
+    """The same in parts, of rows that come block by block."""
+    begun = False
+    for found in blocks:
+        text = parts(*_table(found, system))
+        if begun:
+            next(text)  # the line of names
+        yield from text
+        begun = True
+
+
+def _table(found: BodyMotions, system: System | None) -> tuple[list[str], list[Any]]:
     kinetic = found.kinetic.sum(axis=0)
     energies = {"kinetic_energy": kinetic, "force_function": found.force_function}
     table = {"t": found.times, **dict(_columns(found)), **energies, "energy": kinetic - found.force_function}
     units = {} if system is None else _units(system)
-    return written([_cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values()))
+    return [_cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values())
 
 
 def _units(system: System) -> dict[str, str | None]:

@@ -45,7 +45,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "status": "whole" if found.whole else "partial",
         "ended": _ended(found),
         "time": {"from": 0.0, "to": float(chosen.times[-1]), "samples": len(chosen.times)},
-        "reached": {"time": float(found.times[-1]), "samples": len(found.times), "state": _last(found)},
+        "reached": {"time": float(found.times[-1]), "samples": found.samples, "state": _last(found)},
         "continued": None if earlier is None else {"from": earlier.time, "samples": len(earlier.times)},
         "method": {
             "name": traits.name.lower(),

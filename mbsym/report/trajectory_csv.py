@@ -38,10 +38,17 @@ def trajectory_parts(
 ) -> Iterator[str]:
     """The same in parts, of which only one is held at a time."""
     further, natural = dict(more or {}), found.generalized_energy is found.energy
+    known = column_units(found.system, natural) | dict(units or {})
+    names = [marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)]
+    if found.table is not None:
+        own = ("energy",) if natural else ("energy", "generalized_energy")
+        yield header(names)
+        for points, values in found.table.blocks():
+            yield rows([*points, *(values[name] for name in (*own, "relative_drift", *further))], True)
+        return
     energies = [found.energy] if natural else [found.energy, found.generalized_energy]
     table = [found.times, *found.states, *energies, found.drift, *further.values()]
-    known = column_units(found.system, natural) | dict(units or {})
-    yield from parts([marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)], table)
+    yield from parts(names, table)
 
 
 def column_units(system: System, natural: bool = True) -> dict[str, str | None]:

@@ -68,7 +68,7 @@ def plan_for(
     if wrong:
         raise ValueError("; ".join(wrong))
     frequency = rates(Dynamics(scenario))[1]
-    times = sample_times(replace(request, step=None), frequency, scenario.system)
+    times = sample_times(replace(request, step=None, store=None), frequency, scenario.system)
     plan = planned(scenario, accuracy, times, replace(pins, whole=request.whole, longest=request.longest), watch)
     rows = None if request.every is not None else len(times)
     settled = replace(

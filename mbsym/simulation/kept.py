@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
     """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
-    points = visited(found.times, found.states, found.change)
+    points = _seen(found, "change", found.change)
     scale = found.energy_scale
     if isinstance(dynamics, LinearisedDynamics):
         # The energy is that of the whole system, the motion that of the linear equations: no theorem joins them.
@@ -29,8 +29,13 @@ def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tu
         same = confronted("energy", known, found.change, scale, doubt)
         return same, same
     generalized = confronted("generalised energy", known, found.change, scale, doubt)
-    known, doubt = standing(dynamics, dynamics.energies, 0, visited(found.times, found.states, found.energy), held)
+    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held)
     return generalized, confronted("energy", known, found.energy, scale, doubt)
+
+
+def _seen(found: Trajectory, name: str, values: Any) -> Any:
+    """States of a run at which a quantity changes most, and others: among all rows, where these are some of them."""
+    return visited(found.times, found.states, values) if found.table is None else found.table.visited[name]
 
 
 def kept_integrals(
@@ -48,6 +53,6 @@ def kept_integrals(
     for item, (column, _), (along, size) in zip(known, shown, seen, strict=True):
         state, doubt = Standing.PROVED, None
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
-            state, doubt = standing(dynamics, item.code, 0, visited(dense.times, dense.states, along), held)
+            state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, along), held)
         kept.append(Kept(item.column, column, confronted(item.name, state, along, size, doubt), item.unit))
     return tuple(kept)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isfinite
+from math import ceil, isfinite
+from typing import BinaryIO
 
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -13,6 +14,7 @@ from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
+from mbsym.numerics.stored import SHOWN
 from mbsym.simulation.earlier import Earlier
 from mbsym.simulation.watching import Watch
 
@@ -30,7 +32,8 @@ class Request:
     integrated, too, all parts in one, and no body is lumped into another; ``certify``: the exact solution is enclosed
     so narrowly, as a part of each quantity's size; ``events``: what is watched for; ``model``: how much of the
     mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run that it goes on from, whose
-    rows come first.
+    rows come first; ``store``: a file of nobody else's, open to be written and read, for the rows where they are very
+    many: the result then has some of them, and the table of all.
     """
 
     time: float
@@ -49,6 +52,19 @@ class Request:
     model: Model = Model()
     longest: float | None = None
     earlier: Earlier | None = None
+    store: BinaryIO | None = None
+
+    @property
+    def rows(self) -> int | None:
+        """How many are asked for; None where that is left open, or an earlier run has some already."""
+        if self.earlier is not None or self.every is None:
+            return None if self.earlier is not None else self.samples
+        return ceil(self.time / self.every * (1 - 1e-12)) + 1
+
+    @property
+    def streams(self) -> bool:
+        """Whether the rows go to the ``store``: where they are very many, and nothing needs them all at once."""
+        return self.store is not None and self.certify is None and (self.rows or 0) > SHOWN
 
 
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:

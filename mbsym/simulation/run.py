@@ -18,10 +18,13 @@ from typing import Any
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
+from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
+from mbsym.numerics.invariants import along, invariants
 from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.methods.interface import Method
 from mbsym.numerics.models import scenario_of
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
@@ -30,7 +33,7 @@ from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import Request, wrong_with
-from mbsym.simulation.result import Simulation
+from mbsym.simulation.result import Chosen, Simulation
 from mbsym.simulation.watching import Watching
 
 #: The error of a run shorter than this many seconds is estimated without being asked for.
@@ -74,12 +77,11 @@ def simulate(
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
     with stage(INTEGRATING):
-        known = {} if request.earlier is None else {"before": request.earlier.states}
-        found = integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, **known)
+        found = _trajectory(dynamics, method, chosen, request, watch, integrals)
     happened = None
     if watching is not None:
         found, happened = watching.happened(found)
-    found = replace(found, between=kinetic_between(dynamics, found, chosen.completed))
+    found = replace(found, between=found.between or kinetic_between(dynamics, found, chosen.completed))
     error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
@@ -101,6 +103,25 @@ def simulate(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
         *(certificate, happened, given),
     )
+
+
+def _trajectory(
+    dynamics: Dynamics,
+    method: Method,
+    chosen: Chosen,
+    request: Request,
+    watch: Callable[[float], None],
+    integrals: tuple[Any, ...],
+) -> integration.Trajectory:
+    """The run; its rows in memory, or in the file that the request has for them."""
+    if request.streams and request.store is not None:
+        from mbsym.numerics.streamed import streamed
+
+        known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))
+        way = (chosen.setting, chosen.times, request.store, request.arithmetic, watch)
+        return streamed(dynamics, method, *way, along(known))
+    before = None if request.earlier is None else request.earlier.states
+    return integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, before)
 
 
 def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.columns import most_rows
+from mbsym.numerics.grid import Grid
 from mbsym.simulation.request import Request
 
 #: Rows unless asked for otherwise (more of them where the motion is fast), and rows a period of the fastest motion.
@@ -20,6 +21,9 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
     if request.earlier is not None:
         further = request.earlier.further(request.time, request.every, request.samples)
         return np.concatenate((request.earlier.times, further))
+    if request.streams and request.rows is not None:
+        rows = request.rows
+        return Grid(rows, request.every or request.time / (rows - 1), request.time)
     if request.every is not None:
         times = np.arange(ceil(request.time / request.every * (1 - 1e-12)) + 1) * request.every
         times[-1] = request.time

@@ -27,6 +27,7 @@ from PIL import Image
 
 import mbsym as library
 from mbsym.numerics.between import accelerations, between
+from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.choice import choose
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing, energy_standing, visited
@@ -34,7 +35,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Incomplete, scenario
-from mbsym.numerics.simulate import least_pivot, simulate
+from mbsym.numerics.simulate import simulate
 from mbsym.numerics.switching import rates
 from mbsym.report.drawing import thinned
 from mbsym.report.figures import CORNER, _curve, figures

@@ -1,0 +1,206 @@
+"""A run of very many rows: they go to a file as they come, and what is said about them is accumulated.
+
+``streamed`` gives a Trajectory of some of the rows (for figures, and for whoever asks for states), with the whole of
+them behind it.  Among the shown ones are the first, the last, and all at which something is largest or least: what is
+said of those is what would be said of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from mbsym.numerics.breakdowns import fallen
+from mbsym.numerics.conservation import EVENLY, LARGEST_CHANGES
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED
+from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting
+from mbsym.numerics.methods.passed import up_to
+from mbsym.numerics.simulate import Trajectory, allowed_apart, followed, raw_energies
+from mbsym.numerics.stored import BLOCK, SHOWN, Stored
+
+#: (t, q, q') in columns -> further quantities by name, each of shape (m,).
+Further = Callable[[Any], Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Table:
+    """All rows of a run: ``count`` of them, with ``scale`` for the drift; ``visited`` are, by quantity, the states
+    (t, q, q') at which it changes most from one row to the next, and others evenly along the run."""
+
+    dynamics: Dynamics
+    stored: Stored
+    plain: bool
+    scale: float
+    further: Further
+    visited: Mapping[str, Any]
+
+    @property
+    def count(self) -> int:
+        """How many rows there are."""
+        return self.stored.count
+
+    def blocks(self) -> Iterator[tuple[Any, Mapping[str, Any]]]:
+        """((t, q, q') in columns, energies and further quantities by name), a block of rows after the other."""
+        first = self.stored.rows(0, 1)
+        for _, rows in self.stored.blocks():
+            yield from [_quantities(self.dynamics, rows, first, self.plain, self.scale, self.further)]
+
+
+def streamed(
+    dynamics: Dynamics,
+    method: Method,
+    setting: Setting,
+    times: Any,
+    stream: BinaryIO,
+    scalar: str = "float64",
+    watch: Callable[[float], None] = lambda t: None,
+    further: Further = lambda points: {},
+) -> Trajectory:
+    """The same as ``simulate``, with the rows in ``stream`` and some of them in the trajectory.
+
+    Raises OSError where the file has no room for them.
+    """
+    rows = _Recorder(dynamics, stream, scalar)
+    ending = followed(dynamics, method, setting, times, rows, scalar, watch, most=BLOCK)
+    table, places = _table(dynamics, rows, further)
+    shown = rows.stored.at(places)
+    size = 1 + 2 * dynamics.size
+    found = _quantities(dynamics, shown, rows.stored.rows(0, 1), table.plain, table.scale, lambda points: {})[1]
+    natural = dynamics.natural
+    return Trajectory(
+        system=dynamics.system,
+        method=method.traits.name,
+        setting=setting,
+        times=shown[0].astype(float),
+        states=np.ascontiguousarray(shown[1:size]),
+        energy=found["energy"],
+        generalized_energy=found["energy"] if natural else found["generalized_energy"],
+        change=found["change"],
+        kinetic=shown[size + 1],
+        work=ending.work,
+        seconds=ending.seconds,
+        breakdown=ending.breakdown,
+        interrupted=ending.interrupted,
+        passed=up_to(ending.passed, float(shown[0, -1])),
+        between=rows.kinetic,
+        table=table,
+    )
+
+
+class _Recorder:
+    """Rows with their energies, to a file; the largest kinetic energy, and the largest of all energies."""
+
+    def __init__(self, dynamics: Dynamics, stream: BinaryIO, scalar: str) -> None:
+        self._dynamics, self._scalar = dynamics, scalar
+        width = 1 + 2 * dynamics.size + (2 if dynamics.natural else 4)
+        self.stored = Stored(stream, width, np.longdouble if scalar == EXTENDED else float)
+        self.kinetic = self.largest = 0.0
+
+    @property
+    def count(self) -> int:
+        return self.stored.count
+
+    def keep(self, times: Any, rows: Any) -> None:
+        if not rows.shape[1]:
+            return
+        points = np.vstack([times, rows])
+        raw = raw_energies(self._dynamics, points, self._scalar)
+        defined = np.all(np.isfinite(raw.astype(float)), axis=0)
+        kept = len(defined) if np.all(defined) else max(int(np.argmin(defined)), 0 if self.count else 1)
+        fine = np.abs(raw[:, :kept][:, defined[:kept]]).astype(float)
+        self.kinetic = max(self.kinetic, float(np.max(fine[1], initial=0.0)))
+        self.largest = max(self.largest, float(np.max(fine[1:], initial=0.0)))
+        self.stored.append(np.vstack([points, raw])[:, :kept])
+        if not np.all(defined):
+            first = int(np.argmin(defined))
+            message = "the energy is no real number from here on: a root or a logarithm has left its domain"
+            raise Breakdown(UNDEFINED, message, float(points[0, first]), rows[:, first].astype(float))
+
+    def past(self) -> Any:
+        places = _evenly(self.count, SHOWN)
+        return self.stored.at(places)[: 1 + 2 * self._dynamics.size].astype(float)
+
+
+@dataclass
+class _Steps:
+    """The rows after which a quantity changes most, and the one at which it is farthest from its first value."""
+
+    first: float | None = None
+    last: float = 0.0
+    farthest: tuple[float, int] = (-1.0, 0)
+    largest: list[tuple[float, int]] = field(default_factory=list)
+
+    def see(self, start: int, values: Any) -> None:
+        """The values from row ``start`` on."""
+        values = np.asarray(values, dtype=float)
+        if self.first is None:
+            self.first = self.last = float(values[0])
+        with np.errstate(all="ignore"):
+            away = np.nan_to_num(np.abs(values - self.first), nan=-1.0)
+            steps = np.abs(np.diff(values, prepend=self.last))
+        steps = np.where(np.isfinite(steps), steps, 0.0)
+        place = int(np.argmax(away))
+        if away[place] > self.farthest[0]:
+            self.farthest = float(away[place]), start + place
+        own = np.argsort(-steps, kind="stable")[:LARGEST_CHANGES]
+        found = self.largest + [(float(steps[k]), start + int(k) - 1) for k in own if start + k > 0]
+        self.largest = sorted(found, key=lambda one: (-one[0], one[1]))[:LARGEST_CHANGES]
+        self.last = float(values[-1])
+
+    def places(self, count: int) -> list[int]:
+        """As ``conservation.visited`` chooses them."""
+        return sorted({*_evenly(count, EVENLY), *(place + side for _, place in self.largest for side in (0, 1))})
+
+
+def _table(dynamics: Dynamics, rows: _Recorder, further: Further) -> tuple[Table, list[int]]:
+    """The table, and the numbers of the rows that are shown."""
+    stored, size = rows.stored, 1 + 2 * dynamics.size
+    first = stored.rows(0, 1)
+    plain = not dynamics.natural and _apart(stored, size) > allowed_apart(rows.kinetic, rows.largest)
+    scale = rows.kinetic or abs(float(first[-1 if not dynamics.natural else size, 0])) or 1.0
+    steps: dict[str, _Steps] = {}
+    kinetic, pivot = (-1.0, 0), (np.inf, 0)
+    for start, block in stored.blocks():
+        points, found = _quantities(dynamics, block, first, plain, scale, further)
+        for name, values in found.items():
+            steps.setdefault(name, _Steps()).see(start, values)
+        highest = int(np.argmax(np.abs(block[size + 1])))
+        kinetic = max(kinetic, (float(abs(block[size + 1, highest])), start + highest), key=lambda one: one[0])
+        left = fallen(dynamics, points.astype(float), first[:size, 0].astype(float))
+        pivot = min(pivot, (float(np.min(left)), start + int(np.argmin(left))), key=lambda one: one[0])
+    visited = {name: stored.at(one.places(stored.count))[:size].astype(float) for name, one in steps.items()}
+    places = {*_evenly(stored.count, SHOWN), kinetic[1], pivot[1], *(one.farthest[1] for one in steps.values())}
+    return Table(dynamics, stored, plain, scale, further, visited), sorted(places)
+
+
+def _apart(stored: Stored, size: int) -> float:
+    """The largest difference of h - h(0) in the two frames."""
+    first = stored.rows(0, 1)
+    apart = 0.0
+    for _, block in stored.blocks():
+        change = block - first
+        apart = max(apart, float(np.max(np.abs(change[-1] - change[size]), initial=0.0)))
+    return apart
+
+
+def _quantities(
+    dynamics: Dynamics, rows: Any, first: Any, plain: bool, scale: float, further: Further
+) -> tuple[Any, dict[str, Any]]:
+    """((t, q, q'), energies, their change, the drift and further quantities by name) of stored rows."""
+    size = 1 + 2 * dynamics.size
+    points, energies = rows[:size], rows[size:]
+    change = energies[0] - first[size] if not plain else energies[-1] - first[-1]
+    found = {"energy": energies[0 if dynamics.natural else 2], "change": change, "relative_drift": change / scale}
+    if not dynamics.natural:
+        found["generalized_energy"] = energies[3]
+    return points, found | dict(further(points))
+
+
+def _evenly(count: int, most: int) -> list[int]:
+    """At most so many rows, the first and the last among them."""
+    places: list[int] = np.linspace(0, count - 1, min(count, most)).astype(int).tolist()
+    return places
