@@ -188,4 +188,19 @@ def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tu
         elif name in following:
             told = f"{name} follows from other parameters"
             options.complain("--sensitivity", "bad-variation", told, "name those of which its relation is made")
+    if _jumps(given):
+        told = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
+        hint = "compare runs: --vary with two or three values close together"
+        options.complain("--sensitivity", "not-smooth", told, hint)
     return named
+
+
+def _jumps(given: Scenario) -> bool:
+    """Whether the rates have switches; False where there are no rates, which is told later."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.dynamics import Dynamics
+
+    try:
+        return bool(Dynamics(given).switches.outputs)
+    except Failure:
+        return False

@@ -4,7 +4,8 @@
 
 (Benettin, Galgani, Giorgilli & Strelcyn, Meccanica 15 (1980) 9).  These are numbers of a finite time: that a motion is
 chaotic is proved by none of them.  The uncertainty is that of the mean of blocks of the second half of the time, by
-Student's distribution; it knows nothing of what comes later.  The sum of all exponents is checked against the mean
+Student's distribution, and how far the mean of that half is from that of the whole time (the directions need a while to
+turn where they grow most); it knows nothing of what comes later.  The sum of all exponents is checked against the mean
 divergence of the equations, which is integrated without any Q or R (Liouville).
 """
 
@@ -129,13 +130,17 @@ def _directions(size: int, columns: int) -> Any:
 
 
 def _uncertainty(rates: Any, times: Any) -> Any:
-    """Half the width of the 95 % interval of the mean, from blocks of the second half; nan where these are too few."""
+    """Half the width of the 95 % interval of the mean, from blocks of the second half; nan where these are too few.
+
+    With it goes how far the second half's mean is from that of the whole.
+    """
     late = rates[len(rates) // 2 :]
     if len(late) < 2 * BLOCKS:
         return np.full(rates.shape[1], np.nan)
     length = times[0]
     blocks = np.array([np.mean(part, axis=0) / length for part in np.array_split(late, BLOCKS)])
-    return STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS)
+    turning = np.mean(late, axis=0) / length - np.mean(rates, axis=0) / length
+    return np.hypot(STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS), turning)
 
 
 def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: float) -> float:

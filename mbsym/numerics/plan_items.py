@@ -128,7 +128,8 @@ def _settings(settled: Settled) -> Iterator[Item]:
     found, pinned = settled.found, settled.pinned
     name = found.method.traits.name
     others = _cheapest_others(settled)
-    why = "as asked for" if METHOD in pinned else "the cheapest measured here" if others else "none other fits"
+    cheapest = "the cheapest here whose measured error, doubled, is small enough" if others else "none other fits"
+    why = "as asked for" if METHOD in pinned else cheapest
     if FINENESS in pinned:
         why = f"as asked for{_fitting(found)}"
     if settled.choice.method.traits.implicit and METHOD not in pinned:

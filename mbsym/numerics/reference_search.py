@@ -88,6 +88,8 @@ def whole_reference(
         left = limit - (now - started)
         if left <= 0 or (failed is not None and failed.kind == DISAGREE):
             continue
+        if way is _extrapolated and dynamics.switches.outputs:
+            continue  # its steps do not land at switches: it would end at the first and call that a blow-up
         try:
             found = way(_Search(dynamics, end, now, now + share * left, watch))
         except Breakdown as reason:

@@ -148,7 +148,8 @@ def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:
     compared = found.compared
     if compared.members:
         many = counted(len(compared.members), "member", "members")
-        told = f"integrated more finely, {many} differ by {compared.largest:.1e} of a quantity's size at most"
+        differ = "differs" if len(compared.members) == 1 else "differ"
+        told = f"integrated more finely, {many} {differ} by {compared.largest:.1e} of a quantity's size at most"
         yield "error", told + "; of the others nothing is known"
     elif not found.interrupted:
         yield "error", "not estimated: nothing finer than this to compare with"

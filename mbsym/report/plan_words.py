@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.counting import counted
 from mbsym.numerics.kinds import (
     FINENESS,
     GRAVITY,
@@ -112,7 +113,7 @@ def share_words(share: Share) -> str:
 
 
 def item_words(item: Item, plan: Plan) -> str:
-    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest measured here; rk45 3.3e-08: error 6.6e-07, 110 µs``."""
+    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest here ...; rk45 3.3e-08: error 6.6e-07, 110 µs``."""
     chosen = item.chosen
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
@@ -127,7 +128,7 @@ def refused_words(one: Refused, unit: str) -> str:
     parts = [f"error {one.error:.1e}"] if one.error is not None else []
     parts += [one.why] if one.why else []
     if one.cost is not None:
-        parts.append(f"{one.cost:.0f} operations" if unit == OPERATIONS else duration(one.cost))
+        parts.append(counted(round(one.cost), "operation", "operations") if unit == OPERATIONS else duration(one.cost))
     return f"{one.word}: {', '.join(parts)}" if parts else one.word
 
 

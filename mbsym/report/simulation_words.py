@@ -64,10 +64,14 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
         names = ", ".join(q.name for q in resting)
         error = max(q.largest for q in resting)
         floor = min(q.floor for q in resting)
-        yield (
-            f"{names} rest: the {error:.1e} that the run makes of it is measured by what the motion could do (sizes "
-            f"below {floor:.1e} count as rest)"
-        )
+        rest = "rests" if len(resting) == 1 else "rest"
+        if error == 0 and floor == 0:
+            yield f"{names} {rest}, in this run and in the better one"
+        else:
+            yield (
+                f"{names} {rest}: the {error:.1e} that the run makes of it is measured by what the motion could do "
+                f"(sizes below {floor:.1e} count as rest)"
+            )
 
 
 #: So many changes of the method are told one by one.

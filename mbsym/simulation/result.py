@@ -64,7 +64,7 @@ class Kept:
     unit: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Simulation:
     """The result of ``simulate``.
 
@@ -88,6 +88,11 @@ class Simulation:
     happened: Happened | None = None
     given: Scenario | None = None
     plan: Plan | None = None
+
+    def __repr__(self) -> str:
+        rows = len(self.times)
+        span = f", t = {self.times[0]:g} to {self.times[-1]:g}" if rows else ""
+        return f"<Simulation of {self.system.name!r}: {self.method}{span}, {rows} rows>"
 
     @property
     def events(self) -> Occurrences | None:

@@ -105,6 +105,14 @@ def test_what_is_wrong_is_said_and_nothing_written(arguments: list[str], told: s
     assert not (tmp_path / "out").exists()
 
 
+def test_derivatives_over_switches_are_refused_before_anything_is_written(tmp_path: Path) -> None:
+    (tmp_path / "kink.yaml").write_text(AWAY.replace("x**3", "-sign(x_dot) - x"), encoding="utf-8")
+    done = run(str(tmp_path / "kink.yaml"), "--time", "1", "--sensitivity", "x", "--out", str(tmp_path / "out"))
+    assert done.exit_code == 2, done.output
+    assert "--sensitivity: error[not-smooth]" in done.output
+    assert not (tmp_path / "out").exists()
+
+
 def test_derivatives_are_written(tmp_path: Path) -> None:
     done = run(PENDULUM, "--time", "1", "--sensitivity", "theta1,m1", "--out", str(tmp_path), "--format", "csv")
     assert done.exit_code == 0, done.output

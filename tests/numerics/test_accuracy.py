@@ -220,6 +220,21 @@ def test_what_rests_by_symmetry_is_measured_by_the_scene() -> None:
     assert any("x, x_dot rest" in text for text in error_lines(run.error))
 
 
+def test_what_rests_in_both_runs_is_not_measured_by_nothing() -> None:
+    """A block that dry friction holds: no "0.0e+00", and no "sizes below 0.0e+00"."""
+    text = """
+mbsym: 1
+name: Block
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: -x - sign(x_dot)}
+initial: {x: 1/2}
+"""
+    told = list(error_lines(mbsym.simulate(mbsym.loads(text), 5).error))
+    assert "x_dot rests, in this run and in the better one" in told
+
+
 def test_sizes_are_those_of_the_whole_motion() -> None:
     """At whole periods the velocity of an oscillator is nearly 0, which is no size of it."""
     run = mbsym.simulate(CASES / "osc.yaml", 4 * np.pi, samples=3, estimate=True)

@@ -150,6 +150,15 @@ def test_a_transposed_jacobian_is_caught(monkeypatch: pytest.MonkeyPatch) -> Non
 # --- Lyapunov exponents ---
 
 
+def test_what_the_directions_need_to_turn_is_in_the_uncertainty() -> None:
+    """Rest on top of x'' = x: the exponents are 1 and -1; a mean over t = 20 misses them by log|cos|/20 of a start."""
+    text = PENDULUM.replace("[0, -1, 0]\n    mass", "[0, 1, 0]\n    mass").replace("{theta: 1}", "{theta: 0}")
+    found = exponents(dynamics(text), 20, 0.1)
+    off = np.abs(found.values - [1, -1])
+    assert np.all(off > 1e-7)
+    assert np.all(off <= 1.5 * found.uncertainty + 1e-9)
+
+
 def test_a_damped_oscillator_has_the_real_parts_of_its_roots() -> None:
     """x'' + 0.4 x' + x = 0: both exponents are -0.2; their sum is the divergence -0.4."""
     text = KEPLER.split("loads:")[0] + "loads:\n  - generalized force: {x: -x - 0.4*x_dot, y: 2*y - y_dot}\n"

@@ -49,6 +49,31 @@ initial: {x: {position: 0, velocity: 1/100}}
 """
 
 
+#: A block that begins at rest, where its friction jumps; it stops at pi, 2 pi, 3 pi and stays at 1/2.
+BLOCK = """
+mbsym: 1
+name: a block with dry friction
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - generalized force: {x: -sign(x_dot)}
+initial: {x: 11/2}
+"""
+
+
+def test_a_jump_at_the_first_state_is_not_stiffness() -> None:
+    given = Dynamics(scenario(mbsym.loads(BLOCK).system))
+    decay, frequency = switching.rates(given)
+    assert decay < 1e-6
+    assert abs(frequency - 1) < 1e-6
+    run = mbsym.simulate(mbsym.loads(BLOCK), 12)
+    assert run.method == "dop853"
+    assert "stiff: " not in run.why
+    assert abs(run["x"][-1] - 0.5) < 1e-9
+    assert len(repr(run)) < 120  # a line in a notebook, not every row of the table
+
+
 def test_stiffness_that_comes_late_and_goes_again() -> None:
     run = mbsym.simulate(mbsym.loads(LATE), 100)
     assert run.whole
