@@ -436,7 +436,7 @@ SCENES = (
     Scene("elastic", ELASTIC, 20.0, ("1", "1.25", "0", "0"), elastic),
     Scene("furuta", FURUTA, 5.0, ("0", "0.3", "2", "0"), furuta),
     Scene("chain", CHAIN, 2.0, ("0", "0", "0", "0", "0", "1", "0", "0", "0", "0", "0", "0"), chain),
-    Scene("beam", BEAM, 1.0, ("0",) * (2 * LINKS), beam),
+    Scene("beam", BEAM, 0.05, ("0",) * (2 * LINKS), beam),
     Scene("van der pol", VAN_DER_POL, 200.0, ("2", "0"), van_der_pol),
     Scene("pulse", PULSE, 20.0, (), closed=pulse),
     Scene("contact", CONTACT, 3.0, ("1", "0"), contact),

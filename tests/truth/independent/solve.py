@@ -50,24 +50,20 @@ def solved(
     assert scene.rates is not None
     found, now = [], arb(0 if place is None else places(scene.time)[place])
     x = [number(text) for text in start or scene.start]
-    for until in times:
-        goal = arb(until)
-        while True:
-            rows = [[value.mid()] for value in x]
-            for k in range(order):
-                ctx.cap = k + 1
-                slopes = scene.rates(arb_series([now, 1]), [arb_series(row) for row in rows], number)
-                for row, slope in zip(rows, slopes, strict=True):
-                    value = slope[k] if isinstance(slope, arb_series) else arb(slope) if k == 0 else arb(0)
-                    row.append((value / (k + 1)).mid())
-            step = arb(min(_step(rows, k) for k in (order - 1, order)) * short)
-            last = bool(now + step >= goal)
-            step = goal - now if last else step
-            x = [_sum(row, step) for row in rows]
-            now = goal if last else (now + step).mid()
-            if last:
-                break
-        found.append(list(x))
+    left = [arb(t) for t in times]
+    while left:
+        rows = [[value.mid()] for value in x]
+        for k in range(order):
+            ctx.cap = k + 1
+            slopes = scene.rates(arb_series([now, 1]), [arb_series(row) for row in rows], number)
+            for row, slope in zip(rows, slopes, strict=True):
+                value = slope[k] if isinstance(slope, arb_series) else arb(slope) if k == 0 else arb(0)
+                row.append((value / (k + 1)).mid())
+        after = (now + arb(min(_step(rows, k) for k in (order - 1, order)) * short)).mid()
+        while left and left[0] <= after:
+            found.append([_sum(row, left[0] - now) for row in rows])
+            left.pop(0)
+        x, now = [_sum(row, after - now) for row in rows], after
     return found
 
 
