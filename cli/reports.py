@@ -6,10 +6,10 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.report.whole_run import derive_all, lost, rendered_all
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (

@@ -8,11 +8,11 @@ definitions one after another for a symbol that occurs linearly, and substitute.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from flint import fmpq_mat
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 
 #: A table of rows by columns is reduced if rows * columns^2 is no more than this; beyond it p stays as it was.
 MOST_WORK = 20_000_000

@@ -20,6 +20,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
 from typing import Any
@@ -33,7 +34,6 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.dataclass import dataclass
 
 Polynomial = Any
 

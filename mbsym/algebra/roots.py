@@ -14,13 +14,12 @@ ordinary course here.  Coefficients are listed from low to high powers and may b
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 from flint import ctx, fmpq, fmpq_poly
-
-from mbsym.expressions.dataclass import dataclass
 
 Rational = Any  # int, Fraction or flint.fmpq
 Univariate = Any  # a flint.fmpq_poly

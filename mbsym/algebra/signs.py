@@ -25,7 +25,7 @@ Polynomials are ``fmpq_mpoly`` of python-flint over the rationals in the generat
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from operator import sub
 from random import Random
@@ -36,7 +36,6 @@ from flint import arb, ctx, fmpq
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.generators import occurring
-from mbsym.expressions.dataclass import dataclass
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]

@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Self, TypeVar, overload
 
 from mbsym.algebra.failures import Defect, Failure, Limit, Severity, SingularPoint
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.guessing import GuessesNames
 
 T = TypeVar("T")

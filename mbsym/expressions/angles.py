@@ -6,9 +6,9 @@ form with rational coefficients.  An argument that is not (``Omega*t``, ``x*y``)
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 
 

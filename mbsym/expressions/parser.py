@@ -16,12 +16,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
 from math import ceil
 
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table

@@ -7,9 +7,7 @@ they collect into.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
-
-from mbsym.expressions.dataclass import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -10,11 +10,10 @@ or is zero, with a jump where that value is not 0: there it is half of it, as a 
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 
 #: Between the points, and outside of them.

@@ -8,11 +8,10 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import OUTSIDE_ZERO, Table, pieces
 

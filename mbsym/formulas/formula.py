@@ -6,11 +6,11 @@ They hold ring polynomials in normal form and print themselves.  Equality and ar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
 from mbsym.formulas.python import python_text

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import Angles, Factor, Product, Sum, Wave, angles_or

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves

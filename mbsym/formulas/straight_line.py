@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.program import Instruction, Node, Program
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.numerals import writable
 
 #: Longer expressions are given a name even if they are used only once.

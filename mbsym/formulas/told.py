@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
@@ -18,7 +19,6 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 
 #: Nodes without a meaning get a name where several others need them and they have at least so many terms.

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.numerals import writable
 
 Rational = Any  # flint.fmpq

@@ -19,9 +19,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from mbsym.algebra.base import Algebra, Scalar, Vector
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import Expression, differentiate, names
 from mbsym.mechanics.frames import Turn, turn_back, turn_forward
 from mbsym.mechanics.kinematics import Scene

@@ -14,10 +14,9 @@ is accelerated by what is left of its acceleration and the gravity there (``mbsy
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from mbsym.algebra.base import Algebra, Scalar, Vector
-from mbsym.expressions.dataclass import dataclass
 from mbsym.mechanics.articulation import Articulation, Frame, Matrix
 from mbsym.mechanics.falling import falling_scene, overrides
 from mbsym.mechanics.frames import axis_vector

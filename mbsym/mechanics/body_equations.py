@@ -24,11 +24,11 @@ Not the leanest recursion (``composite`` and ``bias_forces`` are) but one of few
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from mbsym.algebra.base import Algebra, Scalar, Vector
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import differentiate, names
 from mbsym.mechanics.articulation import MassProperties, mass_properties, shifted, total
 from mbsym.mechanics.energy import kinetic_energy

@@ -10,9 +10,9 @@ A rotation {a1, a2, a3} by {x1, x2, x3} is C_a3(x3) C_a2(x2) C_a1(x1).  No 3x3 m
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from mbsym.algebra.base import Algebra, Scalar, Vector
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import Expression
 
 

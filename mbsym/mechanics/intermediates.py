@@ -8,12 +8,12 @@ their entries occur in what follows; turn by turn they never would.  What it for
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 
 from mbsym.algebra.base import Scalar, Vector
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.mechanics.frames import axis_vector, direction_cosines, forward
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.model.system import INERTIAL, Body, System

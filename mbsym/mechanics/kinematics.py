@@ -11,12 +11,12 @@ own mass matrix needs omega_j.)
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar, Vector
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.mechanics.frames import Turn, axis_vector, back, forward, turn_forward
 from mbsym.mechanics.variables import time_derivative

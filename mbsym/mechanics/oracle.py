@@ -13,13 +13,13 @@ a frame, an axis order, a Coriolis term or a gravity torque elsewhere does not r
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import names
 from mbsym.model import system as model
 from mbsym.model.system import INERTIAL, System, velocity_name

@@ -11,6 +11,7 @@ never become instructions.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flint import arb, arb_mat, fmpq_mat
@@ -19,7 +20,6 @@ from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing

@@ -7,12 +7,11 @@ steadily; the prescribed quantities go on running.  With M(q) q'' = f(q, q', t) 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import (
     ZERO,
     Expression,

@@ -8,11 +8,10 @@ stay behind, and with a body that is not symmetric the coefficients then vary wi
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import permutations
 
 from mbsym.expressions.angles import angle_name
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.variables import expressions

@@ -9,9 +9,9 @@ the frequency omega, so that lambda^2 + omega^2 divides the characteristic deter
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from mbsym.expressions.angles import angle_name
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.variables import expressions

@@ -8,10 +8,10 @@ Fourier-Motzkin elimination in exact numbers; what is not linear is left to thos
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import number_of
 from mbsym.model.comparison import RELATION_OF_SIGN, holds

@@ -6,9 +6,8 @@ of the kinds of claim: what each is about, and which keys it takes.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
 

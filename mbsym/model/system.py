@@ -20,11 +20,10 @@ Spans point back into the description; they take no part in equality, so two spe
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import Table

@@ -8,10 +8,9 @@ says what its mass, length, time, ... are called (mm, ms, ...).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.place import Span
 
 Dimension = tuple[tuple[str, Fraction], ...]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -24,7 +24,6 @@ from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NotRational, SingularPoint
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals

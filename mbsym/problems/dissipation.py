@@ -23,7 +23,7 @@ nothing is claimed about it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
@@ -36,7 +36,6 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import (
     Expression,
     Name,

@@ -19,8 +19,9 @@ Example:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy

@@ -18,8 +18,9 @@ Example:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces

@@ -18,11 +18,11 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene

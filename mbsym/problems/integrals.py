@@ -29,6 +29,7 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq_mat
@@ -36,7 +37,6 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown

@@ -20,7 +20,8 @@ Example:
 
 from __future__ import annotations
 
-from mbsym.expressions.dataclass import dataclass
+from dataclasses import dataclass
+
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.frames import direction_cosines

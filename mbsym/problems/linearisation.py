@@ -29,14 +29,13 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from mbsym.algebra.elimination import Definition, combination
 from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.matrices import skew_part, symmetric_part
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy

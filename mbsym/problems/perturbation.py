@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flint import arb, fmpq
@@ -22,7 +23,6 @@ from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State, TaylorSeries

@@ -8,6 +8,7 @@ system, in any target.  What is told is compared with the equations as they were
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 from flint import ctx
 
@@ -15,7 +16,6 @@ from mbsym.algebra.base import Scalar
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.names import free_name

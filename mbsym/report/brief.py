@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check
 from mbsym.report.claims import HELD, OPEN, REFUTED, claim_line
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import groupby
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part

@@ -6,9 +6,10 @@ again over letters; the letters put back give its polynomial exactly, or no such
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mbsym.algebra.characteristic import Polynomial, lienard_chipart, subdiscriminants
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability.requirements import Requirement
 

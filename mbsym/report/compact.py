@@ -7,10 +7,10 @@ closed formulas of everything.  Every target for people makes the same choice he
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.tree import angles_or
 from mbsym.problems.energy import Energy

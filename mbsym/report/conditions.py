@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing

@@ -11,10 +11,10 @@ a node marked ``repeated``, and goes on from there; so no line is long and none 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from math import ceil
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.model.system import INERTIAL, IsotropicDamper, PointDamper, PointSpring, System, Torque
 

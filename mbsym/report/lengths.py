@@ -8,10 +8,9 @@ counts terms, so a report does not depend on the machine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 
 

@@ -6,8 +6,8 @@ Every target for people prints the same passages.  Bodies are numbered as the re
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.told import Definition, Told
 from mbsym.mechanics.falling import falling_frames

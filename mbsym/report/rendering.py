@@ -7,12 +7,11 @@ delivered; the others are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure, Severity
 from mbsym.analysis.stages import NoResult
-from mbsym.expressions.dataclass import dataclass
 from mbsym.report.parsing import unreadable
 from mbsym.report.targets import Target
 

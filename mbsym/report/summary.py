@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.checks import Check
 from mbsym.report.claims import ClaimLine, claim_line
 from mbsym.report.sections import section_of

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-from mbsym.expressions.dataclass import dataclass
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

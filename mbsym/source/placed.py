@@ -6,7 +6,8 @@ that the file holds, and only the builder, which knows what a place wants, gives
 
 from __future__ import annotations
 
-from mbsym.expressions.dataclass import dataclass
+from dataclasses import dataclass
+
 from mbsym.expressions.place import Span
 
 #: Bounds on a whole description.

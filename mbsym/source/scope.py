@@ -5,9 +5,8 @@ from __future__ import annotations
 import keyword
 import re
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.table import Table

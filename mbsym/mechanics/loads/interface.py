@@ -7,11 +7,10 @@ wrenches otherwise; the Newton-Euler recursion takes wrenches always; where they
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 from mbsym.algebra.base import Scalar, Vector
-from mbsym.expressions.dataclass import dataclass
 from mbsym.mechanics.kinematics import Scene
 
 L = TypeVar("L")

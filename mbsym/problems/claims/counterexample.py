@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import count, islice
@@ -27,7 +28,6 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import is_number, names
 from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import State

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import by_place, is_moving, split_off

@@ -7,13 +7,12 @@ its denominators are cleared by their signs.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import in_parameters, on_relations

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.dataclass import dataclass
 from mbsym.expressions.tree import (
     ZERO,
     text,

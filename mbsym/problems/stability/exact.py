@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -13,7 +13,6 @@ from flint import fmpq, fmpq_mat, fmpq_poly
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.roots import RootCount, count_roots, rational
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from mbsym.algebra.characteristic import Matrix, Polynomial
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.theorems import Fact
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -17,7 +17,6 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.dataclass import dataclass
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene

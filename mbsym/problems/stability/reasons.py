@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum, auto
-
-from mbsym.expressions.dataclass import dataclass
 
 
 class Because(Enum):

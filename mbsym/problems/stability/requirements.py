@@ -9,11 +9,11 @@ spins about its axis of largest inertia), or be zero where higher terms make the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 
 from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, leading_minors
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.verdict import Verdict
 
 

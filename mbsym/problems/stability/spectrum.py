@@ -7,12 +7,12 @@ reading: verdicts and counts of problem 6 never rest on them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flint import acb, ctx
 
 from mbsym.algebra.roots import Root, enclosures
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.enclosed import Rows, eigenvalues
 
 #: Working precision of enclosures, in bits.

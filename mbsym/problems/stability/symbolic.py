@@ -24,7 +24,7 @@ all five matrices: neither the roots nor the signs of leading minors change.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
@@ -43,7 +43,6 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
 from mbsym.problems.stability.linear_form import CONSERVATIVE, LinearSystem, add, is_potential, is_zero, kind_of
 from mbsym.problems.stability.reasons import Because, Reason

@@ -20,9 +20,9 @@ A theorem is named only where all its hypotheses have been shown: ``applying`` i
 from __future__ import annotations
 
 from collections.abc import Set
+from dataclasses import dataclass
 from enum import Enum, auto
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability.reasons import Because, Reason
 
 

@@ -21,10 +21,9 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
-from mbsym.expressions.dataclass import dataclass
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import LAGRANGE, ROUTH, Fact, Ground, applying, implied, reason_of
