@@ -154,7 +154,8 @@ def test_in_a_section_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def planted_target(monkeypatch: pytest.MonkeyPatch, name: str, text: Callable[..., str]) -> None:
-    monkeypatch.setitem(targets.FORMATS, name, replace(targets.FORMATS[name], text=text))
+    own = targets.TARGETS if name in targets.TARGETS else targets.EXPORTS  # FORMATS is a view of both
+    monkeypatch.setitem(own, name, replace(own[name], text=text))
 
 
 def test_in_a_whole_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cli.test_simulate import DOUBLE, mbsym, summary, table, written
 from conftest import SHIPPED
 from numerics.test_methods import POLE
+from test_simulate import DOUBLE, mbsym, summary, table, written
 
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.kernels.llvm import available

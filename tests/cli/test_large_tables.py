@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli.test_simulate import summary
 from conftest import SHIPPED
+from test_simulate import summary
 
 pytest.importorskip("resource")
 

@@ -605,17 +605,19 @@ def test_an_initial_state_out_of_bounds(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are another matter there")
 def test_an_interrupt_keeps_what_there_was(tmp_path: Path) -> None:
-    """A simulation of years is stopped once five rows are there."""
+    """A simulation of years is stopped once the first rows are there."""
     program = (
         "import sys, mbsym.numerics.simulate as s\n"
-        "run = s.simulate\n"
-        "def announced(dynamics, method, setting, times, scalar, watch):\n"
+        "run = s.followed\n"
+        "def announced(dynamics, method, setting, times, rows, scalar, watch, *more, **named):\n"
+        "    told = []\n"
         "    def seen(t):\n"
-        "        if t == 5:\n"
+        "        if not told:\n"
         "            print('begun', flush=True)\n"
+        "        told.append(t)\n"
         "        watch(t)\n"
-        "    return run(dynamics, method, setting, times, scalar, seen)\n"
-        "s.simulate = announced\n"
+        "    return run(dynamics, method, setting, times, rows, scalar, seen, *more, **named)\n"
+        "s.followed = announced\n"
         "from mbsym_cli.main import main\n"
         "main(sys.argv[1:])\n"
     )

@@ -150,15 +150,15 @@ def test_names_of_files_reach_no_terminal_as_they_are(tmp_path: Path) -> None:
 TELLING = """
 import sys
 from mbsym.numerics import simulate
-honest = simulate.simulate
-def told(dynamics, method, setting, times, arithmetic="float64", watch=None):
+honest = simulate.followed
+def told(dynamics, method, setting, times, rows, arithmetic, watch, *more, **named):
     def first(t):
         nonlocal watch
         print("under way", file=sys.stderr, flush=True)
         watch = lambda t: None
     watch = first
-    return honest(dynamics, method, setting, times, arithmetic, lambda t: watch(t))
-simulate.simulate = told
+    return honest(dynamics, method, setting, times, rows, arithmetic, lambda t: watch(t), *more, **named)
+simulate.followed = told
 from mbsym_cli.main import main
 main()
 """
