@@ -36,7 +36,8 @@ class Choice:
     """A method and why.
 
     ``decay`` is the fastest rate at which a motion dies out and ``frequency`` the greatest angular frequency, both from
-    the Jacobian at the initial state; ``measured`` says what trials took, if there were any.
+    the Jacobian at the initial state; ``measured`` says what trials took, if there were any.  They count processor
+    time, so that what else runs decides nothing.
     """
 
     method: Method
@@ -100,13 +101,13 @@ def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: floa
     started, run = 0.0, None
     try:
         run = method.start(dynamics, replace(setting, step_limit=TRIAL_STEPS))
-        started = time.perf_counter()
+        started = time.process_time()
         run.advance(time_)
     except (Breakdown, Unusable):
         pass
     if run is None or not run.work.steps:
         return float("inf")
-    spent = time.perf_counter() - started
+    spent = time.process_time() - started
     return spent / run.work.steps * max(steps, run.work.steps)
 
 
@@ -114,9 +115,9 @@ def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -
     """Seconds for the whole time, judged by as much as a short trial gets done; None where it fails."""
     try:
         run = method.start(dynamics, replace(setting, step_limit=50_000))
-        started = time.perf_counter()
+        started = time.process_time()
         reached = time_ / 4096
-        while time.perf_counter() - started < TRIAL_SECONDS:
+        while time.process_time() - started < TRIAL_SECONDS:
             run.advance(reached)
             if reached >= time_:
                 break
@@ -127,4 +128,4 @@ def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -
         if found.kind != STEP_LIMIT or found.time <= 0:
             return None
         reached = found.time
-    return (time.perf_counter() - started) * time_ / reached
+    return (time.process_time() - started) * time_ / reached

@@ -9,7 +9,7 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics import switching
+from mbsym.numerics import choice, switching
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Setting
 from mbsym.numerics.methods.library import METHODS as LIBRARY
@@ -171,7 +171,9 @@ def _exact(start: float, end: float) -> object:
 
 
 @pytest.mark.usefixtures("cheap")
-def test_a_run_that_begins_stiff_goes_back_to_explicit_steps() -> None:
+def test_a_run_that_begins_stiff_goes_back_to_explicit_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With Radau's method, whichever of the implicit ones is quicker on a busy machine."""
+    monkeypatch.setattr(choice, "IMPLICIT", ("radau",))
     early = LATE.replace("((t - 50)/20)**64", "(t/20)**64")
     run = mbsym.simulate(mbsym.loads(early), 200)
     assert np.max(np.abs(run["x"] - np.sin(run.times))) < 1e-7

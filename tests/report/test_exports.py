@@ -93,7 +93,7 @@ SYSTEMS = {
     "clebsch": 1,
     "nasty": 1,
     "functions": 2,
-    "kinked": 3,
+    "kinked": 8,
     "tabulated": 3,
 }
 SMALL = ("double-pendulum", "functions", "kinked")
