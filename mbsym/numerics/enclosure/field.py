@@ -6,15 +6,13 @@ Balls enclose the values over all points that they contain.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_series, ctx, fmpq
+from flint import arb, arb_series, ctx
 
 from mbsym.numerics.enclosure.model import Model, model
 from mbsym.numerics.kernels.interface import Code
-
-_SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
+from mbsym.numerics.kernels.precise import written
 
 
 class NotAnalytic(Exception):
@@ -60,39 +58,13 @@ def function_of(code: Code, bits: int) -> Callable[[Sequence[Any]], list[Any]]:
 
     Raises NotAnalytic where it has a function without a power series.
     """
-    program = code.program
-    scope: dict[str, Any] = {}
-    slots = {name: place for place, name in enumerate(code.inputs)}
-    lines = ["def f(x):"]
-    values: dict[int, str] = {}
-    with ctx.workprec(bits):
-        for number in program.live(code.outputs):
-            instruction = program.instructions[number]
-            operands = [values[operand] for operand in instruction.operands]
-            local = values[number] = f"v{number}"
-            match instruction.operation, operands:
-                case "constant", _:
-                    assert isinstance(instruction.payload, Fraction)
-                    scope[local] = arb(fmpq(instruction.payload.numerator, instruction.payload.denominator))
-                    continue
-                case "input", _:
-                    text = f"x[{slots[str(instruction.payload)]}]"
-                case "negative", [a]:
-                    text = f"-{a}"
-                case operation, [a, b] if operation in _SIGNS:
-                    text = f"{a} {_SIGNS[operation]} {b}"
-                case name, [a]:
-                    if name not in FUNCTIONS:
-                        raise NotAnalytic(name)
-                    scope[f"call_{name}"] = FUNCTIONS[name]
-                    text = f"call_{name}({a})"
-                case operation, _:
-                    raise NotAnalytic(operation)
-            lines.append(f"    {local} = {text}")
-    lines.append("    return [" + ", ".join(values[node.number] for node in code.outputs) + "]")
-    exec(compile("\n".join(lines), "<straight-line program>", "exec"), scope)  # our own text, made of numbers only
-    found: Callable[[Sequence[Any]], list[Any]] = scope["f"]
-    return found
+
+    def meaning(name: str) -> Callable[[Any], Any]:
+        if name not in FUNCTIONS:
+            raise NotAnalytic(name)
+        return FUNCTIONS[name]
+
+    return written(code, bits, meaning)
 
 
 def upper(value: arb) -> arb:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from flint import arb, ctx, fmpq
@@ -20,7 +21,16 @@ _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 
 def precise(code: Code, bits: int) -> Callable[[Sequence[arb]], list[arb]]:
     """The code as a function of ``arb`` numbers; call it at a working precision of ``bits``."""
-    program, balls = code.program, Balls({})
+    balls = Balls({})
+    own = ("sin", "cos", "sqrt", "exp", "log")
+    return written(code, bits, lambda name: getattr(arb, name) if name in own else partial(balls.function, name))
+
+
+def written(
+    code: Code, bits: int, meaning: Callable[[str], Callable[[Any], Any]]
+) -> Callable[[Sequence[Any]], list[Any]]:
+    """The code as a function of whatever has arithmetic with ``arb``; ``meaning`` gives each function by its name."""
+    program = code.program
     scope: dict[str, Any] = {}
     slots = {name: place for place, name in enumerate(code.inputs)}
     lines = ["def f(x):"]
@@ -39,15 +49,13 @@ def precise(code: Code, bits: int) -> Callable[[Sequence[arb]], list[arb]]:
                     text = f"x[{slots[str(instruction.payload)]}]"
                 case "negative", [a]:
                     text = f"-{a}"
-                case ("sin" | "cos" | "sqrt" | "exp" | "log") as function, [a]:
-                    text = f"{a}.{function}()"
                 case operation, [a, b]:
                     text = f"{a} {_SIGNS[operation]} {b}"
                 case function, [a]:
-                    scope["function"] = balls.function
-                    text = f"function({function!r}, {a})"
+                    scope[f"call_{function}"] = meaning(function)
+                    text = f"call_{function}({a})"
             lines.append(f"    {local} = {text}")
     lines.append("    return [" + ", ".join(values[node.number] for node in code.outputs) + "]")
     exec(compile("\n".join(lines), "<straight-line program>", "exec"), scope)  # our own text, made of numbers only
-    found: Callable[[Sequence[arb]], list[arb]] = scope["f"]
+    found: Callable[[Sequence[Any]], list[Any]] = scope["f"]
     return found
