@@ -24,12 +24,14 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, BinaryIO, cast
+from typing import IO, BinaryIO, TypeVar, cast
 
 from mbsym.source.render import escaped
+
+T = TypeVar("T")
 
 MANIFEST = ".mbsym.json"
 
@@ -42,8 +44,8 @@ _NEW, _PART = ".mbsym-new-", ".mbsym-part-"
 #: Where nothing says that its writer is gone, what lies aside for so many seconds is a stray.
 _STALE = 3600.0
 
-#: So many files are flushed at a time.
-_FLUSHING = 8
+#: For so many files at a time the disk is waited for.
+_AT_ONCE = 8
 
 #: A folder's name has at most so many bytes (file systems allow 255), for endings that are put to it.
 _LONGEST_NAME = 200
@@ -113,13 +115,11 @@ def deliver(
                 manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
                 staged.append(closing.enter_context(_staged(stage / MANIFEST)))
                 _written(staged[-1], manifest)
-                _flush(staged)
-            os.chmod(stage, 0o777 & ~_umask())
-            for inner in stage.iterdir():
-                if inner.is_dir():
-                    os.chmod(inner, 0o777 & ~_umask())
-                    _flush_folder(inner)
-            _flush_folder(stage)
+                _at_once(lambda stream: os.fsync(stream.fileno()), staged)
+            folders = [*(inner for inner in stage.iterdir() if inner.is_dir()), stage]
+            for one in folders:
+                os.chmod(one, 0o777 & ~_umask())
+            _at_once(_flush_folder, folders)
             os.rename(stage, folder / _READY)
         except BaseException:
             shutil.rmtree(stage, ignore_errors=True)
@@ -211,14 +211,11 @@ def _install(folder: Path) -> None:
                 if name not in staying and _is_inside(folder, name) and digest_of(folder / name) == digest:
                     (folder / name).unlink(missing_ok=True)
                     _remove_empty(folder, name)
-        for name in waiting:
-            (folder / name).unlink(missing_ok=True)
+        _at_once(lambda name: (folder / name).unlink(missing_ok=True), waiting)
         for name in [*waiting, MANIFEST]:
             (folder / name).parent.mkdir(exist_ok=True)
             os.replace(ready / name, folder / name)
-    for inner in {(folder / name).parent for name in waiting}:
-        _flush_folder(inner)
-    _flush_folder(folder)
+    _at_once(_flush_folder, {folder, *((folder / name).parent for name in waiting)})
     for path in list(ready.iterdir()):
         path.rmdir()
     ready.rmdir()
@@ -268,20 +265,21 @@ def _written(stream: IO[bytes], content: Content) -> str:
     return digest.hexdigest()
 
 
-def _flush(streams: Sequence[IO[bytes]]) -> None:
-    """What was written reaches the disk.
+def _at_once(step: Callable[[T], object], items: Collection[T]) -> None:
+    """A step for each item that waits for the disk and may be taken a second time.
 
-    All at once, where there are threads: a disk that is told of twenty files one by one waits twenty times.
+    All at once, where there are threads: a disk that is told of twenty files one by one (to keep them, to free their
+    room) waits twenty times.
     """
     from concurrent.futures import ThreadPoolExecutor  # not before something is delivered
 
     try:
-        with ThreadPoolExecutor(_FLUSHING) as pool:
-            for _ in pool.map(lambda stream: os.fsync(stream.fileno()), streams):
+        with ThreadPoolExecutor(_AT_ONCE) as pool:
+            for _ in pool.map(step, items):
                 pass
     except RuntimeError:  # no thread can be started here
-        for stream in streams:
-            os.fsync(stream.fileno())
+        for item in items:
+            step(item)
 
 
 def digest_of(path: Path) -> str:
