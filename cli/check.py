@@ -90,5 +90,8 @@ def _check(path: Path) -> int:
         return BAD_INPUT
     bodies = counted(len(system.bodies), "body", "bodies")
     freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
+    if system.constraints:  # how many of them are free is another question
+        freedom = counted(len(system.coordinates), "coordinate", "coordinates")
+        freedom += f" and {counted(len(system.constraints), 'constraint', 'constraints')}"
     print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
     return OK

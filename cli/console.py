@@ -146,17 +146,23 @@ def paused() -> Iterator[None]:
             spinner.start()
 
 
-def read_description(path: Path) -> System | None:
-    """The system of a file, or None after printing every complaint on standard error."""
+def read_description(path: Path, unconstrained: str = "") -> System | None:
+    """The system of a file, or None after printing every complaint on standard error.
+
+    ``unconstrained`` names a command that does not know constraints: each of them is complained about.
+    """
     from mbsym.source import load, render
 
     system, complaints, text = load(path)
+    for one in system.constraints if system is not None and unconstrained else ():
+        message = f"'mbsym {unconstrained}' does not take constraints into account yet"
+        complaints.error("constraints", message, one.span, "without it this would be another system")
     for complaint in complaints.sorted():
         print(render(complaint, text, str(path)), file=sys.stderr)
     errors = len(complaints.errors)
     if errors:
         complain(path, f"{counted(errors, 'error', 'errors')}; nothing was written.")
-    return system
+    return None if errors else system
 
 
 def printable(path: Path | str) -> str:

@@ -46,7 +46,7 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
       mbsym equilibria systems/gravity-gradient.yaml
       mbsym equilibria systems/double-pendulum.yaml --set m2=3/2 --json
     """
-    system = read_description(file)
+    system = read_description(file, "equilibria")
     asked = Options()
     values = {} if system is None else _values(file, system, settings, asked)
     reach = asked.number("--within", within, most=1e6)

@@ -53,7 +53,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
     """Reads everything, complains about everything, then measures."""
     from mbsym.algebra.failures import Failure
 
-    system = read_description(file)
+    system = read_description(file, "extremes")
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     seconds = asked.number("--budget", budget)

@@ -43,7 +43,7 @@ def command(file: Path, settings: tuple[str, ...], out: Path | None, quiet: bool
 
 def _command(file: Path, folder: Path, settings: tuple[str, ...], quiet: bool) -> int:
     """Reads everything, complains about everything, then judges."""
-    system = read_description(file)
+    system = read_description(file, "floquet")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     if asked.refused(None if system is None else file) or given is None:

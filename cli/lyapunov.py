@@ -63,7 +63,7 @@ def _command(
     quiet: bool,
 ) -> int:
     """Reads everything, complains about everything, then measures."""
-    system = read_description(file)
+    system = read_description(file, "lyapunov")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     time = asked.time(end)

@@ -66,7 +66,7 @@ def _command(
     quiet: bool,
 ) -> int:
     """Reads everything, complains about everything, then searches."""
-    system = read_description(file)
+    system = read_description(file, "orbit")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     if period is None:

@@ -29,7 +29,7 @@ def simulated(
     further: Mapping[str, Group],
 ) -> int:
     """The exit code of one command."""
-    system = read_description(file)
+    system = read_description(file, "simulate")
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     wanted = read_request(system, texts, flags, asked)

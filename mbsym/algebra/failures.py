@@ -10,6 +10,7 @@ from a defect of ours.  Nobody has to read the sentence to know what happened.
 ``NotRational``    a value at a rational state is irrational: compare with enclosures instead
 ``SingularPoint``  a division by zero at the point where a formula is asked for
 ``NoValue``        a name has no number there
+``Constrained``    something that leaves constraints out was asked of a system that has some
 ``Defect``         an exception that nobody foresaw, contained
 =================  ==========================================================================
 """
@@ -110,6 +111,12 @@ class Defect(Failure):
         found.__cause__ = error
         LOG.error("%s", found, exc_info=error)
         return found
+
+
+class Constrained(Failure):
+    """Asked of a system with constraints, and would leave them out: there is no answer rather than a false one."""
+
+    code = "constraints"
 
 
 class NoValue(Failure, KeyError):

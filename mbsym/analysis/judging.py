@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.mechanics.constraints.refusal import refused
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import Claim
 from mbsym.problems import claims, stability
@@ -26,6 +27,8 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     system = analysis.system
     if not system.claims:
         return ()
+    if system.constraints:
+        return tuple(claims.undecided(system, claim, refused(system, "not judged")) for claim in system.claims)
     for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
         analysis.stage(number)
     if any(claim.right is not None for claim in system.claims):

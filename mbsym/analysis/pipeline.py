@@ -20,6 +20,7 @@ from mbsym.analysis import approximation, conserved, judging, second_routes
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, column
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
@@ -59,6 +60,10 @@ T = TypeVar("T")
 
 #: The checks with which verdicts fall: those of the motion, of the energy and of the first approximation.
 JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
+
+
+#: The stages that know constraints, or hold whether there are any or not.
+KNOW_CONSTRAINTS = frozenset(("scene", "parameters_scene", "signs", "kinematics", "claims", "checks"))
 
 
 class Problem(Derived["Analysis", T]):
@@ -135,6 +140,15 @@ class Analysis(Stages):
         """Stage of a numbered problem, derived now if it was not before; what is ``withheld`` counts as missing."""
         stage = self.stage_of(PROBLEMS[number].attribute)
         return replace(stage, value=None, failure=self.withheld[number]) if number in self.withheld else stage
+
+    def result(self, name: str, compute: Callable[[], Any]) -> Any:
+        """The value of a stage; one that does not know constraints has none where there are some."""
+        if self.system.constraints and name not in KNOW_CONSTRAINTS:
+            compute = self._without_constraints
+        return super().result(name, compute)
+
+    def _without_constraints(self) -> None:
+        refuse_constraints(self.system, "not derived")
 
     # --- what everything stands on: the system over the ring, over its parameters alone, over jets, as a program ---
 

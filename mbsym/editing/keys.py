@@ -6,8 +6,11 @@ from collections.abc import Mapping
 
 from mbsym.source.keys import (
     ALIASES,
+    AXIS,
     BODY,
     CLAIM,
+    CONSTRAINT_MEANINGS,
+    CONSTRAINTS,
     INERTIA,
     INITIAL,
     LOAD_MEANINGS,
@@ -56,6 +59,14 @@ def keys_in(path: tuple[str, ...]) -> Mapping[str, str]:
             return LOADS.get(kind, {})
         case ("loads", _, "between"):
             return POINT
+        case ("constraints",):
+            return CONSTRAINT_MEANINGS
+        case ("constraints", "coincide") | ("constraints", "distance", "between"):
+            return POINT
+        case ("constraints", "parallel"):
+            return AXIS
+        case ("constraints", kind):
+            return CONSTRAINTS.get(kind, {})
         case ("claims",):
             return CLAIM
         case (section, _):

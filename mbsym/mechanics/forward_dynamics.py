@@ -21,6 +21,7 @@ from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.programs import constants, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
@@ -50,9 +51,10 @@ class ForwardDynamics:
 def forward_dynamics(system: System, ring: Ring, method: str | None = None, apart: bool = False) -> ForwardDynamics:
     """The accelerations by ``method``, or by whichever costs less; with ``apart``, welded bodies are not lumped.
 
-    Raises SingularPoint if M is singular everywhere, NoClosedForm as the loads do, ValueError for a method that does
-    not apply.
+    Raises SingularPoint if M is singular everywhere, NoClosedForm as the loads do, Constrained, ValueError for a
+    method that does not apply.
     """
+    refuse_constraints(system, "accelerations")
     program = Program()
     inputs = program_environment(system, program)
     frames = articulation(scene_without_accelerations(system, ring, program, inputs), apart)

@@ -24,6 +24,7 @@ from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -60,8 +61,13 @@ def constants(system: System) -> frozenset[str]:
     return still_names(system) | {"pi"}
 
 
-def programs(system: System, ring: Ring, apart: bool = False) -> Programs:
-    """Mass matrix, forcing and energy as straight-line code; with ``apart``, welded bodies are not lumped."""
+def programs(system: System, ring: Ring, apart: bool = False, open_tree: bool = False) -> Programs:
+    """Mass matrix, forcing and energy as straight-line code; with ``apart``, welded bodies are not lumped.
+
+    Raises Constrained for a system with constraints, which are not in M and f, unless the ``open_tree`` is wanted.
+    """
+    if not open_tree:
+        refuse_constraints(system, "mass matrix and forcing")
     program = Program()
     inputs = program_environment(system, program)
     scene = scene_without_accelerations(system, ring, program, inputs)

@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.guessing import GuessesNames
@@ -30,6 +31,9 @@ from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.units import Units
+
+if TYPE_CHECKING:
+    from mbsym.model.constraints import Constraint
 
 Vector = tuple[Expression, Expression, Expression]
 Tensor = tuple[Vector, Vector, Vector]
@@ -378,6 +382,7 @@ class System(GuessesNames):
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
     the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
     ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
+    ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
     """
 
     name: str
@@ -401,6 +406,8 @@ class System(GuessesNames):
     language: str = ""
     order: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
+    dependent: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"

@@ -45,6 +45,7 @@ from mbsym.algebra.polynomial_systems import (
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.charts import Chart, charts, moments
 from mbsym.mechanics.charts import features as direction_features
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.reflections import Reflection, reflections
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
@@ -145,8 +146,10 @@ def equilibria(
 ) -> Equilibria:
     """All relative equilibria of a system at parameter values.
 
-    Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint.
+    Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint,
+    Constrained.
     """
+    refuse_constraints(system, "relative equilibria")
     first = rest(at_numbers(system, values))
     remarks: list[str] = []
     found: list[_Candidate] = []

@@ -83,6 +83,7 @@ SENTENCES = {
     "None of the kinds that are looked for.": "Ninguna de las clases que se buscan.",
     "What was found": "Lo que se obtuvo",
     "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": "Cuerpos y sistemas de referencia: [[bodies]]; grados de libertad: [[freedom]].",
+    "Bodies and frames: [[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]].": "Cuerpos y sistemas de referencia: [[bodies]]; coordenadas: [[coordinates]]; ligaduras: [[constraints]].",
     "Cyclic coordinates: $[[names]]$.": "Coordenadas cíclicas: $[[names]]$.",
     "The unperturbed motion satisfies the equations of motion identically.": "El movimiento no perturbado satisface idénticamente las ecuaciones de movimiento.",
     "The unperturbed motion does not satisfy the equations of motion.": "El movimiento no perturbado no satisface las ecuaciones de movimiento.",

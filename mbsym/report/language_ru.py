@@ -125,6 +125,9 @@ SENTENCES = {
     "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": (
         "Тела и системы координат: [[bodies]]; степени свободы: [[freedom]]."
     ),
+    "Bodies and frames: [[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]].": (
+        "Тела и системы координат: [[bodies]]; координаты: [[coordinates]]; связи: [[constraints]]."
+    ),
     "Cyclic coordinates: $[[names]]$.": "Циклические координаты: $[[names]]$.",
     "The unperturbed motion satisfies the equations of motion identically.": (
         "Невозмущённое движение тождественно удовлетворяет уравнениям движения."

@@ -11,6 +11,7 @@ from dataclasses import replace
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
+from mbsym.model.constraints import Constraint
 from mbsym.model.system import LANGUAGES, System
 from mbsym.source.bodies import draft_bodies, read_body
 from mbsym.source.checks import check_body, check_system
@@ -58,6 +59,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         bodies.append(read_body(draft, drafts, reading))
         sound.append(draft.whole and complaints.error_count == before)
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
+    constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
     parameters += declared_by_use(reading)
     notation = read_notation(fields.get("notation"), reading)
     system = System(
@@ -80,6 +82,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         symbols=read_symbols(fields.get("latex"), reading),
         language=_language(fields, reading),
         order=_order(fields, reading),
+        constraints=constraints,
+        dependent=dependent,
     )
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system.coordinates, reading)
@@ -94,6 +98,21 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
     check_system(system, reading)
     system = _with_units(system, fields, reading)
     return None if complaints.error_count else system
+
+
+def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[tuple[Constraint, ...], tuple[str, ...]]:
+    """The constraints and the dependent coordinates; few descriptions have any."""
+    node, dependent = fields.get("constraints"), fields.get("dependent")
+    if node is None and dependent is None:
+        return (), ()
+    from mbsym.source.constraints import read_constraints, read_dependent
+
+    found = read_constraints(node, bodies, reading)
+    named = read_dependent(dependent, reading)
+    if dependent is not None and node is None:
+        message = "nothing depends on anything: there are no 'constraints'"
+        reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
+    return found, named
 
 
 def _language(fields: Fields, reading: Reading) -> str:

@@ -15,6 +15,8 @@ SYSTEM = {
     "tables": "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",
     "bodies": "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
+    "constraints": "what ties bodies or coordinates besides the joints: a list of {kind of constraint: {...}}",
+    "dependent": "coordinates that the constraints express by the others: [q2, q3]; found when left out",
     "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
     "assumptions": "inequalities between parameters and notation, such as alpha > -1",
     "motion": "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest, {} is "
@@ -162,6 +164,38 @@ LOAD_MEANINGS = {
     "torque": "a torque on a body",
 }
 
+AXIS = {
+    "body": "the name of a body, or 0 for the inertial frame",
+    "axis": "a direction that is fixed in that body, in its axes, of any length: [0, 0, 1]",
+}
+
+CONSTRAINTS: dict[str, dict[str, str]] = {
+    "coincide": {},
+    "parallel": {},
+    "distance": {
+        "between": "two points {body, point}",
+        "length": "the distance that they keep, constant or a function of t",
+    },
+    "relation": {},
+    "rolling": {
+        "body": "the body that rolls",
+        "point": "the contact: radius vector from the connection point of the body; may hold coordinates",
+        "axes": "in whose axes the contact is given: a body or 0; the body itself when left out",
+        "on": "the body that it rolls on; 0 or ground for the inertial frame",
+    },
+    "velocity": {},
+}
+
+#: What the kinds of constraint mean.
+CONSTRAINT_MEANINGS = {
+    "coincide": "two points {body, point} that are one: a cut joint, planar or spatial",
+    "parallel": "two axes {body, axis} that stay parallel; with 'coincide' they make a hinge",
+    "distance": "two points that keep their distance: a rod without mass",
+    "relation": "an equation between coordinates (and t): x - r*phi = 0",
+    "rolling": "the material points of two bodies at their contact have the same velocity",
+    "velocity": "an equation that is linear in velocities: x_dot*sin(theta) - y_dot*cos(theta) = 0",
+}
+
 MOTION = {
     "value": "value of the coordinate at t = 0",
     "rate": "its constant rate; 0 when left out",
@@ -199,11 +233,12 @@ ALIASES = {
 }
 
 #: What other programs have and this one has not: no slip of the pen for something else.
-_OPEN_TREES = "not supported: bodies form open trees only, without closed loops or constraints between coordinates"
-_JOINTS = "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'; closed loops"
+_LOOPS = "loops are closed under 'constraints': - coincide: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}]"
+_LISTS = "all constraints are one list, 'constraints': coincide, parallel, distance, relation, rolling, velocity"
+_JOINTS = "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'"
 UNSUPPORTED = {
-    **dict.fromkeys(("constraint", "constraints", "holonomic constraints", "nonholonomic constraints"), _OPEN_TREES),
-    **dict.fromkeys(("loop", "loops", "closed loop", "closed loops", "loop closure", "loop closures"), _OPEN_TREES),
-    **dict.fromkeys(("kinematic loop", "kinematic loops", "cut joint", "cut joints", "closure"), _OPEN_TREES),
-    **dict.fromkeys(("joint", "joints"), f"{_JOINTS} are not supported (open trees only)"),
+    **dict.fromkeys(("constraint", "holonomic constraints", "nonholonomic constraints"), _LISTS),
+    **dict.fromkeys(("loop", "loops", "closed loop", "closed loops", "loop closure", "loop closures"), _LOOPS),
+    **dict.fromkeys(("kinematic loop", "kinematic loops", "cut joint", "cut joints", "closure"), _LOOPS),
+    **dict.fromkeys(("joint", "joints"), f"{_JOINTS}; {_LOOPS}"),
 }

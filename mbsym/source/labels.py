@@ -10,6 +10,7 @@ HEADER = {
     "source": "source",
     "language": "language",
     "order": "order",
+    "dependent": "dependent",
 }
 
 BODY = {
@@ -58,11 +59,18 @@ BETWEEN = {
     "second point": (1, "point"),
 }
 
+CONSTRAINT_TYPE = "type of constraint"
+
+#: The two ends of a constraint: the same, and axes.
+ENDS = {**BETWEEN, "first axis": (0, "axis"), "second axis": (1, "axis")}
+
 #: Labels whose values may be numbers of bodies.
 LOAD_BODIES = ("body", "centre", "about", "axes", "reaction on", "first body", "second body")
+CONSTRAINT_BODIES = ("body", "axes", "on", "first body", "second body")
 
 #: Labels of vectors in loads.
 LOAD_VECTORS = ("vector", "direction", "point", "components", "first point", "second point")
+CONSTRAINT_VECTORS = ("point", "first point", "second point", "first axis", "second axis")
 
 SPELLINGS = {
     "radius vector of mass centre": "radius vector of mass center",

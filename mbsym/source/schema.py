@@ -12,8 +12,11 @@ from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
 from mbsym.model.system import EXACT, GRAVITY_ORDERS, LANGUAGES, SHAPES
 from mbsym.source.keys import (
     ALIASES,
+    AXIS,
     BODY,
     CLAIM,
+    CONSTRAINT_MEANINGS,
+    CONSTRAINTS,
     INERTIA,
     INITIAL,
     LOAD_MEANINGS,
@@ -84,6 +87,8 @@ def _system_values() -> dict[str, Schema]:
         "tables": _named(_record(TABLE, _table_values(), required=("points",))),
         "bodies": {"type": "array", "items": _reference("body"), "minItems": 1},
         "loads": {"type": "array", "items": _reference("load")},
+        "constraints": {"type": "array", "items": _reference("constraint")},
+        "dependent": names,
         "relations": _named(expression),
         "assumptions": {"type": "array", "items": {"type": "string"}},
         "motion": _named({"anyOf": [expression, _record(MOTION, {})]}),
@@ -123,6 +128,8 @@ def _definitions() -> dict[str, Schema]:
         "point": _record(POINT, {"body": _BODY_NAME, "point": _reference("vector")}, required=("body", "point")),
         "claim": _record(CLAIM, _claim_values(), required=("claim",)),
         "load": _loads(),
+        "axis": _record(AXIS, {"body": _BODY_NAME, "axis": _reference("vector")}, required=("body", "axis")),
+        "constraint": _constraints(),
     }
 
 
@@ -196,6 +203,34 @@ _REQUIRED = {
     "force": ("body", "point", "components", "axes"),
     "torque": ("body", "components", "axes"),
 }
+
+
+def _constraints() -> Schema:
+    """One object with a property for each kind, as for loads."""
+    pairs = {
+        kind: {"type": "array", "items": _reference(end), "minItems": 2, "maxItems": 2}
+        for kind, end in (("coincide", "point"), ("parallel", "axis"), ("distance", "point"))
+    }
+    bodies = dict.fromkeys(("body", "axes", "on"), _BODY_NAME)
+    equation: Schema = {"type": "string"}
+    kinds = {
+        "coincide": pairs["coincide"],
+        "parallel": pairs["parallel"],
+        "distance": _record(CONSTRAINTS["distance"], {"between": pairs["distance"]}, required=("between", "length")),
+        "relation": equation,
+        "rolling": _record(
+            CONSTRAINTS["rolling"], {**bodies, "point": _reference("vector")}, required=("body", "point", "on")
+        ),
+        "velocity": equation,
+    }
+    return {
+        "type": "object",
+        "description": "one kind of constraint with its data",
+        "properties": {kind: {**data, "description": CONSTRAINT_MEANINGS[kind]} for kind, data in kinds.items()},
+        "additionalProperties": False,
+        "minProperties": 1,
+        "maxProperties": 1,
+    }
 
 
 def _loads() -> Schema:

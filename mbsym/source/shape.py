@@ -12,6 +12,7 @@ from mbsym.expressions.angles import angle_name
 from mbsym.expressions.table import HOLD, LINEAR, Table
 from mbsym.expressions.tree import ZERO, Expression, Number, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
 from mbsym.model.system import (
     Body,
     CoordinateDamper,
@@ -184,6 +185,24 @@ def load_shape(load: Load) -> tuple[str, Shape]:
             torque: dict[str, Shape] = {"body": body, "components": vector_shape(components), "axes": axes}
             return "torque", torque if reaction_on is None else {**torque, "reaction on": reaction_on}
     raise TypeError(f"not a load: {load!r}")
+
+
+def constraint_shape(constraint: Constraint) -> tuple[str, Shape]:
+    """The kind of a constraint and its data."""
+    kind = kind_name(constraint)
+    match constraint:
+        case Coincide(first, second):
+            return kind, [_point(first), _point(second)]
+        case Parallel(one, other):
+            return kind, [{"body": x.body, "axis": vector_shape(x.direction)} for x in (one, other)]
+        case Distance(first, second, length):
+            return kind, {"between": [_point(first), _point(second)], "length": text(length)}
+        case Rolling(body, contact, axes, on):
+            rolling: dict[str, Shape] = {"body": body, "point": vector_shape(contact)}
+            if axes != body:
+                rolling["axes"] = axes
+            return kind, {**rolling, "on": on}
+    return kind, f"{text(constraint.left)} = {text(constraint.right)}"
 
 
 def _point(point: Point) -> dict[str, Shape]:

@@ -10,7 +10,7 @@ from mbsym.source.labels import SPELLINGS
 from mbsym.source.placed import Scalar
 
 #: What begins a numbered block.
-HEADING = re.compile(r"(body|load|claim) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
+HEADING = re.compile(r"(body|load|claim|constraint) description\s*\(\s*([0-9]{1,6})\s*\)\s*\Z", re.IGNORECASE)
 
 
 def lines_of(text: str) -> Iterator[Scalar]:

@@ -9,6 +9,7 @@ from mbsym.source.shape import Shape as Data
 from mbsym.source.shape import (
     assumption_text,
     claim_shape,
+    constraint_shape,
     initial_shape,
     load_shape,
     motion_shape,
@@ -31,6 +32,8 @@ def to_text(system: System) -> str:
         lines.append(f"Language: {system.language}")
     if system.order:
         lines.append(f"Order: {_braces(list(system.order))}")
+    if system.dependent:
+        lines.append(f"Dependent: {_braces(list(system.dependent))}")
     lines.append(f"Number of bodies: {len(system.bodies)}")
     if system.time_scale is not None:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")
@@ -44,6 +47,8 @@ def to_text(system: System) -> str:
         lines += ["", f"Body description ({number})", *_body(body, numbers)]
     for number, load in enumerate(system.loads, start=1):
         lines += ["", f"Load description ({number})", *_load(*load_shape(load), numbers)]
+    for number, constraint in enumerate(system.constraints, start=1):
+        lines += ["", f"Constraint description ({number})", *_constraint(*constraint_shape(constraint), numbers)]
     lines += _section("Relations", {one.name: text(one.value) for one in system.relations})
     motion = {one.coordinate: _record(motion_shape(one), "value") for one in system.motion}
     lines += _section("Unperturbed motion", motion)
@@ -159,6 +164,22 @@ def _load(kind: str, shape: Data, numbers: dict[str, str]) -> list[str]:
     return lines
 
 
+def _constraint(kind: str, shape: Data, numbers: dict[str, str]) -> list[str]:
+    lines = [f"  Type of constraint: {kind}"]
+    if isinstance(shape, list):
+        return [*lines, *_points(shape, numbers)]
+    if not isinstance(shape, dict):
+        return [*lines, f"  Expression: {shape}"]
+    for key, value in shape.items():
+        if key == "between":
+            lines += _points(value, numbers)
+        elif key in ("body", "axes", "on"):
+            lines.append(f"  {key.capitalize()}: {numbers[str(value)]}")
+        else:
+            lines.append(f"  {key.capitalize()}: {_value(value)}")
+    return lines
+
+
 def _claim(shape: dict[str, Data], numbers: dict[str, str]) -> list[str]:
     """One label a line; a body is named by its number, a state is a record."""
     lines = []
@@ -180,7 +201,8 @@ def _points(points: Data, numbers: dict[str, str]) -> list[str]:
     for which, point in zip(("First", "Second"), points, strict=True):
         assert isinstance(point, dict)
         lines.append(f"  {which} body: {numbers[str(point['body'])]}")
-        lines.append(f"  {which} point: {_value(point['point'])}")
+        what = "point" if "point" in point else "axis"
+        lines.append(f"  {which} {what}: {_value(point[what])}")
     return lines
 
 

@@ -12,6 +12,7 @@ from mbsym.source.shape import (
     assumption_text,
     body_shape,
     claim_shape,
+    constraint_shape,
     inferred_coordinates,
     initial_shape,
     load_shape,
@@ -42,6 +43,9 @@ def to_yaml(system: System) -> str:
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
     lines += _bodies(system)
     lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
+    lines += _list("constraints", [_load(*constraint_shape(one)) for one in system.constraints])
+    if system.dependent:
+        lines += ["", f"dependent: [{', '.join(system.dependent)}]"]
     lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})
     lines += _mapping("motion", {one.coordinate: motion_shape(one) for one in system.motion})
     lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})
@@ -84,10 +88,15 @@ def _load(kind: str, value: Shape) -> str:
 def _flow(value: Shape) -> str:
     match value:
         case dict():
-            return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
+            return "{" + ", ".join(f"{_key(key)}: {_flow(item)}" for key, item in value.items()) + "}"
         case list():
             return "[" + ", ".join(_flow(item) for item in value) + "]"
     return scalar_text(value)
+
+
+def _key(key: str) -> str:
+    """YAML 1.1 readers take a bare ``on`` for true."""
+    return '"on"' if key == "on" else key
 
 
 def scalar_text(value: str) -> str:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from fractions import Fraction
+from itertools import pairwise
 
 from mbsym.expressions.place import Span
-from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import ZERO, Expression
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
 from mbsym.model.system import (
     Body,
     CoordinateDamper,
@@ -160,6 +162,8 @@ class _System:
             self.body(body)
         for load in system.loads:
             self.load(load)
+        for constraint in system.constraints:
+            self.constraint(constraint)
         for relation in system.relations:
             self.expect(relation.value, self.of(relation.name), f"'{relation.name}'")
         for symbol in system.notation:
@@ -225,6 +229,27 @@ class _System:
                 self.vector(components, FORCE, "a force")
             case Torque(components=components):
                 self.vector(components, ENERGY, "a torque")
+
+    def constraint(self, constraint: Constraint) -> None:
+        match constraint:
+            case Coincide(first, second):
+                self.points((first, second))
+            case Parallel(one, other):
+                for axis in (one, other):
+                    self.alike(axis.direction)
+            case Distance(first, second, length):
+                self.points((first, second))
+                self.expect(length, LENGTH, "a distance that is kept")
+            case Rolling(contact=contact):
+                self.vector(contact, LENGTH, "a point of contact")
+            case Relation(left, right) | Velocity(left, right):
+                self.dimensions.alike(left, right, "set equal")
+
+    def alike(self, vector: Vector) -> None:
+        """Components that are not 0 have one dimension, whatever it is."""
+        present = [component for component in vector if component != ZERO]
+        for first, second in pairwise(present):
+            self.dimensions.alike(first, second, "components of one axis")
 
     def points(self, points: Iterable[Point]) -> None:
         for point in points:

@@ -1,0 +1,21 @@
+"""What does not know constraints refuses a system that has some: an answer about the open tree would be false."""
+
+from __future__ import annotations
+
+from mbsym.algebra.failures import Constrained
+from mbsym.model.constraints import listed
+from mbsym.model.system import System
+
+
+def refuse_constraints(system: System, what: str) -> None:
+    """Raises Constrained if there are constraints; ``what`` leaves them out, as in "the mass matrix alone"."""
+    if system.constraints:
+        raise Constrained(refused(system, what), remedy=HINT)
+
+
+def refused(system: System, what: str) -> str:
+    """The sentence that says so."""
+    return f"{what}: constraints are not taken into account here yet ({listed(system.constraints)})"
+
+
+HINT = "without its constraints this would be another system"

@@ -1,0 +1,231 @@
+"""The scalar rows of constraints over any scalar.
+
+    position      f(q, t)                                     of a holonomic constraint, else None
+    velocity      g = J q' + j      = df/dt  where there is an f
+    acceleration  dg/dt = J q'' + (J' q' + j')                at the accelerations of the scene: in one without
+                                                              accelerations the part J' q' + j'
+    partials      J, the derivatives of g by the velocities
+
+Rates come from the recursion of ``seen.py``, J from the same recursion along each coordinate: closed formulas are not
+differentiated (expressions of the description are, as they stand).  Vectors are seen from the last frame that carries
+both bodies, and in its axes:
+
+    coincide   r_1 - r_2
+    parallel   n_1 . e_2, n_2 . e_2   with n_1, n_2 normal to e_1 and fixed in the first body
+    distance   (|r_1 - r_2|^2 - L^2)/2
+    rolling    V_body + omega_body x (c - r_body) - V_on - omega_on x (c - r_on)      c: the contact
+
+The rate of the last one takes the motion of the contact into account, which is the same in both terms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import ZERO, Expression, differentiate, names, negative, subtract
+from mbsym.mechanics.constraints.seen import Moving, Rates, View, along_coordinate, along_motion, common_frame
+from mbsym.mechanics.kinematics import Scene
+from mbsym.model.constraints import (
+    Axis,
+    Coincide,
+    Constraint,
+    Distance,
+    Parallel,
+    Relation,
+    Rolling,
+    Velocity,
+    is_holonomic,
+    kind_name,
+)
+from mbsym.model.system import Point, rational, velocity_name
+from mbsym.model.system import Vector as Expressions
+
+
+@dataclass(frozen=True, slots=True)
+class RowName:
+    """Which row this is: ``constraint`` counts from 0, ``component`` from 1 (0: the constraint has one row)."""
+
+    constraint: int
+    component: int
+    kind: str
+    holonomic: bool
+    span: Span | None = None
+
+    @property
+    def label(self) -> str:
+        """``coincide 1, component 2``: the second row of the first constraint of the description."""
+        return f"{self.kind} {self.constraint + 1}" + (f", component {self.component}" if self.component else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One scalar constraint; see the module."""
+
+    name: RowName
+    position: Scalar | None
+    velocity: Scalar
+    acceleration: Scalar
+    partials: tuple[Scalar, ...]
+
+    def is_trivial(self, algebra: Algebra) -> bool:
+        """Whether it says 0 = 0 as it stands; only over the ring that is decided."""
+        scalars = (self.velocity, self.acceleration, *self.partials)
+        return (self.position is None or algebra.vanishes(self.position)) and all(map(algebra.vanishes, scalars))
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """f, g and dg/dt of one row."""
+
+    position: Scalar | None
+    velocity: Scalar
+    acceleration: Scalar
+
+
+def constraint_rows(scene: Scene, kept: Sequence[tuple[int, int]] | None = None) -> tuple[Row, ...]:
+    """The rows of all constraints of a system, in the order of the description.
+
+    ``kept`` names rows by (constraint, component), the others are left out; ``kept_rows`` finds those that say
+    something.
+    """
+    rows = []
+    for number, constraint in enumerate(scene.system.constraints):
+        forms = _forms(scene, constraint, along_motion(scene))
+        wanted = [k for k in range(len(forms)) if kept is None or (number, k + 1 if len(forms) > 1 else 0) in kept]
+        if not wanted:
+            continue
+        slopes = [_forms(scene, constraint, along_coordinate(scene, name), name) for name in scene.system.coordinates]
+        for k in wanted:
+            label = RowName(
+                number, k + 1 if len(forms) > 1 else 0, kind_name(constraint), is_holonomic(constraint), constraint.span
+            )
+            partials = tuple(scene.algebra.reduce(slope[k].velocity) for slope in slopes)
+            reduce, form = scene.algebra.reduce, forms[k]
+            position = None if form.position is None else reduce(form.position)
+            rows.append(Row(label, position, reduce(form.velocity), reduce(form.acceleration), partials))
+    return tuple(rows)
+
+
+def said_rows(scene: Scene) -> tuple[Row, ...]:
+    """The rows over the ring without those that say 0 = 0 whatever the motion."""
+    return tuple(row for row in constraint_rows(scene) if not row.is_trivial(scene.algebra))
+
+
+def kept_rows(rows: Sequence[Row]) -> tuple[tuple[int, int], ...]:
+    """How ``constraint_rows`` knows these rows in another algebra."""
+    return tuple((row.name.constraint, row.name.component) for row in rows)
+
+
+def _forms(scene: Scene, constraint: Constraint, rates: Rates, along: str | None = None) -> list[_Form]:
+    """The rows of one constraint; with ``along`` the derivatives of g by the velocity of that coordinate, as g."""
+    match constraint:
+        case Coincide(first, second):
+            return _coincide(scene, first, second, rates)
+        case Parallel(first, second):
+            return _parallel(scene, first, second, rates)
+        case Distance(first, second, length):
+            return [_distance(scene, first, second, length, rates)]
+        case Relation(left, right):
+            f = difference(left, right)
+            return [_Form(scene.lower(f), rates.first(f), rates.second(f))]
+        case Rolling():
+            return _rolling(scene, constraint, rates)
+        case Velocity(left, right):
+            return [_velocity(scene, difference(left, right), along)]
+    raise TypeError(f"not a constraint: {constraint!r}")
+
+
+def difference(left: Expression, right: Expression) -> Expression:
+    """left - right, short where one side is 0."""
+    return negative(right) if left == ZERO else subtract(left, right)
+
+
+def _pair(scene: Scene, first: Point, second: Point, rates: Rates) -> Moving:
+    """r_1 - r_2 as seen from the last frame that carries both."""
+    view = View(scene, common_frame(scene, (first.body, second.body)), rates)
+    ends = [view.point(x.body, view.moving(x.position)) for x in (first, second)]
+    return view.difference(ends[0], ends[1])
+
+
+def _coincide(scene: Scene, first: Point, second: Point, rates: Rates) -> list[_Form]:
+    apart = _pair(scene, first, second, rates)
+    return [_Form(*x) for x in zip(apart.value, apart.first, apart.second, strict=True)]
+
+
+def _distance(scene: Scene, first: Point, second: Point, length: Expression, rates: Rates) -> _Form:
+    algebra, apart = scene.algebra, _pair(scene, first, second, rates)
+    long, rate, second_rate = scene.lower(length), rates.first(length), rates.second(length)
+    half = algebra.number(Fraction(1, 2))
+    squares = algebra.dot(apart.value, apart.value) - algebra.times(long, long)
+    speed = algebra.dot(apart.value, apart.first) - algebra.times(long, rate)
+    bent = algebra.dot(apart.first, apart.first) + algebra.dot(apart.value, apart.second)
+    bent = bent - algebra.times(rate, rate) - algebra.times(long, second_rate)
+    return _Form(algebra.times(half, squares), speed, bent)
+
+
+def _parallel(scene: Scene, first: Axis, second: Axis, rates: Rates) -> list[_Form]:
+    algebra = scene.algebra
+    view = View(scene, common_frame(scene, (first.body, second.body)), rates)
+    other = view.vector(second.body, view.moving(second.direction))
+    forms = []
+    for normal in normals(first.direction):
+        n = view.vector(first.body, view.moving(normal))
+        forms.append(
+            _Form(
+                algebra.dot(n.value, other.value),
+                algebra.dot(n.first, other.value) + algebra.dot(n.value, other.first),
+                algebra.dot(n.second, other.value)
+                + algebra.times(algebra.number(2), algebra.dot(n.first, other.first))
+                + algebra.dot(n.value, other.second),
+            )
+        )
+    return forms
+
+
+def normals(e: Expressions) -> tuple[Expressions, Expressions]:
+    """Two independent vectors normal to e: with e_i not 0,  e_i e_j - e_j e_i  for the other two axes j.
+
+    A component that is a number other than 0 is taken for e_i, else the first one that is not written as 0.
+    """
+    numbers = [rational(x) for x in e]
+    certain = [i for i in range(3) if numbers[i]]
+    possible = [i for i in range(3) if numbers[i] is None]
+    i = (certain or possible or [2])[0]
+    found = []
+    for j in ((i + 1) % 3, (i + 2) % 3):
+        normal: list[Expression] = [ZERO, ZERO, ZERO]
+        normal[j], normal[i] = e[i], negative(e[j])
+        found.append((normal[0], normal[1], normal[2]))
+    return found[0], found[1]
+
+
+def _rolling(scene: Scene, rolling: Rolling, rates: Rates) -> list[_Form]:
+    algebra = scene.algebra
+    view = View(scene, common_frame(scene, (rolling.body, rolling.on, rolling.axes)), rates)
+    centre = view.point(rolling.body, view.fixed(algebra.zero_vector))
+    arm = view.vector(rolling.axes, view.moving(rolling.contact))
+    body = _material(algebra, centre, view.spin(rolling.body), arm)
+    base = view.point(rolling.on, view.fixed(algebra.zero_vector))
+    carrier = _material(algebra, base, view.spin(rolling.on), view.difference(view.sum(centre, arm), base))
+    speeds = algebra.subtract(body[0], carrier[0])
+    rates_of_speeds = algebra.subtract(body[1], carrier[1])
+    return [_Form(None, *x) for x in zip(speeds, rates_of_speeds, strict=True)]
+
+
+def _material(algebra: Algebra, origin: Moving, spin: Moving, arm: Moving) -> tuple[Vector, Vector]:
+    """V_O + omega x c of the material point at a contact c that moves in its body, and the rate of that."""
+    swung = algebra.add(algebra.cross(spin.first, arm.value), algebra.cross(spin.value, arm.first))
+    speed = algebra.add(origin.first, algebra.cross(spin.value, arm.value))
+    return speed, algebra.add(origin.second, swung)
+
+
+def _velocity(scene: Scene, g: Expression, along: str | None) -> _Form:
+    if along is None:
+        return _Form(None, scene.lower(g), scene.lower(scene.rate(g)))
+    speed = velocity_name(along)
+    slope = scene.lower(differentiate(g, speed)) if speed in names(g) else scene.algebra.zero
+    return _Form(None, slope, scene.algebra.zero)
