@@ -35,7 +35,7 @@ def expanded(analysis: Analysis) -> Scene:
             hint += "; what is left out is 0 at rest"
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
-    return linearisation.quadratised(analysis.parameters_scene)
+    return linearisation.quadratised(analysis.parameters_scene, analysis.system)
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:

@@ -27,6 +27,7 @@ from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.driven import held
 from mbsym.model.system import System
 from mbsym.problems import (
     dissipation,
@@ -162,7 +163,9 @@ class Analysis(Stages):
         return ring
 
     scene = Derived["Analysis", Scene](lambda a: a.over_ring())
-    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False))
+    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False, inputs=False))
+    #: The system whose inputs keep their values on the unperturbed motion.
+    held_scene = Derived["Analysis", Scene](lambda a: a.over_ring(inputs=False) if a.system.inputs else a.scene)
     signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene))
     programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
     expanded = Derived["Analysis", Scene](approximation.expanded)
@@ -173,9 +176,13 @@ class Analysis(Stages):
         """The states at which checks compare two routes, and d'Alembert's principle there."""
         return oracles(self.system, self.ring)
 
-    def over_ring(self, bodies: bool = True) -> Scene:
-        """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered."""
-        return Scene(self.system, self.ring, ring_environment(self.system, self.ring), self.ring, bodies=bodies)
+    def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
+        """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
+
+        Without ``inputs`` these keep their values on the unperturbed motion.
+        """
+        system = self.system if inputs else held(self.system)
+        return Scene(system, self.ring, ring_environment(system, self.ring), self.ring, bodies=bodies)
 
     # --- the numbered problems ---
 
@@ -262,7 +269,7 @@ class Analysis(Stages):
 
     def _balance(self) -> Balance:
         energies = self.optional("energy")
-        return dissipation.balance(self.parameters_scene if energies is None else self.scene, energies, self.signs)
+        return dissipation.balance(self.parameters_scene if energies is None else self.held_scene, energies, self.signs)
 
     def _told(self) -> ToldSystem:
         return told_system(self.system, self.ring, self.terms)

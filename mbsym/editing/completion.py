@@ -100,6 +100,7 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
             rates = map(velocity_name, system.coordinates)
             yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
         yield from (Suggestion(one.name, "name", one.meaning or "prescribed", one.name) for one in system.prescribed)
+        yield from (Suggestion(one.name, "name", one.meaning or "an input", one.name) for one in system.inputs)
         yield from (Suggestion(one.name, "name", "a notation", one.name) for one in system.notation)
         yield from (Suggestion(one.name, "function", "a table", f"{one.name}(") for one in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)

@@ -68,6 +68,9 @@ def _name(word: str, analysis: Analysis) -> str | None:
     for motion in system.prescribed:
         if motion.name == word:
             return f"**{plain(word)}**{told}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
+    for one in system.inputs:
+        if one.name == word:
+            return f"**{plain(word)}**{told}: an input" + (f", {plain(one.meaning)}" if one.meaning else "")
     for symbol in system.notation:
         if symbol.name == word:
             return f"**{plain(word)}** = {code(written(symbol.value))}"

@@ -13,6 +13,7 @@ from mbsym.source.keys import (
     CONSTRAINTS,
     INERTIA,
     INITIAL,
+    INPUT,
     LOAD_MEANINGS,
     LOADS,
     MOTION,
@@ -32,6 +33,7 @@ _SIGN_WORDS = {sign: f"true, short for sign: {sign}" for sign in SIGNS}
 _RECORDS: dict[str, Mapping[str, str]] = {
     "parameters": {**PARAMETER, **_SIGN_WORDS},
     "prescribed": PRESCRIBED,
+    "inputs": INPUT,
     "tables": TABLE,
     "motion": MOTION,
     "initial": INITIAL,

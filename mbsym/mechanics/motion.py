@@ -47,6 +47,8 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
     spinning = turning(scene)
+    for one in scene.system.inputs:
+        images |= _standing(scene, "prescribed", one.name, one.held)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
         if velocities:
@@ -54,12 +56,17 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
             images[ring.index("acceleration", name)] = ring.zero
         if name in spinning:
             continue
-        images[ring.index("coordinate", name)] = scene.lower(value)
-        if name in ring.angles:
-            basic = divide(value, number(ring.angles[name]))
-            sine, cosine = scene.lower.angle(basic)
-            images[ring.index("sine", name)] = sine
-            images[ring.index("cosine", name)] = cosine
+        images |= _standing(scene, "coordinate", name, value)
+    return images
+
+
+def _standing(scene: Scene, kind: str, name: str, value: Expression) -> dict[int, Polynomial]:
+    """The generators of a name, its sine and cosine included, and what they are where it has a constant value."""
+    ring: Ring = scene.ring
+    images: dict[int, Polynomial] = {ring.index(kind, name): scene.lower(value)}
+    if name in ring.angles:
+        sine, cosine = scene.lower.angle(divide(value, number(ring.angles[name])))
+        images |= {ring.index("sine", name): sine, ring.index("cosine", name): cosine}
     return images
 
 

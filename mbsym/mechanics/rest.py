@@ -22,6 +22,7 @@ from mbsym.expressions.tree import (
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
+from mbsym.model.driven import held
 from mbsym.model.substitution import put
 from mbsym.model.system import Load, PointForce, System, Torque, acceleration_name, rational, velocity_name
 
@@ -36,7 +37,7 @@ def missing_values(system: System, values: Mapping[str, Fraction]) -> tuple[str,
     """The parameters whose numbers the steady motions need, but which have none; in the order of declaration."""
     dependent = {item.name: item.value for item in system.relations}
     rates = tuple(entry.rate for entry in system.motion)
-    pending = [name for x in expressions((system.bodies, system.loads, system.prescribed, rates)) for name in names(x)]
+    pending = [name for x in expressions((system.bodies, held(system).loads, system.prescribed, rates)) for name in names(x)]
     needed: set[str] = set()
     while pending:
         name = pending.pop()
@@ -63,7 +64,7 @@ def at_numbers(system: System, values: Mapping[str, Fraction]) -> System:
         for name in ready:
             numbers[name] = _folded(substitute(pending.pop(name), numbers))
     turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
-    bare = replace(system, parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
+    bare = replace(held(system), parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
     found: System = put(replace(bare, time_scale=None), numbers)
     return replace(found, loads=tuple(load for load in found.loads if not _is_nothing(load)))
 

@@ -98,6 +98,7 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
     """
     found: dict[str, int] = {}
     at_rest = {entry.coordinate: entry.value for entry in system.motion}
+    at_rest |= {one.name: one.held for one in system.inputs}
 
     def note(argument: Expression) -> None:
         form = linear_form(argument)
@@ -117,7 +118,8 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
         if relation.name in found and form is not None and not form.constant:
             for other, factor in form.coefficients:
                 found[other] = lcm(found.get(other, 1), (factor / found[relation.name]).denominator)
-    declared = [*system.coordinates, *(item.name for item in system.prescribed), *system.parameter_names, "t"]
+    driven = (*(item.name for item in system.prescribed), *system.input_names)
+    declared = [*system.coordinates, *driven, *system.parameter_names, "t"]
     return {name: found[name] for name in declared if name in found}
 
 
@@ -137,7 +139,7 @@ def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set
 
     Those that an unperturbed motion brings are among them; multiples of pi/2, whose sines are whole numbers, are not.
     """
-    values = (entry.value for entry in system.motion)
+    values = (*(entry.value for entry in system.motion), *(one.held for one in system.inputs))
     forms = (linear_form(x) for x in (*angles_of(system), *arguments, *values))
     found = {(form.turns % 2, form.constant) for form in forms if form is not None}
     return {(turns, radians) for turns, radians in found if radians or turns.denominator > 2}
@@ -176,7 +178,7 @@ def ring_of(
             adjunctions += 2 * knots * _may_adjoin(node)
     return Ring(
         system.coordinates,
-        [*(item.name for item in system.prescribed), *moving],
+        [*(item.name for item in system.prescribed), *system.input_names, *moving],
         [*system.parameter_names, *(item.name for item in system.notation), *fixed],
         angle_denominators(system, arguments),
         positive=[parameter.name for parameter in system.parameters if parameter.sign == "positive"],
@@ -209,6 +211,7 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
     environment = {name: ring.generator("parameter", name) for name in system.parameter_names}
     environment |= {item.name: ring.generator("parameter", item.name) for item in system.notation}
     environment |= {item.name: ring.generator("prescribed", item.name) for item in system.prescribed}
+    environment |= {name: ring.generator("prescribed", name) for name in system.input_names}
     for name in system.coordinates:
         environment[name] = ring.generator("coordinate", name)
         environment[velocity_name(name)] = ring.generator("velocity", name)
@@ -220,7 +223,7 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
 
 def program_environment(system: System, program: Program) -> dict[str, Scalar]:
     """Every name as an input of a straight-line program."""
-    names_ = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi"]
+    names_ = [*system.parameter_names, *(item.name for item in system.prescribed), *system.input_names, "t", "pi"]
     for name in system.coordinates:
         names_ += [name, velocity_name(name), acceleration_name(name)]
     return {name: program.input(name) for name in names_}

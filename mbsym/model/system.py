@@ -30,6 +30,7 @@ from mbsym.expressions.place import Span
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
+from mbsym.model.inputs import Input, Output
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
@@ -408,6 +409,8 @@ class System(GuessesNames):
     tables: tuple[Table, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     dependent: tuple[str, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    outputs: tuple[Output, ...] = ()
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"
@@ -424,6 +427,10 @@ class System(GuessesNames):
     @property
     def parameter_names(self) -> tuple[str, ...]:
         return tuple(parameter.name for parameter in self.parameters)
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        return tuple(one.name for one in self.inputs)
 
     def body(self, name: str) -> Body:
         """The body of that name.  Raises KeyError where there is none."""

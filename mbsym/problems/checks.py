@@ -352,6 +352,8 @@ def check_linearisation(ring: Ring, first: Linearisation, second: Linearisation)
         name: _equal(ring, a.polynomials, b.polynomials)
         for name, a, b in zip("MDGKN", first.matrices, second.matrices, strict=True)
     }
+    if first.B is not None and second.B is not None:
+        outcomes["B"] = _equal(ring, first.B.polynomials, second.B.polynomials)
     wrong = [name for name, outcome in outcomes.items() if outcome == FAILED]
     outcome = _worst(outcomes.values())
     detail = f"differs in {', '.join(wrong)}" if wrong else _HOW_EQUAL[outcome]

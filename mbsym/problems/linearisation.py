@@ -1,10 +1,12 @@
 """Problem 5: equations of perturbed motion in the first approximation,
 
-    M x'' + (D + G) x' + (K + N) x = 0
+    M x'' + (D + G) x' + (K + N) x = B v
 
-with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory).  Two routes:
+with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (circulatory); v are the deviations of the
+inputs from the values at which they are held, B = dQ/du (0 on the right where the system has no inputs).  Two routes:
 
-1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq;
+1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq,
+   B = df/du;
 2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
    with L2 = x'.M x'/2 + x'.B x - x.P x/2 the equations are
 
@@ -43,7 +45,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.motion import motion_values, rate_on_motion, relations, turning, unperturbed, unsteady
 from mbsym.mechanics.newton_euler import applied_forces
-from mbsym.model.system import acceleration_name, velocity_name
+from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 
@@ -91,6 +93,8 @@ class Linearisation(Shown):
     ``time_scale`` is w of tau = w t, or None.  ``route`` names the way the matrices were obtained.  ``varying`` lists
     the coefficients that are not constant: with any of them the first approximation is time-dependent, and no theorem
     about constant coefficients (Lagrange, Kelvin-Chetaev, eigenvalues) says anything about it.
+
+    ``B`` (n x m, in physical time) belongs to the m ``inputs``; None where there are none.
     """
 
     coordinates: tuple[str, ...]
@@ -103,6 +107,8 @@ class Linearisation(Shown):
     subsystems: tuple[Subsystem, ...]
     route: str
     varying: tuple[Varying, ...] = ()
+    inputs: tuple[str, ...] = ()
+    B: Matrix | None = None
 
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
@@ -110,8 +116,8 @@ class Linearisation(Shown):
 
     @property
     def terms(self) -> int:
-        """Terms of the five matrices."""
-        return sum(matrix.terms for matrix in self.matrices)
+        """Terms of the matrices."""
+        return sum(matrix.terms for matrix in self.matrices) + (0 if self.B is None else self.B.terms)
 
     @property
     def time_dependence(self) -> str:
@@ -144,11 +150,15 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
         for j in range(n):
             velocity[i][j] = velocity[i][j] + rate_on_motion(scene, mass[i][j])
             position[i][j] = position[i][j] + rate_on_motion(scene, mixed[i][j])
+    inputs = expanded.system.input_names
+    gains = [[ring.zero] * len(inputs) for _ in names]
     for i, force in enumerate(applied_forces(expanded).values()):
+        gains[i] = [force.first.get(2 * n + k, ring.zero) for k in range(len(inputs))]
         for j in range(n):
             position[i][j] = position[i][j] - force.first.get(j, ring.zero)
             velocity[i][j] = velocity[i][j] - force.first.get(n + j, ring.zero)
-    return _assemble(scene, equilibrium, mass, velocity, position, "quadratised Lagrangian")
+    parts = (mass, velocity, position, gains)
+    return _assemble(scene, equilibrium, parts, "quadratised Lagrangian", inputs)
 
 
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
@@ -162,20 +172,25 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     forcing = [x.polynomial for x in equations.forcing]
     velocity = [[-ring.substitute(ring.velocity_derivative(f, name), at) for name in names] for f in forcing]
     position = [[-ring.substitute(ring.derivative(f, name), at) for name in names] for f in forcing]
-    return _assemble(scene, equilibrium, mass, velocity, position, "linearised equations")
+    inputs = scene.system.input_names
+    gains = [[ring.substitute(ring.derivative(f, name), at) for name in inputs] for f in forcing]
+    return _assemble(scene, equilibrium, (mass, velocity, position, gains), "linearised equations", inputs)
 
 
-def quadratised(scene: Scene) -> Scene:
-    """The system over second-order jets about the unperturbed motion.
+def quadratised(scene: Scene, whole: System | None = None) -> Scene:
+    """The system over second-order jets about the unperturbed motion; with ``whole`` its inputs deviate, too.
 
-    Deviations are numbered: x_i is i, x'_i is n + i.
+    Deviations are numbered: x_i is i, x'_i is n + i, that of input k is 2 n + k.
     """
-    ring, system = scene.ring, scene.system
+    ring, system = scene.ring, whole or scene.system
     names, values = system.coordinates, motion_values(system)
     spinning = set(turning(scene))
     at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
     lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()}
-    jets = Jets(ring, at_rest, {name: i for i, name in enumerate(names)}, lowered)
+    numbers = {name: i for i, name in enumerate(names)}
+    held = {one.name: scene.lower(one.held) for one in system.inputs}
+    numbers |= {one.name: 2 * len(names) + k for k, one in enumerate(system.inputs)}
+    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered | held)
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         value, rate = values[name]
@@ -183,6 +198,8 @@ def quadratised(scene: Scene) -> Scene:
         environment[name] = jets.deviation(i, base)
         environment[velocity_name(name)] = jets.deviation(len(names) + i, scene.lower(rate))
         environment[acceleration_name(name)] = jets.zero
+    for name, value in held.items():
+        environment[name] = jets.deviation(numbers[name], value)
     return Scene(system, jets, environment, ring)
 
 
@@ -193,12 +210,12 @@ def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
 
 
 def _assemble(
-    scene: Scene, equilibrium: Equilibrium | None, mass: Rows, velocity: Rows, position: Rows, route: str
+    scene: Scene, equilibrium: Equilibrium | None, whole: Sequence[Rows], route: str, inputs: tuple[str, ...]
 ) -> Linearisation:
     """Relations and conditions of existence used, then the split into symmetric and skew parts."""
     ring = scene.ring
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
-    parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in (mass, velocity, position)]
+    parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in whole]
     scale = None
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
@@ -212,6 +229,8 @@ def _assemble(
         time_scale=scale,
         subsystems=(),
         route=route,
+        inputs=inputs,
+        B=Matrix.of(ring, parts[3]) if inputs else None,
     )
     return replace(result, subsystems=_subsystems(scene, result), varying=_varying(scene, result))
 

@@ -4,9 +4,9 @@ Both routes of problem 5 share the unperturbed values, the split into five matri
 notation.  Here d'Alembert's principle in inertial axes is evaluated at the unperturbed state with a small disturbance
 (dx, dx', dx'') carried along as the first coefficient of a series; what comes out must be
 
-    M dx'' + (D + G) dx' + (K + N) dx
+    M dx'' + (D + G) dx' + (K + N) dx - B dv
 
-with M, D, K symmetric and G, N skew, and the subsystems' matrices, their notation and time scale undone, must be
+(dv a disturbance of the inputs) with M, D, K symmetric and G, N skew, and the subsystems' matrices, their notation and time scale undone, must be
 blocks of these.  First integrals are differentiated along the motion that the straight-line program gives.
 """
 
@@ -77,7 +77,8 @@ def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Depende
     state = _unperturbed_state(system, ring, dependent, balls)
     carry = Carrier(ring, state.numbers, state.values)
     matrices = [[[carry(x) for x in row] for row in m.polynomials] for m in linear.matrices]
-    disturbed, direction = _disturbed(system, state)
+    disturbed, direction, pushes = _disturbed(system, state)
+    gains = [] if linear.B is None else [[carry(x) for x in row] for row in linear.B.polynomials]
     residuals = Oracle(system, disturbed).residuals
     found: list[Pair] = []
     mass, damping, gyroscopic, stiffness, circulatory = matrices
@@ -87,6 +88,8 @@ def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Depende
         for j, (shift, speed, push) in enumerate(direction):
             total = total + mass[i][j] * push + (damping[i][j] + gyroscopic[i][j]) * speed
             total = total + (stiffness[i][j] + circulatory[i][j]) * shift
+        for k, push in enumerate(pushes):
+            total = total - gains[i][k] * push
         found.append((f"equation {name}", total, residuals[name].b))
     for symbol, matrix in zip("MDGKN", matrices, strict=True):
         for i in range(n):
@@ -124,6 +127,7 @@ def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
 def _has_rational_states(system: System, ring: Ring, dependent: Dependent) -> bool:
     """Whether all sines can be rational: no coordinate rests elsewhere, no angle is determined by others."""
     at_zero = all(value == ZERO for value, _ in _given_motion(system).values())
+    at_zero = at_zero and not any(one.name in ring.angles for one in system.inputs)
     return at_zero and not dependent.parameters.keys() & ring.angles.keys()
 
 
@@ -155,6 +159,7 @@ def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: 
     carry = Carrier(ring, numbers, dict(values))
     values |= {name: carry(value) for name, value in dependent.parameters.items()}
     lower = Lowering(numbers, dict(values))
+    values |= {one.name: lower(one.held) for one in system.inputs}
     for name, (value, rate) in motion.items():
         if name in at_rest:
             values[name] = lower(value)
@@ -163,8 +168,8 @@ def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: 
     return State(numbers, values)
 
 
-def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, Scalar, Scalar]]]:
-    """The state with a random disturbance as first coefficient, and the disturbance (dx, dx', dx'') itself."""
+def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, Scalar, Scalar]], list[Scalar]]:
+    """The state with a random disturbance as first coefficient, and the disturbance itself: (dx, dx', dx''), and dv."""
     source = random.Random(SEED + 1)
     zero = state.numbers.zero
     values = {name: Dual(value, zero) for name, value in state.values.items()}
@@ -176,7 +181,9 @@ def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, 
             values[key] = Dual(state.values[key], part)
             parts.append(part)
         direction.append((parts[0], parts[1], parts[2]))
-    return State(FirstOrder(state.numbers, values), values), direction
+    pushes = [state.numbers.number(source.randint(1, 9)) for _ in system.inputs]
+    values |= {name: Dual(state.values[name], push) for name, push in zip(system.input_names, pushes, strict=True)}
+    return State(FirstOrder(state.numbers, values), values), direction, pushes
 
 
 def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral]) -> Check:

@@ -12,17 +12,20 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
+from mbsym.model.driven import with_held
 from mbsym.model.system import LANGUAGES, System
 from mbsym.source.bodies import draft_bodies, read_body
 from mbsym.source.checks import check_body, check_system
 from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
+from mbsym.source.inputs import held_values, read_inputs, read_outputs
 from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.loads import read_loads
 from mbsym.source.placed import Node
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
 from mbsym.source.settings import (
+    of_coordinates,
     read_assumptions,
     read_initial,
     read_limits,
@@ -49,6 +52,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
     tables = read_tables(fields.get("tables"), reading)
     parameters = read_parameters(fields.get("parameters"), reading)
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
+    inputs = read_inputs(fields.get("inputs"), reading)
     drafts = draft_bodies(fields.get("bodies"), reading)
     prescribed = tuple(read_prescribed(entry, reading) for entry in prescribed_entries)
     parameters = read_values(fields.get("values"), parameters, reading)
@@ -62,6 +66,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
     constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
     parameters += declared_by_use(reading)
     notation = read_notation(fields.get("notation"), reading)
+    outputs = read_outputs(fields.get("outputs"), reading)
+    motion = read_motion(fields.get("motion"), reading)
     system = System(
         name=fields.text("name"),
         parameters=tuple(parameters),
@@ -69,10 +75,12 @@ def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | 
         description=fields.text("description"),
         prescribed=prescribed,
         tables=tables,
+        inputs=with_held(inputs, held_values(motion, reading)),
+        outputs=outputs,
         loads=loads,
         relations=relations,
         assumptions=read_assumptions(fields.get("assumptions"), reading),
-        motion=read_motion(fields.get("motion"), reading),
+        motion=of_coordinates(motion, reading),
         notation=notation,
         time_scale=fields.expression("dimensionless time", Allowed("the rate of dimensionless time")),
         initial=read_initial(fields.get("initial"), reading),

@@ -85,14 +85,15 @@ def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parame
     if reading.errors != errors:
         value = None
     sign = _sign(fields, reading) or _sign_of(value)
-    _note_unit(name, fields, reading)
+    note_unit(name, fields, reading)
     parameter = Parameter(name, sign, value, fields.text("meaning"), span)
     if value is not None:
         _check_sign(parameter, fields.key_span("value"), reading)
     return parameter
 
 
-def _note_unit(name: str, fields: Fields, reading: Reading) -> None:
+def note_unit(name: str, fields: Fields, reading: Reading) -> None:
+    """Remember the unit of a record for ``units``."""
     node = fields.get("unit")
     scalar = None if node is None else reading.scalar(node, f"the unit of {ascii_safe(name)}")
     if scalar is not None:
@@ -158,6 +159,6 @@ def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
         return Prescribed(name, reading.expression(entry.value, allowed), span=entry.key.span)
     fields = reading.fields(entry.value, f"the prescribed motion {ascii_safe(name)}", PRESCRIBED)
     rate = fields.required_expression("rate", allowed)
-    _note_unit(name, fields, reading)
+    note_unit(name, fields, reading)
     initial: Expression | None = fields.expression("initial", Allowed("an initial value"))
     return Prescribed(name, rate, None if initial == ZERO else initial, fields.text("meaning"), entry.key.span)

@@ -12,6 +12,8 @@ SYSTEM = {
     "description": "a sentence or two about it",
     "parameters": "constants: names with a sign word, a number, or {sign, value, meaning}; or a plain list of names",
     "prescribed": "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}",
+    "inputs": "known functions of time that are chosen later, for forces and torques: {u: {meaning, unit}}",
+    "outputs": "what is measured: {y: theta}, in coordinates, velocities, parameters and inputs",
     "tables": "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",
     "bodies": "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
@@ -47,6 +49,11 @@ PRESCRIBED = {
     "initial": "its value at t = 0 (0 when left out)",
     "meaning": "what it is, for reports",
     "unit": "its unit, such as rad or m",
+}
+
+INPUT = {
+    "meaning": "what it is, for reports",
+    "unit": "its unit, such as N*m or N",
 }
 
 TABLE = {

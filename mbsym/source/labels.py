@@ -34,6 +34,8 @@ BODY = {
 SECTIONS: dict[str, tuple[str, str | None]] = {
     "parameters": ("parameters", "sign"),
     "prescribed motions": ("prescribed", "rate"),
+    "inputs": ("inputs", "meaning"),
+    "outputs": ("outputs", None),
     "tables": ("tables", "points"),
     "units": ("units", None),
     "relations": ("relations", None),

@@ -31,6 +31,8 @@ _KINDS = {
     "abbreviation": "an abbreviation",
     "variable": "a variable",
     "table": "a table",
+    "input": "an input",
+    "output": "an output",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -43,6 +45,8 @@ _PLURALS = {
     "abbreviation": "abbreviations",
     "variable": "the variable",
     "table": "tables",
+    "input": "inputs",
+    "output": "outputs",
 }
 
 
@@ -65,7 +69,7 @@ RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter")
 VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter"))
 POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"), ("abs",))
 DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"), ("abs",))
-FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time"), KINKED)
+FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"), KINKED)
 ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 
 
@@ -159,7 +163,8 @@ class Scope:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
-            held = _enumerated([_PLURALS[one] for one in allowed.kinds]) or "numbers"
+            told = [one for one in allowed.kinds if one != "input" or self.of_kind(one)]
+            held = _enumerated([_PLURALS[one] for one in told]) or "numbers"
             message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
             self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))
         else:
@@ -190,6 +195,8 @@ class Scope:
         close = did_you_mean(name, known)
         if close is not None:
             return close
+        if self.kinds.get(name.removesuffix("_dot")) == "input":
+            return "an input is any function of time: what depends on its rate is no load of this system"
         if self.kinds.get(name.removesuffix("_dot")) == "prescribed":
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)
@@ -226,6 +233,8 @@ def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
         return "declare what changes with time under 'prescribed'"
     if kind == "table":
         return "a table is called with its argument, as in torque(t)"
+    if kind == "input":
+        return "inputs stand in forces: 'generalized force', 'force', 'torque', and in outputs"
     if kind == "velocity" and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
     return None

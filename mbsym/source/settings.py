@@ -102,13 +102,16 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     entries = []
     rest = "write {} for the rest of all at 0" if isinstance(node, Scalar) and not node.text.strip() else None
     for entry in () if node is None else reading.entries(node, "'motion'", rest):
-        known = _is_coordinate(entry.key, "the key of a motion", node, reading)
+        known = _is_coordinate(entry.key, "the key of a motion", node, reading, "input")
         value: Expression = ZERO
         rate: Expression = ZERO
         if isinstance(entry.value, Mapping):
             fields = reading.fields(entry.value, f"the motion of {ascii_safe(entry.key.text)}", MOTION)
             value = fields.expression("value", allowed) or ZERO
             rate = fields.expression("rate", allowed) or ZERO
+            if "rate" in keys_of(entry.value) and reading.scope.kinds.get(entry.key.text) == "input":
+                message = f"the input {ascii_safe(entry.key.text)} is constant on the unperturbed motion"
+                reading.error("misplaced-key", message, fields.key_span("rate"), "leave 'rate' out")
         else:
             value = reading.expression(entry.value, allowed)
         if known:
@@ -116,8 +119,16 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     return tuple(entries)
 
 
-def _is_coordinate(key: Scalar, what: str, node: Node | None, reading: Reading) -> bool:
-    return reading.scope.check_key(key.span, key.text, keys_of(node), Allowed(what, ("coordinate",)))
+def of_coordinates(motion: tuple[MotionEntry, ...], reading: Reading) -> tuple[MotionEntry, ...]:
+    """The motion without its entries of inputs; where only these are given, the rest of all coordinates at 0."""
+    kept = tuple(entry for entry in motion if reading.scope.kinds.get(entry.coordinate) != "input")
+    if kept or not motion:
+        return kept
+    return tuple(MotionEntry(name, ZERO, ZERO, motion[0].span) for name in reading.scope.of_kind("coordinate"))
+
+
+def _is_coordinate(key: Scalar, what: str, node: Node | None, reading: Reading, *more: str) -> bool:
+    return reading.scope.check_key(key.span, key.text, keys_of(node), Allowed(what, ("coordinate", *more)))
 
 
 def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:

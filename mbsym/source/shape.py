@@ -13,6 +13,7 @@ from mbsym.expressions.table import HOLD, LINEAR, Table
 from mbsym.expressions.tree import ZERO, Expression, Number, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
+from mbsym.model.inputs import Input
 from mbsym.model.system import (
     Body,
     CoordinateDamper,
@@ -64,6 +65,16 @@ def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
     if prescribed.meaning:
         shape["meaning"] = prescribed.meaning
     return shape
+
+
+def input_shape(one: Input) -> dict[str, Shape]:
+    return {"meaning": one.meaning} if one.meaning else {}
+
+
+def motion_shapes(system: System) -> dict[str, Shape]:
+    """The unperturbed motion of coordinates, and the values at which inputs are held there."""
+    shapes = {one.coordinate: motion_shape(one) for one in system.motion}
+    return shapes | {one.name: text(one.held) for one in system.inputs if one.held != ZERO}
 
 
 def table_shape(table: Table) -> dict[str, Shape]:
@@ -130,7 +141,7 @@ def inertia_shape(inertia: Inertia) -> list[Shape]:
 def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
     """For each body the coordinates that a reader would infer if no body listed its own that it could infer."""
     declared = {parameter.name for parameter in system.parameters}
-    declared |= {prescribed.name for prescribed in system.prescribed}
+    declared |= {prescribed.name for prescribed in system.prescribed} | set(system.input_names)
     bare = [
         tuple(dict.fromkeys(name for angle in body.rotation.angles if (name := angle_name(angle)) is not None))
         for body in system.bodies

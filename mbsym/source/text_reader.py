@@ -163,13 +163,14 @@ class _TextReader:
         """``a; key = b``: a mapping; a single bare value stays what it is."""
         parts = list(_split(value, ";"))
         if len(parts) == 1 and "=" not in parts[0].text:
-            return parts[0]
+            return self.unquoted(parts[0]) if first == "meaning" else parts[0]
         entries = []
         for index, part in enumerate(parts):
             label, rest = label_of(part)
             if label is None and index == 0:
                 key = "value" if first == "sign" and part.text[:1].isdigit() else first
-                entries.append(Entry(Scalar(key, part.span, literal=False), part))
+                read = self.unquoted(part) if key == "meaning" else part
+                entries.append(Entry(Scalar(key, part.span, literal=False), read))
             elif label is None:
                 self.error("syntax", "here 'key = value' is wanted", part.span)
             else:

@@ -11,8 +11,9 @@ from mbsym.source.shape import (
     claim_shape,
     constraint_shape,
     initial_shape,
+    input_shape,
     load_shape,
-    motion_shape,
+    motion_shapes,
     parameter_shape,
     prescribed_shape,
     table_shape,
@@ -40,6 +41,7 @@ def to_text(system: System) -> str:
     lines += _section("Parameters", {one.name: _record(parameter_shape(one), "sign") for one in system.parameters})
     motions = {one.name: _record(prescribed_shape(one), "rate") for one in system.prescribed}
     lines += _section("Prescribed motions", motions)
+    lines += _section("Inputs", {one.name: _record(input_shape(one), "meaning") for one in system.inputs})
     lines += _section("Tables", {one.name: _table(table_shape(one)) for one in system.tables})
     lines += _section("Units", {one.name: one.text for one in system.units.declared})
     numbers = {"0": "0", **{body.name: str(number) for number, body in enumerate(system.bodies, start=1)}}
@@ -50,9 +52,10 @@ def to_text(system: System) -> str:
     for number, constraint in enumerate(system.constraints, start=1):
         lines += ["", f"Constraint description ({number})", *_constraint(*constraint_shape(constraint), numbers)]
     lines += _section("Relations", {one.name: text(one.value) for one in system.relations})
-    motion = {one.coordinate: _record(motion_shape(one), "value") for one in system.motion}
+    motion = {name: _record(shape, "value") for name, shape in motion_shapes(system).items()}
     lines += _section("Unperturbed motion", motion)
     lines += _section("Notation", {one.name: text(one.value) for one in system.notation})
+    lines += _section("Outputs", {one.name: text(one.value) for one in system.outputs})
     if system.assumptions:
         written = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
         lines += ["", "Assumptions", *(f"  {one}" for one in written)]

@@ -15,8 +15,9 @@ from mbsym.source.shape import (
     constraint_shape,
     inferred_coordinates,
     initial_shape,
+    input_shape,
     load_shape,
-    motion_shape,
+    motion_shapes,
     parameter_shape,
     prescribed_shape,
     table_shape,
@@ -39,6 +40,7 @@ def to_yaml(system: System) -> str:
         lines.append(f"order: [{', '.join(system.order)}]")
     lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
     lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _mapping("inputs", {one.name: input_shape(one) for one in system.inputs})
     lines += _mapping("tables", {one.name: table_shape(one) for one in system.tables})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
     lines += _bodies(system)
@@ -47,8 +49,9 @@ def to_yaml(system: System) -> str:
     if system.dependent:
         lines += ["", f"dependent: [{', '.join(system.dependent)}]"]
     lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})
-    lines += _mapping("motion", {one.coordinate: motion_shape(one) for one in system.motion})
+    lines += _mapping("motion", motion_shapes(system))
     lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})
+    lines += _mapping("outputs", {one.name: text(one.value) for one in system.outputs})
     assumptions = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
     lines += _list("assumptions", [scalar_text(one) for one in assumptions])
     if system.time_scale is not None:

@@ -123,7 +123,7 @@ def _in_kilograms(factor: Any, power: Fraction, registry: Any) -> Any:
 def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -> tuple[Declared, ...]:
     """The units of ``units`` and those that records of parameters and prescribed motions have, each name once."""
     found = {one.name: one for one in given}
-    allowed = Allowed("a unit's name", ("parameter", "coordinate", "prescribed", "table"))
+    allowed = Allowed("a unit's name", ("parameter", "coordinate", "prescribed", "table", "input"))
     entries = [] if node is None else list(reading.entries(node, "'units'", "write {x: m}"))
     for entry in entries:
         name = entry.key.text

@@ -72,6 +72,7 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
     inference = Inference({name: Form(found.dimension) for name, found in known.items()})
     _System(system, Dimensions(inference, _form_of(system), complain)).check()
     names = (*system.coordinates, *system.parameter_names, *(one.name for one in system.prescribed))
+    names = (*names, *system.input_names, *(one.name for one in system.outputs))
     more = (*(one.name for one in system.notation), *(one.name for one in system.abbreviations))
     follows = ((name, inference.dimension(name)) for name in (*names, *more))
     inferred = tuple((name, found) for name, found in follows if found is not None)
@@ -164,6 +165,10 @@ class _System:
             self.load(load)
         for constraint in system.constraints:
             self.constraint(constraint)
+        for one in system.inputs:
+            self.expect(one.held, self.of(one.name), f"'{one.name}'")
+        for output in system.outputs:
+            self.expect(output.value, self.of(output.name), f"'{output.name}'")
         for relation in system.relations:
             self.expect(relation.value, self.of(relation.name), f"'{relation.name}'")
         for symbol in system.notation:
