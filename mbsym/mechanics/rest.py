@@ -37,7 +37,9 @@ def missing_values(system: System, values: Mapping[str, Fraction]) -> tuple[str,
     """The parameters whose numbers the steady motions need, but which have none; in the order of declaration."""
     dependent = {item.name: item.value for item in system.relations}
     rates = tuple(entry.rate for entry in system.motion)
-    pending = [name for x in expressions((system.bodies, held(system).loads, system.prescribed, rates)) for name in names(x)]
+    pending = [
+        name for x in expressions((system.bodies, held(system).loads, system.prescribed, rates)) for name in names(x)
+    ]
     needed: set[str] = set()
     while pending:
         name = pending.pop()

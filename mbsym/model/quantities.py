@@ -115,7 +115,12 @@ def units_by_name(system: System, more: Iterable[tuple[str, str | None]] = ()) -
     if not system.units:
         return {}
     names = ("t", *system.coordinates, *system.velocities, *system.parameter_names)
-    names = (*names, *(item.name for item in system.prescribed), *system.input_names, *(one.name for one in system.outputs))
+    names = (
+        *names,
+        *(item.name for item in system.prescribed),
+        *system.input_names,
+        *(one.name for one in system.outputs),
+    )
     found = chain(((name, unit_of(system, name)) for name in names), more)
     units: dict[str, str] = {}
     for name, unit in found:

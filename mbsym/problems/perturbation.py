@@ -6,8 +6,9 @@ notation.  Here d'Alembert's principle in inertial axes is evaluated at the unpe
 
     M dx'' + (D + G) dx' + (K + N) dx - B dv
 
-(dv a disturbance of the inputs) with M, D, K symmetric and G, N skew, and the subsystems' matrices, their notation and time scale undone, must be
-blocks of these.  First integrals are differentiated along the motion that the straight-line program gives.
+with M, D, K symmetric and G, N skew, dv a disturbance of the inputs, and the subsystems' matrices, their notation and
+time scale undone, must be blocks of these.  First integrals are differentiated along the motion that the straight-line
+program gives.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ RESERVED = frozenset(_WORDS.split())
 #: What the file itself declares, with the prefix of the system in front; those in capitals are constants.
 DECLARED = """
     parameters defaults coordinate_names parameter_names mass_matrix forcing energy generalized_energy accelerations
-    right_hand_side jacobian H OK NOT_FINITE COORDINATES STATES PARAMETERS
+    right_hand_side jacobian input_names INPUTS H OK NOT_FINITE COORDINATES STATES PARAMETERS
 """
 
 #: What has a body of its own; the generalised energy has none where it is the energy.
@@ -105,7 +105,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
     system, (code, no_code) = analysis.system, programs_of(analysis)
     n = len(system.coordinates)
     prefix = prefix_of(system.name)
-    reserved = RESERVED | declared(prefix)
+    reserved = RESERVED | declared(prefix) | ({"u"} if system.inputs else set())
     members = injective(system.parameter_names, proposed, taken=reserved)
     writer = Functions(system, DIALECT, reserved, proposed, "3.14159265358979323846")
     upper = [(i, j) for i in range(n) for j in range(i, n)]

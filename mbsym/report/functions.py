@@ -24,6 +24,7 @@ class Function:
     assignments: tuple[tuple[str, str], ...]
     results: tuple[str, ...]
     time: bool = False
+    inputs: tuple[tuple[int, str], ...] = ()
 
 
 def prescribed_value(item: Prescribed) -> Expression:
@@ -36,6 +37,11 @@ def moving(initial: Expression | None, rate: Expression) -> Expression:
     return add(initial or ZERO, multiply(rate, Name("t")))
 
 
+def words_of_inputs(system: System) -> frozenset[str]:
+    """What generated code calls inputs, where there are any: no name of the description is one of these."""
+    return frozenset(("u", "INPUTS", "Inputs", "HELD", "B", "input_matrix", "held")) if system.inputs else frozenset()
+
+
 class Functions:
     """Turns nodes of a program into function bodies with names that the language lets us use.
 
@@ -45,9 +51,9 @@ class Functions:
     def __init__(
         self, system: System, dialect: Dialect, reserved: Collection[str], propose: Callable[[str], str], pi: str
     ) -> None:
-        self.system, self.dialect, self.reserved = system, dialect, frozenset(reserved)
+        self.system, self.dialect, self.reserved = system, dialect, frozenset(reserved) | words_of_inputs(system)
         names = [*system.coordinates, *system.velocities, *system.parameter_names]
-        names += [item.name for item in system.prescribed]
+        names += [*(item.name for item in system.prescribed), *system.input_names]
         self.names = injective(names, propose, taken=self.reserved) | {"t": "t", "pi": pi}
 
     def function(self, program: Program, outputs: Iterable[Node]) -> Function:
@@ -63,6 +69,7 @@ class Functions:
             assignments=(*driven.assignments, *body.assignments),
             results=body.results,
             time="t" in used,
+            inputs=self._unpacked(system.input_names, used),
         )
 
     def expression(self, value: Expression) -> str:

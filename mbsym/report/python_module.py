@@ -25,7 +25,7 @@ from mbsym.model.quantities import told_units, unit_of
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
-from mbsym.report.functions import Function, Functions, prescribed_value
+from mbsym.report.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.identifiers import prefix_of
 from mbsym.report.model_code import Solved, first_integrals, solved
 from mbsym.report.model_values import initial_values, ordered, parameters_of, starting
@@ -63,9 +63,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     parameters = parameters_of(system, writer)
     linear = analysis.stage(5) if 5 in problems else None
     told = told_units(system)
-    matrices = None
+    matrices = gains = None
     if linear is not None and linear.failure is None:
-        matrices = writer.linear(analysis, linear.value)
+        matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
     return rendered(
         "model.py.j2",
         {},
@@ -98,6 +98,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         initial=initial_values(system, writer),
         starting=starting(system, parameters),
         linear=matrices,
+        gains=gains,
+        held=writer.held(),
+        input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
 
@@ -156,7 +159,7 @@ class _Module(Functions):
     """Turns nodes of a program into function bodies with names that Python lets us use."""
 
     def __init__(self, system: System) -> None:
-        reserved = RESERVED
+        reserved = RESERVED | words_of_inputs(system)
         super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
     def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
@@ -171,3 +174,20 @@ class _Module(Functions):
                         places.append((name, i, j))
                         nodes.append(carry(entry.polynomial))
         return self.function(program, nodes), places
+
+    def gains(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[int, int]]] | None:
+        """B entry by entry, zeros left out; None without inputs."""
+        if found.B is None:
+            return None
+        program = Program()
+        carry = Carrier(analysis.ring, program, program_environment(self.system, program))
+        entries = [(i, k, x) for i, row in enumerate(found.B) for k, x in enumerate(row) if not x.is_zero]
+        return self.function(program, [carry(x.polynomial) for _, _, x in entries]), [(i, k) for i, k, _ in entries]
+
+    def held(self) -> Function | None:
+        """The values of the inputs on the unperturbed motion; None without inputs."""
+        if not self.system.inputs:
+            return None
+        program = Program()
+        lower = Lowering(program, program_environment(self.system, program))
+        return self.function(program, [lower(one.held) for one in self.system.inputs])

@@ -192,11 +192,11 @@ class Scope:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
             known += [acceleration_name(one) for one in self.of_kind("coordinate")]
+        if self.kinds.get(name.removesuffix("_dot")) == "input":
+            return "an input is any function of time: what depends on its rate is no load of this system"
         close = did_you_mean(name, known)
         if close is not None:
             return close
-        if self.kinds.get(name.removesuffix("_dot")) == "input":
-            return "an input is any function of time: what depends on its rate is no load of this system"
         if self.kinds.get(name.removesuffix("_dot")) == "prescribed":
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)

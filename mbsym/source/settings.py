@@ -100,9 +100,10 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
     if isinstance(node, Mapping) and not node.entries:
         return tuple(MotionEntry(name, ZERO, ZERO, node.span) for name in reading.scope.of_kind("coordinate"))
     entries = []
+    inputs = ("input",) if reading.scope.of_kind("input") else ()
     rest = "write {} for the rest of all at 0" if isinstance(node, Scalar) and not node.text.strip() else None
     for entry in () if node is None else reading.entries(node, "'motion'", rest):
-        known = _is_coordinate(entry.key, "the key of a motion", node, reading, "input")
+        known = _is_coordinate(entry.key, "the key of a motion", node, reading, *inputs)
         value: Expression = ZERO
         rate: Expression = ZERO
         if isinstance(entry.value, Mapping):

@@ -680,8 +680,8 @@ CAUGHT = [
     Mistake(
         "G and N exchanged in one route",
         "problems.linearisation:by_quadratisation",
-        "_assemble(scene, equilibrium, mass, velocity, position,",
-        "_assemble(scene, equilibrium, mass, position, velocity,",
+        "parts = (mass, velocity, position,",
+        "parts = (mass, position, velocity,",
         "spinning",
         (LINEARISATION,),
     ),
@@ -773,8 +773,8 @@ BLIND = [
     Mistake(
         "G and N exchanged in both routes",
         "problems.linearisation:_assemble",
-        "(mass, velocity, position)]",
-        "(mass, position, velocity)]",
+        "for rows in whole]",
+        "for rows in (whole[0], whole[2], whole[1], whole[3])]",
         "spinning",
         (PERTURBED,),
     ),

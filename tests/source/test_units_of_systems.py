@@ -41,6 +41,7 @@ TETHER = {
 FIXED = {"g": "m/s^2", "x0": "m", "y0": "m", "z0": "m", "lx": "N*m*s", "lz": "kg*m^2/s"}
 UNITS = {
     "cart-pendulum": {"m0": "kg", "m1": "kg", "l0": "m", "l1": "m", "g": "m/s^2", "F": "N", "x": "m", "q1": "rad"},
+    "cart-pole": {"M": "kg", "m": "kg", "J": MOMENTS, "l": "m", "c": "N*s/m", "gamma": "N*m*s", "F": "N", "p": "m"},
     "clebsch": {**BODY, "R": "m", "N": "1/s^2", "M": "kg", "W": "rad/s", "c": "rad"},
     "double-pendulum": {"m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad"},
     "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
