@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.inputs import Input
-from mbsym.model.substitution import put
+from mbsym.model.substitution import folded, put
 from mbsym.model.system import GeneralizedForce, Load, PointForce, System, Torque, rational
 
 
@@ -19,7 +19,7 @@ def driven(system: System, laws: Mapping[str, Expression]) -> System:
     if not system.inputs:
         return replace(system, outputs=()) if system.outputs else system
     images = {one.name: laws.get(one.name, one.held) for one in system.inputs}
-    loads = (put(load, images) for load in system.loads)
+    loads = (put(load, images, folded) for load in system.loads)
     kept = tuple(load for one in loads if (load := _simplified(one)) is not None)
     return replace(system, loads=kept, inputs=(), outputs=())
 

@@ -2,23 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, substitute
+from mbsym.expressions.tree import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    add,
+    multiply,
+    names,
+    negative,
+    substitute,
+    subtract,
+)
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
+_FOLDING = {"+": add, "-": subtract, "*": multiply}
+
+Replacing = Callable[[Expression, Mapping[str, Expression]], Expression]
 
 
-def put(part: Any, images: Mapping[str, Expression]) -> Any:
+def put(part: Any, images: Mapping[str, Expression], replaced: Replacing = substitute) -> Any:
     """A part of a system with names replaced in every expression; what does not change is the same object."""
     if isinstance(part, _EXPRESSIONS):
-        return substitute(part, images) if names(part) & images.keys() else part
+        return replaced(part, images) if names(part) & images.keys() else part
     if isinstance(part, tuple):
-        return tuple(put(item, images) for item in part)
+        return tuple(put(item, images, replaced) for item in part)
     if is_dataclass(part) and not isinstance(part, type):
         inner = {item.name: getattr(part, item.name) for item in fields(part) if item.name != "span"}
-        changed = {name: new for name, old in inner.items() if (new := put(old, images)) is not old}
+        changed = {name: new for name, old in inner.items() if (new := put(old, images, replaced)) is not old}
         return replace(part, **changed) if changed else part
     return part
+
+
+def folded(expression: Expression, images: Mapping[str, Expression]) -> Expression:
+    """The expression with names replaced, products with 0 and 1 and sums with 0 left out.
+
+    A quotient keeps its divisor: 0/x is not 0 at x = 0.
+    """
+    if not names(expression) & images.keys():
+        return expression
+    match expression:
+        case Name(name):
+            return images[name]
+        case Negative(operand):
+            return negative(folded(operand, images))
+        case Operation(operator, left, right) if operator in _FOLDING:
+            return _FOLDING[operator](folded(left, images), folded(right, images))
+    return substitute(expression, images)
