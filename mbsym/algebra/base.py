@@ -25,7 +25,9 @@ from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Ope
 
 #: A scalar of some algebra: anything with + - * among its own kind.
 Scalar = Any
-Vector = tuple[Scalar, Scalar, Scalar]
+#: The components of a vector, in the axes of a frame that only the reader knows; with it: ``mbsym.algebra.vectors``.
+Components = tuple[Scalar, Scalar, Scalar]
+Vector = Components
 
 
 class Algebra:
@@ -135,7 +137,7 @@ class Lowering:
         self._numbers: dict[int, int] = {}
         self._kept: list[Expression] = []  # an identity must not be used again
 
-    def vector(self, components: Sequence[Expression]) -> Vector:
+    def vector(self, components: Sequence[Expression]) -> Components:
         return (self(components[0]), self(components[1]), self(components[2]))
 
     def __call__(self, expression: Expression) -> Scalar:

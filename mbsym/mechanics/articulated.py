@@ -22,20 +22,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import SingularPoint
-from mbsym.mechanics.articulation import Articulation, MassProperties, Matrix, symmetric, turned_symmetric
+from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of
+from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned_symmetric
 from mbsym.mechanics.bias_forces import BiasForces
-from mbsym.mechanics.frames import Turn, axis_vector, turn_back
+from mbsym.mechanics.frames import Turn
+from mbsym.model.system import INERTIAL
 
 
 @dataclass(frozen=True, slots=True)
 class _Inertia:
     """Rows of A (symmetric), B and C (symmetric)."""
 
-    force: Matrix
-    mixed: Matrix
-    moment: Matrix
+    force: Tensor
+    mixed: Tensor
+    moment: Tensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +76,7 @@ class _Articulated:
         self.system = system
         self.algebra = system.algebra
         self.generalized = needed.generalized
-        self.inertias = [self._rigid(x) for x in system.masses]
+        self.inertias = [_rigid(self.algebra, x) for x in system.masses]
         self.forces, self.moments = list(needed.forces), list(needed.moments)
         self.turns: list[list[_Joint]] = [[] for _ in system.frames]
         self.displacements: list[list[_Joint]] = [[] for _ in system.frames]
@@ -99,19 +101,20 @@ class _Articulated:
 
     def _whole_joints(self) -> dict[int, list[tuple[str, Vector, Vector]]]:
         """(coordinate, w, v) in the axes of the body's own frame, for bodies whose elementary joints share one."""
-        algebra, zero = self.algebra, self.algebra.zero_vector
+        algebra, scene = self.algebra, self.system.scene
         partial: dict[str, dict[str, tuple[Vector, Vector]]] = {}
         for frame in self.system.frames:
             if not frame.together:
                 continue
             own = partial.setdefault(frame.body, {})
+            zero = scene.zero(frame.offset.frame)
             for name in (*frame.offset_derivatives, *frame.angle_derivatives):
                 own.setdefault(name, (zero, zero))
             for name, (spin, velocity) in own.items():
-                velocity = algebra.add(velocity, frame.offset_derivatives.get(name, zero))
-                spin, velocity = frame.out(algebra, spin), frame.out(algebra, velocity)
+                velocity = velocity + frame.offset_derivatives.get(name, zero)
+                spin, velocity = frame.out(spin), frame.out(velocity)
                 if frame.turn is not None and name in frame.angle_derivatives:
-                    spin = algebra.add(spin, axis_vector(algebra, frame.turn.axis, frame.angle_derivatives[name]))
+                    spin = spin + axis_vector(algebra, frame.turn.axis, frame.angle_derivatives[name], frame.name)
                 own[name] = spin, velocity
         return {
             self.system.frame_of[body]: [(name, *twist) for name, twist in own.items()] for body, own in partial.items()
@@ -122,10 +125,10 @@ class _Articulated:
     ) -> tuple[_Inertia, _Joint]:
         """A joint along (spin, velocity) taken out of the inertia and the wrench of a frame."""
         algebra, force, moment = self.algebra, self.forces[number], self.moments[number]
-        u_force = algebra.add(algebra.apply(inertia.force, velocity), algebra.apply(inertia.mixed, spin))
-        u_moment = algebra.add(algebra.apply(_transpose(inertia.mixed), velocity), algebra.apply(inertia.moment, spin))
-        pivot = algebra.reduce(algebra.dot(velocity, u_force) + algebra.dot(spin, u_moment))
-        share = self.generalized[name] - algebra.dot(velocity, force) - algebra.dot(spin, moment)
+        u_force = inertia.force @ velocity + inertia.mixed @ spin
+        u_moment = inertia.mixed.T @ velocity + inertia.moment @ spin
+        pivot = algebra.reduce(velocity.dot(u_force) + spin.dot(u_moment))
+        share = self.generalized[name] - velocity.dot(force) - spin.dot(moment)
         return self._taken_out(
             number, inertia, _Joint(name, spin, velocity, u_force, u_moment, share, pivot, algebra.one)
         )
@@ -139,8 +142,8 @@ class _Articulated:
         inverse = algebra.reciprocal(pivot)
         ratio_force = _scaled(joint.force, inverse)
         ratio_moment = _scaled(joint.moment, inverse)
-        self.forces[number] = algebra.add(self.forces[number], algebra.scale(joint.share, ratio_force))
-        self.moments[number] = algebra.add(self.moments[number], algebra.scale(joint.share, ratio_moment))
+        self.forces[number] = self.forces[number] + ratio_force * joint.share
+        self.moments[number] = self.moments[number] + ratio_moment * joint.share
         left = _Inertia(
             _less_symmetric(inertia.force, joint.force, ratio_force),
             _less(inertia.mixed, ratio_force, joint.moment),
@@ -152,16 +155,15 @@ class _Articulated:
 
     def _turn_eliminated(self, number: int, inertia: _Inertia, turn: Turn, name: str, slope: Scalar) -> _Inertia:
         """A turn about an axis of the frame; its row and column vanish from C, its column from B."""
-        algebra, a = self.algebra, turn.axis - 1
+        algebra, a, own = self.algebra, turn.axis - 1, turn.frame
         zero = algebra.zero
-        axis = axis_vector(algebra, turn.axis, algebra.one)
-        u_force = (inertia.mixed[0][a], inertia.mixed[1][a], inertia.mixed[2][a])
-        u_moment = inertia.moment[a]
+        axis = axis_vector(algebra, turn.axis, algebra.one, own)
+        u_force, u_moment = inertia.mixed.column(a), inertia.moment.row(a)
         torque = self.generalized[name]
         if not algebra.vanishes(torque):
             torque = algebra.times(torque, algebra.reciprocal(slope))
         share = torque - self.moments[number][a]
-        joint = _Joint(name, axis, algebra.zero_vector, u_force, u_moment, share, u_moment[a], slope)
+        joint = _Joint(name, axis, self.system.scene.zero(own), u_force, u_moment, share, u_moment[a], slope)
         left, done = self._taken_out(number, inertia, joint)
         self.turns[number].append(done)
         moment, mixed = [list(row) for row in left.moment], [list(row) for row in left.mixed]
@@ -170,20 +172,13 @@ class _Articulated:
         # The joint transmits no moment of its own beyond what acts on its coordinate.
         rest = list(self.moments[number])
         rest[a] = torque
-        self.moments[number] = (rest[0], rest[1], rest[2])
-        return _Inertia(left.force, _matrix(mixed), symmetric(moment))
+        self.moments[number] = Vector(algebra, (rest[0], rest[1], rest[2]), own)
+        return _Inertia(left.force, tensor_of(algebra, mixed, own), symmetric_tensor(algebra, moment, own))
 
     # --- inwards ---
 
-    def _rigid(self, x: MassProperties) -> _Inertia:
-        """A = m 1, B = -[h], C = J."""
-        zero, m = self.algebra.zero, x.mass
-        a, b, c = x.first_moment
-        mixed = ((zero, c, -b), (-c, zero, a), (b, -a, zero))
-        return _Inertia(((m, zero, zero), (zero, m, zero), (zero, zero, m)), mixed, x.tensor)
-
     def _inwards(self, number: int) -> None:
-        algebra, frame, inertia = self.algebra, self.system.frames[number], self.inertias[number]
+        frame, inertia = self.system.frames[number], self.inertias[number]
         if number in self.whole:
             for name, spin, velocity in self.whole[number]:
                 inertia, joint = self._eliminate(number, inertia, name, spin, velocity)
@@ -191,31 +186,31 @@ class _Articulated:
         if not frame.together and frame.turn is not None:
             for name, slope in frame.angle_derivatives.items():
                 inertia = self._turn_eliminated(number, inertia, frame.turn, name, slope)
-        self.forces[number] = frame.back(algebra, self.forces[number])
-        self.moments[number] = frame.back(algebra, self.moments[number])
-        inertia = _turned(algebra, inertia, frame.turn)
+        self.forces[number] = frame.back(self.forces[number])
+        self.moments[number] = frame.back(self.moments[number])
+        inertia = _turned(self.algebra, inertia, frame)
         if not frame.together:
             for name, v in frame.offset_derivatives.items():
-                inertia, joint = self._eliminate(number, inertia, name, algebra.zero_vector, v)
+                inertia, joint = self._eliminate(number, inertia, name, self.system.scene.zero(v.frame), v)
                 self.displacements[number].append(joint)
         if frame.parent >= 0:
             parent, force = frame.parent, self.forces[number]
-            moment = algebra.add(self.moments[number], algebra.cross(frame.offset, force))
-            self.forces[parent] = algebra.add(self.forces[parent], force)
-            self.moments[parent] = algebra.add(self.moments[parent], moment)
-            self.inertias[parent] = _sum(algebra, self.inertias[parent], _shifted(algebra, inertia, frame.offset))
+            moment = self.moments[number] + frame.offset.cross(force)
+            self.forces[parent] = self.forces[parent] + force
+            self.moments[parent] = self.moments[parent] + moment
+            self.inertias[parent] = _sum(self.inertias[parent], _shifted(self.algebra, inertia, frame.offset))
 
     # --- outwards ---
 
     def _outwards(self) -> dict[str, Scalar]:
-        algebra, zero = self.algebra, self.algebra.zero_vector
+        zero = self.system.scene.zero(INERTIAL)
         found: dict[str, Scalar] = {}
         motions: list[tuple[Vector, Vector]] = []
         for number, frame in enumerate(self.system.frames):
             angular, linear = motions[frame.parent] if frame.parent >= 0 else (zero, zero)
-            linear = algebra.add(linear, algebra.cross(angular, frame.offset))
+            linear = linear + angular.cross(frame.offset)
             motion = self._accelerated(self.displacements[number], angular, linear, found)
-            angular, linear = frame.out(algebra, motion[0]), frame.out(algebra, motion[1])
+            angular, linear = frame.out(motion[0]), frame.out(motion[1])
             motions.append(self._accelerated(self.turns[number], angular, linear, found))
         return found
 
@@ -224,57 +219,57 @@ class _Articulated:
     ) -> tuple[Vector, Vector]:
         algebra = self.algebra
         for joint in reversed(joints):
-            pull = algebra.dot(joint.force, linear) + algebra.dot(joint.moment, angular)
+            pull = joint.force.dot(linear) + joint.moment.dot(angular)
             rate = algebra.reduce((joint.share - pull) * joint.inverse)
             found[joint.name] = rate
             if joint.slope != algebra.one:
                 found[joint.name] = algebra.times(rate, algebra.reciprocal(joint.slope))
-            angular = algebra.add(angular, algebra.scale(rate, joint.spin))
-            linear = algebra.add(linear, algebra.scale(rate, joint.velocity))
+            angular = angular + joint.spin * rate
+            linear = linear + joint.velocity * rate
         return angular, linear
 
 
 # --- blocks of six by six matrices ---
 
 
-def _matrix(rows: list[list[Scalar]]) -> Matrix:
-    a, b, c = rows
-    return ((a[0], a[1], a[2]), (b[0], b[1], b[2]), (c[0], c[1], c[2]))
-
-
-def _transpose(m: Matrix) -> Matrix:
-    return ((m[0][0], m[1][0], m[2][0]), (m[0][1], m[1][1], m[2][1]), (m[0][2], m[1][2], m[2][2]))
+def _rigid(algebra: Algebra, x: MassProperties) -> _Inertia:
+    """A = m 1, B = -[h], C = J."""
+    zero, m, frame = algebra.zero, x.mass, x.first_moment.frame
+    a, b, c = x.first_moment
+    mixed = Tensor(algebra, ((zero, c, -b), (-c, zero, a), (b, -a, zero)), frame)
+    return _Inertia(Tensor(algebra, ((m, zero, zero), (zero, m, zero), (zero, zero, m)), frame), mixed, x.tensor)
 
 
 def _scaled(v: Vector, factor: Scalar) -> Vector:
-    """factor v by products: ``Algebra.scale`` would turn each product with a reciprocal into a division."""
-    return (v[0] * factor, v[1] * factor, v[2] * factor)
+    """factor v by products: ``v * factor`` would turn each product with a reciprocal into a division."""
+    a, b, c = v
+    return Vector(v.algebra, (a * factor, b * factor, c * factor), v.frame)
 
 
-def _less_symmetric(m: Matrix, u: Vector, v: Vector) -> Matrix:
+def _less_symmetric(m: Tensor, u: Vector, v: Vector) -> Tensor:
     """M - u v^T, where u and v are parallel."""
     rows = [list(row) for row in m]
     for i in range(3):
         for j in range(i, 3):
             rows[i][j] = rows[i][j] - u[i] * v[j]
-    return symmetric(rows)
+    return symmetric_tensor(m.algebra, rows, m.frame)
 
 
-def _less(m: Matrix, u: Vector, v: Vector) -> Matrix:
+def _less(m: Tensor, u: Vector, v: Vector) -> Tensor:
     """M - u v^T."""
-    return _matrix([[m[i][j] - u[i] * v[j] for j in range(3)] for i in range(3)])
+    return tensor_of(m.algebra, [[m[i][j] - u[i] * v[j] for j in range(3)] for i in range(3)], m.frame)
 
 
-def _sum(algebra: Algebra, x: _Inertia, y: _Inertia) -> _Inertia:
-    def plus(a: Matrix, b: Matrix) -> Matrix:
-        return (algebra.add(a[0], b[0]), algebra.add(a[1], b[1]), algebra.add(a[2], b[2]))
-
-    return _Inertia(plus(x.force, y.force), plus(x.mixed, y.mixed), plus(x.moment, y.moment))
+def _sum(x: _Inertia, y: _Inertia) -> _Inertia:
+    return _Inertia(x.force + y.force, x.mixed + y.mixed, x.moment + y.moment)
 
 
-def _turned(algebra: Algebra, x: _Inertia, turn: Turn | None) -> _Inertia:
+def _turned(algebra: Algebra, x: _Inertia, frame: Frame) -> _Inertia:
+    """The inertia of what lies beyond a frame, in the axes before its turn."""
+    turn = frame.turn
     if turn is None:
-        return x
+        before = frame.offset.frame
+        return _Inertia(x.force.in_parallel(before), x.mixed.in_parallel(before), x.moment.in_parallel(before))
     return _Inertia(
         turned_symmetric(algebra, turn, x.force),
         _turned_general(algebra, turn, x.mixed),
@@ -282,7 +277,7 @@ def _turned(algebra: Algebra, x: _Inertia, turn: Turn | None) -> _Inertia:
     )
 
 
-def _turned_general(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
+def _turned_general(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
     """C^T B C for a general B in at most 23 operations.
 
     In the plane of the turn, with entries p, q; r, s and  u = sin (p - s) + cos (q + r):
@@ -299,11 +294,11 @@ def _turned_general(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
     column, row = [algebra.zero] * 3, [algebra.zero] * 3
     for k in (i, j):
         column[k], row[k] = matrix[k][a], matrix[a][k]
-    swung = turn_back(algebra, turn, (column[0], column[1], column[2]))
-    swept = turn_back(algebra, turn, (row[0], row[1], row[2]))
+    swung = turn.back(Vector(algebra, (column[0], column[1], column[2]), turn.frame))
+    swept = turn.back(Vector(algebra, (row[0], row[1], row[2]), turn.frame))
     for k in (i, j):
         rows[k][a], rows[a][k] = swung[k], swept[k]
-    return _matrix(rows)
+    return tensor_of(algebra, rows, turn.source)
 
 
 def _shifted(algebra: Algebra, x: _Inertia, r: Vector) -> _Inertia:
@@ -311,11 +306,11 @@ def _shifted(algebra: Algebra, x: _Inertia, r: Vector) -> _Inertia:
 
     B' = B - A [r],      C' = C + [r] B' + ([r] B)^T.
     """
-    if all(algebra.vanishes(component) for component in r):
+    if r.vanishes():
         return x
     old = x.mixed
     # Row i of A [r] is (row i of A) x r.
-    new = tuple(algebra.subtract(old[i], algebra.cross(x.force[i], r)) for i in range(3))
+    new = tensor_of(algebra, [tuple(old.row(i) - x.force.row(i).cross(r)) for i in range(3)], r.frame)
     rows = [list(row) for row in x.moment]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -324,4 +319,4 @@ def _shifted(algebra: Algebra, x: _Inertia, r: Vector) -> _Inertia:
         rows[i][i] = rows[i][i] + algebra.dot((r[j], r[k]), twice)
         mixed = algebra.dot((r[k], r[j], r[i]), (old[i][i] - new[j][j], new[k][j], -old[k][i]))
         rows[i][j] = rows[j][i] = rows[i][j] + mixed
-    return _Inertia(x.force, (new[0], new[1], new[2]), symmetric(rows))
+    return _Inertia(x.force, new, symmetric_tensor(algebra, rows, r.frame))

@@ -21,14 +21,13 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of, zero_tensor, zero_vector
 from mbsym.expressions.tree import Expression, differentiate, names
-from mbsym.mechanics.frames import Turn, turn_back, turn_forward
+from mbsym.mechanics.frames import Turn
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.system import INERTIAL, Body
 from mbsym.model.welded import still_names, welded
-
-Matrix = tuple[Vector, Vector, Vector]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +36,7 @@ class MassProperties:
 
     mass: Scalar
     first_moment: Vector
-    tensor: Matrix
+    tensor: Tensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +61,18 @@ class Frame:
     fixed_offset: bool
     together: bool
 
-    def out(self, algebra: Algebra, v: Vector) -> Vector:
-        """A vector from the parent's axes to the frame's."""
-        return v if self.turn is None else turn_forward(algebra, self.turn, v)
+    @property
+    def name(self) -> str:
+        """What vectors in its axes are marked with; the name of the body for the last of its frames."""
+        return self.body if self.turn is None else self.turn.frame
 
-    def back(self, algebra: Algebra, v: Vector) -> Vector:
+    def out(self, v: Vector) -> Vector:
+        """A vector from the parent's axes to the frame's."""
+        return v.in_parallel(self.body) if self.turn is None else self.turn.out(v)
+
+    def back(self, v: Vector) -> Vector:
         """A vector from the frame's axes to the parent's."""
-        return v if self.turn is None else turn_back(algebra, self.turn, v)
+        return v.in_parallel(self.offset.frame) if self.turn is None else self.turn.back(v)
 
 
 @dataclass(frozen=True)
@@ -116,9 +120,8 @@ class _Builder:
         self.coordinates = set(scene.system.coordinates)
 
     def add(self, body: Body) -> None:
-        scene, lower, motion = self.scene, self.scene.lower, self.scene.motions[body.name]
-        zero = scene.algebra.zero_vector
-        parent = -1 if body.attached_to == INERTIAL else self.frame_of[body.attached_to]
+        scene, motion, before = self.scene, self.scene.motions[body.name], body.attached_to
+        parent = -1 if before == INERTIAL else self.frame_of[before]
         point = body.connection_point
         first = [scene.rate(x) for x in point]
         present = set[str]().union(*(names(x) for x in point))
@@ -131,10 +134,12 @@ class _Builder:
             parent=parent,
             turn=None,
             offset=motion.offset,
-            offset_rate=lower.vector(first),
-            offset_acceleration=lower.vector([scene.rate(x) for x in first]),
+            offset_rate=scene.vector(first, before),
+            offset_acceleration=scene.vector([scene.rate(x) for x in first], before),
             angle_derivatives={},
-            offset_derivatives={name: lower.vector([differentiate(x, name) for x in point]) for name in steered},
+            offset_derivatives={
+                name: scene.vector([differentiate(x, name) for x in point], before) for name in steered
+            },
             fixed_turn=True,
             fixed_offset=present <= self.still,
             together=together,
@@ -152,7 +157,7 @@ class _Builder:
                     frame.fixed_offset,
                 )
             else:
-                parent = len(self.frames) - 1
+                parent, zero = len(self.frames) - 1, scene.zero(turn.source)
                 moved = (zero, zero, zero, {}, True)
             offset, offset_rate, offset_acceleration, derivatives, still = moved
             self.frames.append(
@@ -183,26 +188,24 @@ class _Builder:
 def mass_properties(scene: Scene, name: str) -> MassProperties:
     """A body's mass properties about its connection point."""
     algebra, motion = scene.algebra, scene.motions[name]
-    zero = algebra.zero_vector
-    tensor = (zero, zero, zero) if motion.inertia is None else motion.inertia
-    moment = algebra.scale(motion.mass, motion.mass_centre)
+    tensor = zero_tensor(algebra, name) if motion.inertia is None else motion.inertia
+    moment = motion.mass_centre * motion.mass
     own = MassProperties(motion.mass, moment, tensor)
     if motion.body.inertia is not None and motion.body.inertia.about == "joint":
         return own
     # About the mass centre, the first moment vanishes: moving by c adds m (c.c 1 - c c^T).
-    central = MassProperties(motion.mass, zero, tensor)
+    central = MassProperties(motion.mass, scene.zero(name), tensor)
     return MassProperties(motion.mass, moment, shifted(algebra, central, motion.mass_centre).tensor)
 
 
-def total(algebra: Algebra, a: MassProperties, b: MassProperties) -> MassProperties:
+def total(a: MassProperties, b: MassProperties) -> MassProperties:
     """Two bodies on one frame."""
-    rows = [algebra.add(x, y) for x, y in zip(a.tensor, b.tensor, strict=True)]
-    return MassProperties(a.mass + b.mass, algebra.add(a.first_moment, b.first_moment), (rows[0], rows[1], rows[2]))
+    tensor = a.tensor + b.tensor
+    return MassProperties(a.mass + b.mass, a.first_moment + b.first_moment, tensor)
 
 
-def nothing(algebra: Algebra) -> MassProperties:
-    zero = algebra.zero_vector
-    return MassProperties(algebra.zero, zero, (zero, zero, zero))
+def nothing(algebra: Algebra, frame: str) -> MassProperties:
+    return MassProperties(algebra.zero, zero_vector(algebra, frame), zero_tensor(algebra, frame))
 
 
 def shifted(algebra: Algebra, x: MassProperties, r: Vector) -> MassProperties:
@@ -210,12 +213,12 @@ def shifted(algebra: Algebra, x: MassProperties, r: Vector) -> MassProperties:
 
     With g = 2 h + m r:  J + r.g 1 - (r g^T + g r^T)/2,  that is J11 + r2 g2 + r3 g3, J12 - r1 h2 - r2 (h1 + m r1), ...
     """
-    if all(algebra.vanishes(component) for component in r):
+    if r.vanishes():
         return x
     m, h = x.mass, x.first_moment
-    own = algebra.scale(m, r)
-    moved = algebra.add(h, own)
-    twice = algebra.add(h, moved)
+    own = r * m
+    moved = h + own
+    twice = h + moved
     along = [algebra.times(a, b) for a, b in zip(r, twice, strict=True)]
     rows = [list(row) for row in x.tensor]
     for i in range(3):
@@ -224,23 +227,18 @@ def shifted(algebra: Algebra, x: MassProperties, r: Vector) -> MassProperties:
         mixed = algebra.dot((r[i], r[j]), (h[j], moved[i]))
         low, high = min(i, j), max(i, j)
         rows[low][high] = rows[high][low] = rows[low][high] - mixed
-    return MassProperties(m, moved, symmetric(rows))
+    return MassProperties(m, moved, symmetric_tensor(algebra, rows, h.frame))
 
 
-def symmetric(rows: list[list[Scalar]]) -> Matrix:
-    """A matrix from its upper triangle."""
-    (a, b, c), (_, d, e), (_, _, f) = rows
-    return ((a, b, c), (b, d, e), (c, e, f))
+def turned_back(algebra: Algebra, x: MassProperties, frame: Frame) -> MassProperties:
+    """The same body in the axes before the turn of a frame."""
+    moment = frame.back(x.first_moment)
+    if frame.turn is None:
+        return MassProperties(x.mass, moment, x.tensor.in_parallel(moment.frame))
+    return MassProperties(x.mass, moment, turned_symmetric(algebra, frame.turn, x.tensor))
 
 
-def turned_back(algebra: Algebra, x: MassProperties, turn: Turn | None) -> MassProperties:
-    """The same body in the axes before a turn."""
-    if turn is None:
-        return x
-    return MassProperties(x.mass, turn_back(algebra, turn, x.first_moment), turned_symmetric(algebra, turn, x.tensor))
-
-
-def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
+def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
     """C^T S C for a symmetric S, with C = C_a(x), in at most 16 operations.
 
     In the plane of the turn, with the entries p, q, s (q off the diagonal) and  u = sin (p - s) + 2 cos q:
@@ -257,21 +255,17 @@ def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Matrix) -> Matrix:
     rows[i][j] = rows[j][i] = times(cosine, u) - q
     column = [algebra.zero] * 3
     column[i], column[j] = matrix[i][a], matrix[j][a]
-    swung = turn_back(algebra, turn, (column[0], column[1], column[2]))
+    swung = turn.back(Vector(algebra, (column[0], column[1], column[2]), turn.frame))
     for k in (i, j):
         rows[k][a] = rows[a][k] = swung[k]
-    return (
-        (rows[0][0], rows[0][1], rows[0][2]),
-        (rows[1][0], rows[1][1], rows[1][2]),
-        (rows[2][0], rows[2][1], rows[2][2]),
-    )
+    return tensor_of(algebra, rows, turn.source)
 
 
 def _regrouped(
     algebra: Algebra, frames: list[Frame], properties: Mapping[int, MassProperties], kept: frozenset[int]
 ) -> tuple[MassProperties, ...]:
     """Mass properties frame by frame after moving to the parents what the joints do not feel; ``kept`` move nothing."""
-    masses = [properties.get(number, nothing(algebra)) for number in range(len(frames))]
+    masses = [properties.get(number) or nothing(algebra, frame.name) for number, frame in enumerate(frames)]
     for number in reversed(range(len(frames))):
         if number in kept:
             continue
@@ -279,28 +273,28 @@ def _regrouped(
         stays, leaves = _split(algebra, frame, own)
         masses[number] = stays
         if frame.parent >= 0:
-            leaves = turned_back(algebra, leaves, frame.turn)
+            leaves = turned_back(algebra, leaves, frame)
             if frame.fixed_offset:  # else it is a pure tensor, or nothing at all
                 leaves = shifted(algebra, leaves, frame.offset)
-            masses[frame.parent] = total(algebra, masses[frame.parent], leaves)
+            masses[frame.parent] = total(masses[frame.parent], leaves)
     return tuple(masses)
 
 
 def _split(algebra: Algebra, frame: Frame, own: MassProperties) -> tuple[MassProperties, MassProperties]:
     """What stays on a frame, and what may move to its parent; their sum is ``own``."""
-    zero, none = algebra.zero_vector, nothing(algebra)
+    none = nothing(algebra, frame.name)
     if frame.together:  # the joint is solved as a whole, with all that it moves on the last of its frames
         return own, none
     if frame.fixed_turn and frame.fixed_offset:
         return none, own
     if frame.fixed_turn:
         stays = MassProperties(own.mass, own.first_moment, none.tensor)
-        return stays, MassProperties(algebra.zero, zero, own.tensor)
+        return stays, MassProperties(algebra.zero, none.first_moment, own.tensor)
     if not frame.fixed_offset:
         return own, none
     assert frame.turn is not None
-    across, along = list(own.first_moment), list(zero)
-    across[frame.turn.axis - 1] = algebra.zero
-    along[frame.turn.axis - 1] = own.first_moment[frame.turn.axis - 1]
-    stays = MassProperties(algebra.zero, (across[0], across[1], across[2]), own.tensor)
-    return stays, MassProperties(own.mass, (along[0], along[1], along[2]), none.tensor)
+    axis, across = frame.turn.axis, list(own.first_moment)
+    along = axis_vector(algebra, axis, across[axis - 1], frame.name)
+    across[axis - 1] = algebra.zero
+    stays = MassProperties(algebra.zero, Vector(algebra, (across[0], across[1], across[2]), frame.name), own.tensor)
+    return stays, MassProperties(own.mass, along, none.tensor)

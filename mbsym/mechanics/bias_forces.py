@@ -16,12 +16,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
-from mbsym.mechanics.articulation import Articulation, Frame, Matrix
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, zero_tensor
+from mbsym.mechanics.articulation import Articulation, Frame
 from mbsym.mechanics.falling import falling_scene, overrides
-from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.loads.kinds import KINDS
-from mbsym.model.system import NewtonianGravity, UniformGravity
+from mbsym.model.system import INERTIAL, NewtonianGravity, UniformGravity
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,16 +41,16 @@ class _Motion:
     spin: Vector
     angular: Vector
     origin: Vector
-    w_tensor: Matrix
-    products: Matrix
+    w_tensor: Tensor
+    products: Tensor
 
 
 def bias_forces(system: Articulation) -> BiasForces:
     """The wrenches of inertia and loads at q'' = 0."""
     algebra = system.algebra
-    zero = algebra.zero_vector
+    zero, still = system.scene.zero(INERTIAL), zero_tensor(algebra, INERTIAL)
     motions: list[_Motion] = []
-    base = _Motion(zero, zero, _gravity(system), (zero, zero, zero), (zero, zero, zero))
+    base = _Motion(zero, zero, _gravity(system), still, still)
     felt = {system.frame_of[name]: w for name, w in overrides(system.scene, base.origin).items()}
     forces: list[Vector] = []
     moments: list[Vector] = []
@@ -65,7 +65,7 @@ def bias_forces(system: Articulation) -> BiasForces:
     for name, body in system.scene.motions.items():
         if body.gyrostatic_moment is not None:
             k, moment = _carrying(system, name, body.gyrostatic_moment)
-            moments[k] = algebra.add(moments[k], algebra.cross(motions[k].spin, moment))
+            moments[k] = moments[k] + motions[k].spin.cross(moment)
     generalized = dict.fromkeys(system.coordinates, algebra.zero)
     falling = falling_scene(system.scene) if felt else system.scene
     for load in system.scene.system.loads:
@@ -77,8 +77,8 @@ def bias_forces(system: Articulation) -> BiasForces:
             generalized[name] = generalized[name] + value
         for wrench in action.wrenches:
             k = system.frame_of[wrench.body]
-            forces[k] = algebra.subtract(forces[k], wrench.force)
-            moments[k] = algebra.subtract(moments[k], wrench.moment)
+            forces[k] = forces[k] - wrench.force
+            moments[k] = moments[k] - wrench.moment
     return BiasForces(tuple(forces), tuple(moments), generalized)
 
 
@@ -87,7 +87,7 @@ def _carrying(system: Articulation, body: str, moment: Vector) -> tuple[int, Vec
     frame below it."""
     k = system.frame_of[body]
     while system.frames[k].fixed_turn and system.frames[k].parent >= 0:
-        moment = system.frames[k].back(system.algebra, moment)
+        moment = system.frames[k].back(moment)
         k = system.frames[k].parent
     return k, moment
 
@@ -103,74 +103,69 @@ def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:
         for name, slope in frame.angle_derivatives.items():
             assert frame.turn is not None
             totals[name] = totals[name] - algebra.times(moment[frame.turn.axis - 1], slope)
-        force, moment = frame.back(algebra, force), frame.back(algebra, moment)
+        force, moment = frame.back(force), frame.back(moment)
         for name, v in frame.offset_derivatives.items():
-            totals[name] = totals[name] - algebra.dot(force, v)
+            totals[name] = totals[name] - force.dot(v)
         if frame.parent >= 0:
-            moment = algebra.add(moment, algebra.cross(frame.offset, force))
-            forces[frame.parent] = algebra.add(forces[frame.parent], force)
-            moments[frame.parent] = algebra.add(moments[frame.parent], moment)
+            moment = moment + frame.offset.cross(force)
+            forces[frame.parent] = forces[frame.parent] + force
+            moments[frame.parent] = moments[frame.parent] + moment
     return tuple(algebra.reduce(totals[name]) for name in system.coordinates)
 
 
 def _gravity(system: Articulation) -> Vector:
     """The acceleration of a base that stands for all uniform gravity."""
-    algebra = system.algebra
-    base = algebra.zero_vector
+    base = system.scene.zero(INERTIAL)
     for load in system.scene.system.loads:
         if isinstance(load, UniformGravity):
-            base = algebra.subtract(base, system.scene.lower.vector(load.acceleration))
+            base = base - system.scene.vector(load.acceleration, INERTIAL)
     return base
 
 
 def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:
-    origin = algebra.add(parent.origin, algebra.apply(parent.w_tensor, frame.offset))
-    twice = algebra.scale(algebra.number(2), algebra.cross(parent.spin, frame.offset_rate))
-    origin = algebra.add(algebra.add(origin, twice), frame.offset_acceleration)
-    if frame.turn is None:
-        return _Motion(parent.spin, parent.angular, origin, parent.w_tensor, parent.products)
-    rate = axis_vector(algebra, frame.turn.axis, frame.turn.rate)
-    spin = frame.out(algebra, parent.spin)
-    angular = algebra.add(frame.out(algebra, parent.angular), algebra.cross(spin, rate))
-    angular = algebra.add(angular, axis_vector(algebra, frame.turn.axis, frame.turn.second_rate))
-    spin = algebra.add(spin, rate)
+    origin = parent.origin + parent.w_tensor @ frame.offset
+    two = algebra.number(2)
+    origin = origin + parent.spin.cross(frame.offset_rate) * two + frame.offset_acceleration
+    turn, spin, angular = frame.turn, frame.out(parent.spin), frame.out(parent.angular)
+    if turn is None:
+        w_tensor, products = parent.w_tensor.in_parallel(frame.name), parent.products.in_parallel(frame.name)
+        return _Motion(spin, angular, frame.out(origin), w_tensor, products)
+    rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)
+    angular = angular + spin.cross(rate)
+    angular = angular + axis_vector(algebra, turn.axis, turn.second_rate, turn.frame)
+    spin = spin + rate
     products = _products(algebra, spin)
-    return _Motion(spin, angular, frame.out(algebra, origin), _w_tensor(algebra, angular, products), products)
+    return _Motion(spin, angular, frame.out(origin), _w_tensor(algebra, angular, products), products)
 
 
-def _products(algebra: Algebra, w: Vector) -> Matrix:
+def _products(algebra: Algebra, w: Vector) -> Tensor:
     """omega omega^T."""
     rows = [[algebra.zero] * 3 for _ in range(3)]
     for i in range(3):
         for j in range(i, 3):
-            rows[i][j] = rows[j][i] = algebra.reduce(algebra.times(w[i], w[j]))
-    return (
-        (rows[0][0], rows[0][1], rows[0][2]),
-        (rows[1][0], rows[1][1], rows[1][2]),
-        (rows[2][0], rows[2][1], rows[2][2]),
-    )
+            rows[i][j] = algebra.reduce(algebra.times(w[i], w[j]))
+    return symmetric_tensor(algebra, rows, w.frame)
 
 
-def _w_tensor(algebra: Algebra, angular: Vector, p: Matrix) -> Matrix:
+def _w_tensor(algebra: Algebra, angular: Vector, p: Tensor) -> Tensor:
     """[alpha] + [omega][omega]."""
     a, b, c = angular
-    return (
+    rows = (
         (-(p[1][1] + p[2][2]), p[0][1] - c, p[0][2] + b),
         (p[0][1] + c, -(p[0][0] + p[2][2]), p[1][2] - a),
         (p[0][2] - b, p[1][2] + a, -(p[0][0] + p[1][1])),
     )
+    return Tensor(algebra, rows, angular.frame)
 
 
 def _needed(system: Articulation, number: int, motion: _Motion) -> tuple[Vector, Vector]:
     """(F, N) of a frame's own mass."""
-    algebra = system.algebra
-    own = system.masses[number]
-    force = algebra.add(algebra.scale(own.mass, motion.origin), algebra.apply(motion.w_tensor, own.first_moment))
-    moment = algebra.cross(own.first_moment, motion.origin)
-    return force, algebra.add(moment, _rotational(algebra, own.tensor, motion))
+    own, a = system.masses[number], motion.origin
+    force = a * own.mass + motion.w_tensor @ own.first_moment
+    return force, own.first_moment.cross(a) + _rotational(system.algebra, own.tensor, motion)
 
 
-def _rotational(algebra: Algebra, tensor: Matrix, motion: _Motion) -> Vector:
+def _rotational(algebra: Algebra, tensor: Tensor, motion: _Motion) -> Vector:
     """J alpha + omega x J omega; first component  J11 alpha1 + (J33 - J22) omega2 omega3
     + J12 (alpha2 - omega1 omega3) + J13 (alpha3 + omega1 omega2) + J23 (omega2^2 - omega3^2),  others cyclically."""
     p, w = motion.products, motion.w_tensor
@@ -180,4 +175,4 @@ def _rotational(algebra: Algebra, tensor: Matrix, motion: _Motion) -> Vector:
         weights = (tensor[i][i], tensor[k][k] - tensor[j][j], tensor[i][j], tensor[i][k], tensor[j][k])
         factors = (motion.angular[i], p[j][k], -w[k][i], w[j][i], p[j][j] - p[k][k])
         found.append(algebra.dot(weights, factors))
-    return (found[0], found[1], found[2])
+    return Vector(algebra, (found[0], found[1], found[2]), tensor.frame)

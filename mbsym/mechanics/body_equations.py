@@ -26,14 +26,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.algebra.vectors import Tensor, Vector, symmetric_tensor
 from mbsym.expressions.tree import differentiate, names
 from mbsym.mechanics.articulation import MassProperties, mass_properties, shifted, total
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.falling import falling_frames, overrides
-from mbsym.mechanics.intermediates import Matrix, Meaning, NamedScene, Notes, Quantity, transposed
+from mbsym.mechanics.intermediates import Meaning, NamedScene, Notes, Quantity
 from mbsym.mechanics.loads.kinds import KINDS, force_function
 from mbsym.mechanics.loads.orbit import Orbit, radius_vectors
 from mbsym.mechanics.loads.springs import between
@@ -109,7 +110,7 @@ def _note_loads(scene: NamedScene) -> None:
             for motion, e, c in Orbit(load, scene).bodies():
                 notes.vector(e, Quantity.OUTWARD, motion.body.name, load=number)
                 notes.vector(c, Quantity.PLACE, motion.body.name, load=number)
-                along = scene.algebra.dot(e, c)
+                along = e.dot(c)
                 notes.scalar(along, Meaning(Quantity.ALONG, motion.body.name, load=number))
         elif isinstance(load, PointSpring | PointDamper | IsotropicDamper):
             notes.vector(between(load.first, load.second, scene), Quantity.SPAN, "", load=number)
@@ -125,44 +126,30 @@ class _Joint:
 
 
 def _joints(scene: NamedScene, name: str) -> list[_Joint]:
-    algebra, lower, motion = scene.algebra, scene.lower, scene.motions[name]
+    lower, motion, point = scene.lower, scene.motions[name], scene.motions[name].body.connection_point
     found = []
     for coordinate in scene.system.coordinates:
-        turn = algebra.zero_vector
+        turn = shift = scene.zero(name)
         for each, axis in zip(motion.turns, scene.axes[name], strict=True):
             if coordinate in names(each.angle):
                 slope = lower(differentiate(each.angle, coordinate))
-                turn = algebra.add(turn, algebra.scale(slope, axis))
-        shift = algebra.zero_vector
-        if any(coordinate in names(x) for x in motion.body.connection_point):
-            along = lower.vector([differentiate(x, coordinate) for x in motion.body.connection_point])
-            shift = scene.out(name, along)
-        if not (_vanishes(algebra, turn) and _vanishes(algebra, shift)):
+                turn = turn + axis * slope
+        if any(coordinate in names(x) for x in point):
+            shift = scene.out(name, scene.vector([differentiate(x, coordinate) for x in point], motion.offset.frame))
+        if not (turn.vanishes() and shift.vanishes()):
             found.append(_Joint(coordinate, turn, shift))
     return found
 
 
-def _vanishes(algebra: Algebra, v: Vector) -> bool:
-    return all(algebra.vanishes(x) for x in v)
-
-
-def _turned_back(algebra: Algebra, rotation: Matrix, tensor: Matrix) -> Matrix:
+def _turned_back(algebra: Algebra, rotation: Tensor, tensor: Tensor) -> Tensor:
     """R^T J R of a symmetric tensor."""
-    columns = transposed(rotation)
-    half = [algebra.apply(tensor, column) for column in columns]
+    columns = [rotation.column(k) for k in range(3)]
+    half = [tensor @ column for column in columns]
     rows = [[algebra.zero] * 3 for _ in range(3)]
     for i in range(3):
         for j in range(i, 3):
-            rows[i][j] = rows[j][i] = algebra.dot(columns[i], half[j])
-    return _matrix(rows)
-
-
-def _matrix(rows: list[list[Scalar]]) -> Matrix:
-    return (
-        (rows[0][0], rows[0][1], rows[0][2]),
-        (rows[1][0], rows[1][1], rows[1][2]),
-        (rows[2][0], rows[2][1], rows[2][2]),
-    )
+            rows[i][j] = columns[i].dot(half[j])
+    return symmetric_tensor(algebra, rows, rotation.source)
 
 
 class _Composite:
@@ -190,7 +177,7 @@ class _Composite:
                 rotation = scene.rotations[name]
                 moment = scene.back(name, own.first_moment)
                 turned = MassProperties(own.mass, moment, _turned_back(algebra, rotation, own.tensor))
-                composite[parent] = total(algebra, composite[parent], shifted(algebra, turned, motion.offset))
+                composite[parent] = total(composite[parent], shifted(algebra, turned, motion.offset))
 
     def rows(self) -> tuple[tuple[Node, ...], ...]:
         coordinates = self.scene.system.coordinates
@@ -202,22 +189,21 @@ class _Composite:
 
     def _climb(self, name: str, place: int, joint: _Joint, own: MassProperties) -> None:
         """What a unit acceleration of one joint takes, on its way to the base."""
-        algebra, scene, notes = self.algebra, self.scene, self.scene.notes
-        h = own.first_moment
-        force = algebra.add(algebra.scale(own.mass, joint.shift), algebra.cross(joint.turn, h))
-        moment = algebra.add(algebra.apply(own.tensor, joint.turn), algebra.cross(h, joint.shift))
+        scene, notes, h = self.scene, self.scene.notes, own.first_moment
+        force = joint.shift * own.mass + joint.turn.cross(h)
+        moment = own.tensor @ joint.turn + h.cross(joint.shift)
         body, others = name, self.joints[name][place:]
         while True:
             notes.vector(force, Quantity.UNIT_FORCE, body, joint.coordinate)
             notes.vector(moment, Quantity.UNIT_MOMENT, body, joint.coordinate)
             for other in others:
-                share = algebra.dot(other.turn, moment) + algebra.dot(other.shift, force)
+                share = other.turn.dot(moment) + other.shift.dot(force)
                 self._add(joint, other, share)
             motion = scene.motions[body]
             if motion.body.attached_to not in self.moving:
                 return
             force, moment = scene.back(body, force), scene.back(body, moment)
-            moment = algebra.add(moment, algebra.cross(motion.offset, force))
+            moment = moment + motion.offset.cross(force)
             body = motion.body.attached_to
             others = self.joints[body]
 
@@ -243,32 +229,31 @@ def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Nod
         for name, value in action.generalized.items():
             totals[name] = totals[name] + value
         for wrench in action.wrenches:
-            force[wrench.body] = algebra.subtract(force[wrench.body], wrench.force)
-            moment[wrench.body] = algebra.subtract(moment[wrench.body], wrench.moment)
+            force[wrench.body] = force[wrench.body] - wrench.force
+            moment[wrench.body] = moment[wrench.body] - wrench.moment
     for name in reversed(scene.motions):
         motion = scene.motions[name]
         notes.vector(force[name], Quantity.FORCE, name)
         notes.vector(moment[name], Quantity.MOMENT, name)
         for joint in joints[name]:
-            share = algebra.dot(joint.turn, moment[name]) + algebra.dot(joint.shift, force[name])
+            share = joint.turn.dot(moment[name]) + joint.shift.dot(force[name])
             totals[joint.coordinate] = totals[joint.coordinate] - share
         parent = motion.body.attached_to
         if parent != INERTIAL:
             carried = scene.back(name, force[name])
-            twist = algebra.add(scene.back(name, moment[name]), algebra.cross(motion.offset, carried))
-            force[parent] = algebra.add(force[parent], carried)
-            moment[parent] = algebra.add(moment[parent], twist)
+            twist = scene.back(name, moment[name]) + motion.offset.cross(carried)
+            force[parent] = force[parent] + carried
+            moment[parent] = moment[parent] + twist
     return tuple(totals[name] for name in system.coordinates)
 
 
 def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """F and H of each body's own mass at q'' = 0, the loads other than gravity left out."""
     algebra, notes, system = scene.algebra, scene.notes, scene.system
-    zero = algebra.zero_vector
-    base = zero
+    zero = base = scene.zero(INERTIAL)
     for load in system.loads:
         if isinstance(load, UniformGravity):
-            base = algebra.subtract(base, scene.lower.vector(load.acceleration))
+            base = base - scene.vector(load.acceleration, INERTIAL)
     felt = overrides(scene, base)
     angular, origin = {INERTIAL: zero}, {INERTIAL: base}
     force: dict[str, Vector] = {}
@@ -276,16 +261,14 @@ def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
         spin = scene.motions[parent].angular_velocity if parent != INERTIAL else zero
-        angular[name] = notes.vector(
-            algebra.add(scene.out(name, angular[parent]), _joint_acceleration(scene, name)),
-            Quantity.ANGULAR_ACCELERATION,
-            name,
-        )
-        carried = algebra.add(origin[parent], _swung(algebra, angular[parent], spin, motion.offset))
+        angular[name] = scene.out(name, angular[parent]) + _joint_acceleration(scene, name)
+        notes.vector(angular[name], Quantity.ANGULAR_ACCELERATION, name)
+        carried = origin[parent] + _swung(angular[parent], spin, motion.offset)
         first = [scene.rate(x) for x in motion.body.connection_point]
-        relative = scene.lower.vector(first)
-        carried = algebra.add(carried, algebra.scale(algebra.number(2), algebra.cross(spin, relative)))
-        carried = algebra.add(carried, scene.lower.vector([scene.rate(x) for x in first]))
+        relative = scene.vector(first, parent)
+        two = algebra.number(2)
+        carried = carried + spin.cross(relative) * two
+        carried = carried + scene.vector([scene.rate(x) for x in first], parent)
         if name in felt:
             origin[name] = felt[name]
         else:
@@ -295,28 +278,29 @@ def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
         notes.vector(origin[name], Quantity.ACCELERATION, name)
         own = mass_properties(scene, name)
         w, epsilon, omega = origin[name], angular[name], motion.angular_velocity
-        force[name] = algebra.add(algebra.scale(own.mass, w), _swung(algebra, epsilon, omega, own.first_moment))
-        spun = algebra.apply(own.tensor, omega)
+        S, J = own.first_moment, own.tensor
+        force[name] = w * own.mass + _swung(epsilon, omega, S)
+        spun = J @ omega
         if motion.gyrostatic_moment is not None:
-            spun = algebra.add(spun, motion.gyrostatic_moment)
-        turned = algebra.add(algebra.apply(own.tensor, epsilon), algebra.cross(omega, spun))
-        moment[name] = algebra.add(algebra.cross(own.first_moment, w), turned)
+            spun = spun + motion.gyrostatic_moment
+        turned = J @ epsilon + omega.cross(spun)
+        moment[name] = S.cross(w) + turned
     return force, moment
 
 
-def _swung(algebra: Algebra, angular: Vector, spin: Vector, r: Vector) -> Vector:
+def _swung(angular: Vector, spin: Vector, r: Vector) -> Vector:
     """epsilon x r + omega x (omega x r)."""
-    return algebra.add(algebra.cross(angular, r), algebra.cross(spin, algebra.cross(spin, r)))
+    return angular.cross(r) + spin.cross(spin.cross(r))
 
 
 def _joint_acceleration(scene: NamedScene, name: str) -> Vector:
     """omega_k x sum v_t + sum over s < t of v_s x v_t + sum u_t x_t''."""
-    algebra, motion = scene.algebra, scene.motions[name]
-    rates = [algebra.scale(turn.rate, axis) for turn, axis in zip(motion.turns, scene.axes[name], strict=True)]
-    found = algebra.cross(motion.angular_velocity, motion.relative_angular_velocity)
+    motion = scene.motions[name]
+    rates = [axis * turn.rate for turn, axis in zip(motion.turns, scene.axes[name], strict=True)]
+    found = motion.angular_velocity.cross(motion.relative_angular_velocity)
     for place, v in enumerate(rates):
         for w in rates[place + 1 :]:
-            found = algebra.add(found, algebra.cross(v, w))
+            found = found + v.cross(w)
     for turn, axis in zip(motion.turns, scene.axes[name], strict=True):
-        found = algebra.add(found, algebra.scale(turn.second_rate, axis))
+        found = found + axis * turn.second_rate
     return found

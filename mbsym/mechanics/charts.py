@@ -23,9 +23,10 @@ from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.vectors import axis_vector, zero_vector
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Name, names
-from mbsym.mechanics.frames import axis_vector, back, direction_cosines, forward
+from mbsym.mechanics.frames import back, direction_cosines, forward
 from mbsym.mechanics.rest import Rest, rest
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import Body, Rotation, System, velocity_name
@@ -250,7 +251,8 @@ def _with_axes(system: System, changed: Mapping[str, tuple[int, ...]]) -> System
 
 def rows(found: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
     """The body's axes in components of the previous body: the rows of R."""
-    return direction_cosines(found.ring, found.scene.motions[joint.body].turns)
+    motion = found.scene.motions[joint.body]
+    return direction_cosines(found.ring, motion.turns, motion.body.attached_to, joint.body).rows
 
 
 def features(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
@@ -269,22 +271,25 @@ def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     left out; they say nothing that f does not say, only more shortly.  In axes that turn with a free angle the
     components would contain it: they are left out, too.
     """
-    ring, turns = found.ring, found.scene.motions[joint.body].turns
+    ring, motion = found.ring, found.scene.motions[joint.body]
+    turns, before = motion.turns, motion.body.attached_to
     if len(joint.angles) != 3 or len(turns) != 3:
         return ()
-    axes = [axis_vector(ring, turn.axis, ring.number(sign)) for turn, sign in zip(turns, joint.signs, strict=True)]
+    lengths = [ring.number(sign) for sign in joint.signs]
+    after = [axis_vector(ring, x.axis, length, x.frame) for x, length in zip(turns, lengths, strict=True)]
+    ahead = [v.in_parallel(turn.source) for v, turn in zip(after, turns, strict=True)]
     f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]
     parts: list[Polynomial] = []
     for free, w in (
-        (joint.last_free, [forward(ring, turns[k + 1 :], axis) for k, axis in enumerate(axes)]),
-        (joint.first_free, [back(ring, turns[:k], axis) for k, axis in enumerate(axes)]),
+        (joint.last_free, [forward(turns[k + 1 :], axis, joint.body) for k, axis in enumerate(after)]),
+        (joint.first_free, [back(turns[:k], axis, before) for k, axis in enumerate(ahead)]),
     ):
         if free:
             continue
-        total = ring.zero_vector
+        total = zero_vector(ring, w[0].frame)
         for k in range(3):
-            total = ring.add(total, ring.scale(f[k], ring.cross(w[(k + 1) % 3], w[(k + 2) % 3])))
-        volume = ring.dot(w[0], ring.cross(w[1], w[2]))
+            total = total + w[(k + 1) % 3].cross(w[(k + 2) % 3]) * f[k]
+        volume = w[0].dot(w[1].cross(w[2]))
         square = ring.reduce(volume * volume)
         quotients = [ring.quotient(ring.reduce(ring.times(x, volume)), square) for x in total]
         parts += [x for x in quotients if x is not None]

@@ -18,9 +18,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulation import Articulation, MassProperties, shifted, total, turned_back
-from mbsym.mechanics.frames import axis_vector
 
 
 def mass_matrix(system: Articulation) -> tuple[tuple[Scalar, ...], ...]:
@@ -59,18 +59,18 @@ class _Composite:
             return
         composite = masses[number]
         if frame.angle_derivatives and frame.turn is not None:
-            axis = axis_vector(algebra, frame.turn.axis, algebra.one)
-            moment = composite.tensor[frame.turn.axis - 1]
+            axis = axis_vector(algebra, frame.turn.axis, algebra.one, frame.name)
+            moment = composite.tensor.row(frame.turn.axis - 1)
             self._within(frame.angle_derivatives, moment[frame.turn.axis - 1])
-            force = algebra.cross(axis, composite.first_moment)
-            self._climb(number, frame.angle_derivatives, frame.back(algebra, force), frame.back(algebra, moment), None)
-        turned = turned_back(algebra, composite, frame.turn)
+            force = axis.cross(composite.first_moment)
+            self._climb(number, frame.angle_derivatives, frame.back(force), frame.back(moment), None)
+        turned = turned_back(algebra, composite, frame)
         for place, (name, v) in enumerate(frame.offset_derivatives.items()):
-            force, moment = algebra.scale(turned.mass, v), algebra.cross(turned.first_moment, v)
+            force, moment = v * turned.mass, turned.first_moment.cross(v)
             self._climb(number, {name: algebra.one}, force, moment, place)
         if frame.parent >= 0 and self.moving[frame.parent]:
             carried = shifted(algebra, turned, frame.offset)
-            masses[frame.parent] = total(algebra, masses[frame.parent], carried)
+            masses[frame.parent] = total(masses[frame.parent], carried)
 
     def _climb(
         self, number: int, derivatives: Mapping[str, Scalar], force: Vector, moment: Vector, place: int | None
@@ -79,23 +79,22 @@ class _Composite:
 
         ``place`` is the joint's own place among the displacements of the frame; None is its turn.
         """
-        algebra, frame = self.algebra, self.system.frames[number]
+        one, frame = self.algebra.one, self.system.frames[number]
         while True:
             for other, (name, v) in enumerate(frame.offset_derivatives.items()):
-                share = algebra.dot(force, v)
+                share = force.dot(v)
                 if place is None or place < other:
-                    self._between(derivatives, {name: algebra.one}, share)
+                    self._between(derivatives, {name: one}, share)
                 elif place == other:
                     self._within(derivatives, share)
             place = None
             if frame.parent < 0 or not self.moving[frame.parent]:
                 return
-            moment = algebra.add(moment, algebra.cross(frame.offset, force))
+            moment = moment + frame.offset.cross(force)
             frame = self.system.frames[frame.parent]
-            if frame.turn is not None:
-                if frame.angle_derivatives:
-                    self._between(derivatives, frame.angle_derivatives, moment[frame.turn.axis - 1])
-                force, moment = frame.back(algebra, force), frame.back(algebra, moment)
+            if frame.turn is not None and frame.angle_derivatives:
+                self._between(derivatives, frame.angle_derivatives, moment[frame.turn.axis - 1])
+            force, moment = frame.back(force), frame.back(moment)
 
     def _within(self, derivatives: Mapping[str, Scalar], share: Scalar) -> None:
         """A joint with itself: one half of what it would be between two."""

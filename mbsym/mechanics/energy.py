@@ -32,7 +32,7 @@ def gyrostatic_term(scene: Scene) -> Scalar:
     total = algebra.zero
     for motion in scene.motions.values():
         if motion.gyrostatic_moment is not None:
-            total = total + algebra.dot(motion.gyrostatic_moment, motion.angular_velocity)
+            total = total + motion.gyrostatic_moment.dot(motion.angular_velocity)
     return algebra.reduce(total)
 
 
@@ -44,12 +44,12 @@ def body_energy(scene: Scene, motion: BodyMotion) -> Scalar:
     about_joint = motion.body.inertia is not None and motion.body.inertia.about == "joint"
     if not algebra.vanishes(motion.mass):
         velocity = motion.velocity_origin if about_joint else motion.velocity_mass_centre
-        doubled = algebra.dot(velocity, velocity)
+        doubled = velocity.dot(velocity)
         if about_joint:
-            swing = algebra.cross(motion.angular_velocity, motion.mass_centre)
-            doubled = doubled + algebra.times(algebra.number(2), algebra.dot(velocity, swing))
+            swing = motion.angular_velocity.cross(motion.mass_centre)
+            doubled = doubled + algebra.times(algebra.number(2), velocity.dot(swing))
         energy = algebra.times(algebra.times(half, motion.mass), doubled)
     if motion.inertia is not None:
         spin = motion.angular_velocity
-        energy = energy + algebra.times(half, algebra.dot(spin, algebra.apply(motion.inertia, spin)))
+        energy = energy + algebra.times(half, spin.dot(motion.inertia @ spin))
     return energy

@@ -24,7 +24,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector
 from mbsym.expressions.tree import names
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
@@ -70,11 +71,10 @@ def felt_acceleration(scene: Scene, about: str, loads: tuple[NewtonianGravity, .
     felt = origin_acceleration(small, about)
     for load in loads:
         p = outward(load, small)
-        distance = ring.square_root(ring.dot(p, p))
+        distance = ring.square_root(p.dot(p))
         pull = ring.reduce(small.lower(load.constant) * ring.reciprocal(distance) ** 3)
-        felt = ring.add(felt, ring.scale(pull, p))
-    reduced = [ring.reduce(x) for x in felt]
-    return (scene.carry(reduced[0]), scene.carry(reduced[1]), scene.carry(reduced[2]))
+        felt = felt + p * pull
+    return scene.carried(felt.reduced())
 
 
 def felt_accelerations(scene: Scene) -> dict[str, Vector]:
@@ -114,10 +114,10 @@ def _work(scene: Scene, about: str, w: Vector) -> Scalar:
         if name != about:
             if parent not in field:
                 continue
-            field[name] = scene.to_axes(field[parent], parent, name)
-            height[name] = algebra.reduce(height[parent] + algebra.dot(field[parent], motion.offset))
+            field[name] = scene.to_axes(field[parent], name)
+            height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
         if not algebra.vanishes(motion.mass):
-            rise = height[name] + algebra.dot(field[name], motion.mass_centre)
+            rise = height[name] + field[name].dot(motion.mass_centre)
             total = total + algebra.times(motion.mass, rise)
     return algebra.reduce(total)
 
@@ -125,4 +125,4 @@ def _work(scene: Scene, about: str, w: Vector) -> Scalar:
 def overrides(scene: Scene, base: Vector) -> Mapping[str, Vector]:
     """Accelerations of falling frames' origins, less the gravity there; ``base`` is that of the inertial frame."""
     felt = felt_accelerations(scene)
-    return {name: scene.algebra.add(w, scene.to_axes(base, INERTIAL, name)) for name, w in felt.items()}
+    return {name: w + scene.to_axes(base, name) for name, w in felt.items()}

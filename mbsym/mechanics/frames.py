@@ -12,13 +12,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import FramesDiffer, Tensor, Vector, axis_vector
 from mbsym.expressions.tree import Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """One elementary rotation: axis 1, 2 or 3, the angle, its sine and cosine, its rate and second rate."""
+    """One elementary rotation: axis 1, 2 or 3, the angle, its sine and cosine, its rate and second rate.
+
+    It leads from the axes of ``source`` to those of ``frame``; a vector along its axis is the same in both.
+    """
 
     axis: int
     angle: Expression
@@ -26,49 +30,47 @@ class Turn:
     cosine: Scalar
     rate: Scalar
     second_rate: Scalar
+    source: str
+    frame: str
+
+    def out(self, v: Vector) -> Vector:
+        """C_a(x) v, from the axes of the source to those after the turn.  Raises FramesDiffer."""
+        if v.frame != self.source:
+            raise FramesDiffer(self.source, v.frame)
+        return _turned(self.axis, self.sine, self.cosine, v, self.frame)
+
+    def back(self, v: Vector) -> Vector:
+        """C_a(x)^T v, from the axes after the turn to those of the source.  Raises FramesDiffer."""
+        if v.frame != self.frame:
+            raise FramesDiffer(self.frame, v.frame)
+        return _turned(self.axis, -self.sine, self.cosine, v, self.source)
 
 
-def turn_forward(algebra: Algebra, turn: Turn, v: Vector) -> Vector:
-    """C_a(x) v."""
-    return _turn(algebra, turn.axis, turn.sine, turn.cosine, v)
-
-
-def turn_back(algebra: Algebra, turn: Turn, v: Vector) -> Vector:
-    """C_a(x)^T v."""
-    return _turn(algebra, turn.axis, -turn.sine, turn.cosine, v)
-
-
-def _turn(algebra: Algebra, axis: int, s: Scalar, c: Scalar, v: Vector) -> Vector:
+def _turned(axis: int, s: Scalar, c: Scalar, v: Vector, frame: str) -> Vector:
     i, j = axis % 3, (axis + 1) % 3
-    turned = list(v)
-    turned[i] = algebra.dot((c, s), (v[i], v[j]))
-    turned[j] = algebra.dot((c, -s), (v[j], v[i]))
-    return (turned[0], turned[1], turned[2])
+    dot, x, y = v.algebra.dot, v.components[i], v.components[j]
+    turned = list(v.components)
+    turned[i] = dot((c, s), (x, y))
+    turned[j] = dot((c, -s), (y, x))
+    return Vector(v.algebra, (turned[0], turned[1], turned[2]), frame)
 
 
-def forward(algebra: Algebra, turns: Sequence[Turn], v: Vector) -> Vector:
-    """R v: from the old axes to the new."""
+def forward(turns: Sequence[Turn], v: Vector, frame: str) -> Vector:
+    """R v: from the old axes to the new, those of ``frame``."""
     for turn in turns:
-        v = turn_forward(algebra, turn, v)
-    return v
+        v = turn.out(v)
+    return v if turns else v.in_parallel(frame)
 
 
-def back(algebra: Algebra, turns: Sequence[Turn], v: Vector) -> Vector:
-    """R^T v: from the new axes to the old."""
+def back(turns: Sequence[Turn], v: Vector, frame: str) -> Vector:
+    """R^T v: from the new axes to the old, those of ``frame``."""
     for turn in reversed(turns):
-        v = turn_back(algebra, turn, v)
-    return v
+        v = turn.back(v)
+    return v if turns else v.in_parallel(frame)
 
 
-def axis_vector(algebra: Algebra, axis: int, length: Scalar) -> Vector:
-    """length * e_axis."""
-    components = [algebra.zero] * 3
-    components[axis - 1] = length
-    return (components[0], components[1], components[2])
-
-
-def direction_cosines(algebra: Algebra, turns: Sequence[Turn]) -> tuple[Vector, Vector, Vector]:
+def direction_cosines(algebra: Algebra, turns: Sequence[Turn], source: str, frame: str) -> Tensor:
     """The matrix R of v_new = R v_old; its rows are the new axes in old components."""
-    columns = [forward(algebra, turns, axis_vector(algebra, axis, algebra.one)) for axis in (1, 2, 3)]
-    rows = [(columns[0][i], columns[1][i], columns[2][i]) for i in range(3)]
-    return (rows[0], rows[1], rows[2])
+    columns = [forward(turns, axis_vector(algebra, axis, algebra.one, source), frame) for axis in (1, 2, 3)]
+    a, b, c = (column.components for column in columns)
+    return Tensor(algebra, (a, b, c), source, frame).T

@@ -6,6 +6,7 @@ Q_i = sum over bodies of  F . dV_O/dq'_i + M . domega/dq'_i
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
@@ -28,8 +29,8 @@ def generalized_forces(scene: Scene, loads: Sequence[Load] | None = None) -> dic
         for wrench in action.wrenches:
             motion = scene.motions[wrench.body]
             for name in totals:
-                velocity = [ring.velocity_derivative(x, name) for x in motion.velocity_origin]
-                spin = [ring.velocity_derivative(x, name) for x in motion.angular_velocity]
-                power = ring.dot(wrench.force, velocity) + ring.dot(wrench.moment, spin)
+                along = partial(ring.velocity_derivative, name=name)
+                velocity, spin = motion.velocity_origin.map(along), motion.angular_velocity.map(along)
+                power = wrench.force.dot(velocity) + wrench.moment.dot(spin)
                 totals[name] = totals[name] + power
     return {name: ring.reduce(value) for name, value in totals.items()}

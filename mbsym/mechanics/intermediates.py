@@ -11,14 +11,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.frames import axis_vector, direction_cosines, forward
+from mbsym.algebra.vectors import Tensor, Vector, axis_vector
+from mbsym.mechanics.frames import direction_cosines, forward
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.model.system import INERTIAL, Body, System
-
-Matrix = tuple[Vector, Vector, Vector]
 
 
 class Quantity(StrEnum):
@@ -77,22 +76,17 @@ class Notes:
             self.scalar(x, Meaning(quantity, body, (i,), coordinate, load))
         return v
 
-    def symmetric(self, rows: Matrix, quantity: Quantity, body: str) -> Matrix:
+    def symmetric(self, rows: Tensor, quantity: Quantity, body: str) -> Tensor:
         for i in range(3):
             for j in range(i, 3):
                 self.scalar(rows[i][j], Meaning(quantity, body, (i + 1, j + 1)))
         return rows
 
-    def matrix(self, rows: Matrix, quantity: Quantity, body: str) -> Matrix:
+    def matrix(self, rows: Tensor, quantity: Quantity, body: str) -> Tensor:
         for i in range(3):
             for j in range(3):
                 self.scalar(rows[i][j], Meaning(quantity, body, (i + 1, j + 1)))
         return rows
-
-
-def transposed(rows: Matrix) -> Matrix:
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    return (a, d, g), (b, e, h), (c, f, i)
 
 
 class NamedScene(Scene):
@@ -113,46 +107,42 @@ class NamedScene(Scene):
     ) -> None:
         self.notes = notes
         self.program = program
-        self.rotations: dict[str, Matrix] = {}
+        self.rotations: dict[str, Tensor] = {}
         self.axes: dict[str, tuple[Vector, ...]] = {}
         super().__init__(system, program, environment, ring, falling=falling)
 
     def _motion(self, body: Body) -> BodyMotion:
         algebra, lower, notes = self.algebra, self.lower, self.notes
-        name = body.name
+        name, before = body.name, body.attached_to
         turns = tuple(self._turns(body))
-        rotation = direction_cosines(algebra, turns)
+        rotation = direction_cosines(algebra, turns, before, name)
         self.rotations[name] = notes.matrix(rotation, Quantity.DIRECTION_COSINE, name)
         # The axes of the turns in the body's own axes: what comes after a turn carries them on.
         self.axes[name] = tuple(
-            forward(algebra, turns[place + 1 :], axis_vector(algebra, turn.axis, algebra.one))
+            forward(turns[place + 1 :], axis_vector(algebra, turn.axis, algebra.one, turn.frame), name)
             for place, turn in enumerate(turns)
         )
-        relative = algebra.zero_vector
+        relative = self.zero(name)
         for turn, axis in zip(turns, self.axes[name], strict=True):
-            relative = algebra.add(relative, algebra.scale(turn.rate, axis))
+            relative = relative + axis * turn.rate
         notes.vector(relative, Quantity.RELATIVE_ANGULAR_VELOCITY, name)
-        parent_spin, parent_velocity = algebra.zero_vector, algebra.zero_vector
-        if body.attached_to != INERTIAL:
-            parent = self.motions[body.attached_to]
-            parent_spin, parent_velocity = parent.angular_velocity, parent.velocity_origin
-        spin = algebra.add(algebra.apply(rotation, parent_spin), relative)
+        parent_spin = parent_velocity = self.zero(before)
+        if before != INERTIAL:
+            parent_spin, parent_velocity = self.motions[before].angular_velocity, self.motions[before].velocity_origin
+        spin = rotation @ parent_spin + relative
         notes.vector(spin, Quantity.ANGULAR_VELOCITY, name)
-        offset = lower.vector(body.connection_point)
-        relative_velocity = lower.vector([self.rate(x) for x in body.connection_point])
-        carried = algebra.add(algebra.add(parent_velocity, algebra.cross(parent_spin, offset)), relative_velocity)
-        if body.attached_to != INERTIAL:  # of the base it is as the description says
+        offset = self.vector(body.connection_point, before)
+        relative_velocity = self.vector([self.rate(x) for x in body.connection_point], before)
+        carried = parent_velocity + parent_spin.cross(offset) + relative_velocity
+        if before != INERTIAL:  # of the base it is as the description says
             notes.vector(carried, Quantity.CARRIED_VELOCITY, name)
-        velocity = algebra.apply(rotation, carried)
+        velocity = rotation @ carried
         if name in self.falling:
-            velocity = algebra.zero_vector
+            velocity = self.zero(name)
         notes.vector(velocity, Quantity.VELOCITY_ORIGIN, name)
-        centre = lower.vector(body.mass_centre)
-        tensor = None
-        if body.inertia is not None:
-            rows = body.inertia.tensor
-            tensor = (lower.vector(rows[0]), lower.vector(rows[1]), lower.vector(rows[2]))
-        at_centre = algebra.add(velocity, algebra.cross(spin, centre))
+        centre = self.vector(body.mass_centre, name)
+        inertia = self._inertia(body)
+        at_centre = velocity + spin.cross(centre)
         return BodyMotion(
             body=body,
             turns=turns,
@@ -163,30 +153,12 @@ class NamedScene(Scene):
             velocity_mass_centre=notes.vector(at_centre, Quantity.VELOCITY_CENTRE, name),
             mass=lower(body.mass),
             mass_centre=centre,
-            inertia=tensor,
-            gyrostatic_moment=None if body.gyrostatic_moment is None else lower.vector(body.gyrostatic_moment),
+            inertia=inertia,
+            gyrostatic_moment=self._gyrostatic_moment(body),
         )
 
     def out(self, body: str, v: Vector) -> Vector:
-        """From the predecessor's axes to the body's."""
-        return self.algebra.apply(self.rotations[body], v)
+        return self.rotations[body] @ v
 
     def back(self, body: str, v: Vector) -> Vector:
-        """From the body's axes to the predecessor's."""
-        return self.algebra.apply(transposed(self.rotations[body]), v)
-
-    def to_axes(self, v: Vector, source: str, target: str) -> Vector:
-        up, down = self.system.path(source), self.system.path(target)
-        common = sum(a == b for a, b in zip(up, down, strict=False))
-        for name in reversed(up[common:]):
-            v = self.back(name, v)
-        for name in down[common:]:
-            v = self.out(name, v)
-        return v
-
-    def position(self, body: str, point: Vector, frame: str) -> Vector:
-        while body != frame:
-            motion = self.motions[body]
-            point = self.algebra.add(motion.offset, self.back(body, point))
-            body = motion.body.attached_to
-        return point
+        return self.rotations[body].T @ v

@@ -10,15 +10,16 @@ own mass matrix needs omega_j.)
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mbsym.algebra.base import Algebra, Lowering, Scalar, Vector
+from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.vectors import Tensor, Vector, axis_vector, tensor_of, zero_vector
 from mbsym.expressions.tree import ZERO, Expression
-from mbsym.mechanics.frames import Turn, axis_vector, back, forward, turn_forward
+from mbsym.mechanics.frames import Turn, back, forward
 from mbsym.mechanics.variables import time_derivative
 from mbsym.model.system import INERTIAL, Body, System
 
@@ -39,7 +40,7 @@ class BodyMotion:
     velocity_mass_centre: Vector
     mass: Scalar
     mass_centre: Vector
-    inertia: tuple[Vector, Vector, Vector] | None
+    inertia: Tensor | None
     gyrostatic_moment: Vector | None
 
 
@@ -75,29 +76,26 @@ class Scene:
             self.motions[body.name] = self._motion(body)
 
     def _motion(self, body: Body) -> BodyMotion:
-        algebra, lower = self.algebra, self.lower
+        algebra, lower, name, before = self.algebra, self.lower, body.name, body.attached_to
         turns = tuple(self._turns(body))
-        relative = algebra.zero_vector
-        parent_spin, parent_velocity = algebra.zero_vector, algebra.zero_vector
-        if body.attached_to != INERTIAL:
-            parent = self.motions[body.attached_to]
-            parent_spin, parent_velocity = parent.angular_velocity, parent.velocity_origin
-        spin = parent_spin
+        parent_spin = parent_velocity = self.zero(before)
+        if before != INERTIAL:
+            parent_spin, parent_velocity = self.motions[before].angular_velocity, self.motions[before].velocity_origin
+        relative, spin = self.zero(before), parent_spin
         for turn in turns:
-            rate = axis_vector(algebra, turn.axis, turn.rate)
-            relative = algebra.add(turn_forward(algebra, turn, relative), rate)
-            spin = algebra.add(turn_forward(algebra, turn, spin), rate)
-        offset = lower.vector(body.connection_point)
-        relative_velocity = lower.vector([self.rate(x) for x in body.connection_point])
-        carried = algebra.add(parent_velocity, algebra.cross(parent_spin, offset))
-        velocity = forward(algebra, turns, algebra.add(carried, relative_velocity))
-        if body.name in self.falling:
-            velocity = algebra.zero_vector
-        centre = lower.vector(body.mass_centre)
-        tensor = None
-        if body.inertia is not None:
-            rows = body.inertia.tensor
-            tensor = (lower.vector(rows[0]), lower.vector(rows[1]), lower.vector(rows[2]))
+            rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)
+            relative = turn.out(relative) + rate
+            spin = turn.out(spin) + rate
+        if not turns:
+            relative, spin = relative.in_parallel(name), spin.in_parallel(name)
+        offset = self.vector(body.connection_point, before)
+        relative_velocity = self.vector([self.rate(x) for x in body.connection_point], before)
+        carried = parent_velocity + parent_spin.cross(offset)
+        velocity = forward(turns, carried + relative_velocity, name)
+        if name in self.falling:
+            velocity = self.zero(name)
+        centre = self.vector(body.mass_centre, name)
+        inertia = self._inertia(body)
         return BodyMotion(
             body=body,
             turns=turns,
@@ -105,45 +103,72 @@ class Scene:
             relative_angular_velocity=relative,
             angular_velocity=spin,
             velocity_origin=velocity,
-            velocity_mass_centre=algebra.add(velocity, algebra.cross(spin, centre)),
+            velocity_mass_centre=velocity + spin.cross(centre),
             mass=lower(body.mass),
             mass_centre=centre,
-            inertia=tensor,
-            gyrostatic_moment=None if body.gyrostatic_moment is None else lower.vector(body.gyrostatic_moment),
+            inertia=inertia,
+            gyrostatic_moment=self._gyrostatic_moment(body),
         )
 
+    def _inertia(self, body: Body) -> Tensor | None:
+        if body.inertia is None:
+            return None
+        return tensor_of(self.algebra, [self.lower.vector(row) for row in body.inertia.tensor], body.name)
+
+    def _gyrostatic_moment(self, body: Body) -> Vector | None:
+        return None if body.gyrostatic_moment is None else self.vector(body.gyrostatic_moment, body.name)
+
     def _turns(self, body: Body) -> list[Turn]:
+        """The turns that there are; the axes between two of them have a name of their own."""
+        given = [(axis, angle) for axis, angle in body.rotation.turns() if angle != ZERO]
+        frames = [body.attached_to, *(f"{body.name} after turn {k}" for k in range(1, len(given))), body.name]
         turns = []
-        for axis, angle in body.rotation.turns():
-            if angle == ZERO:
-                continue
+        for (axis, angle), source, frame in zip(given, frames, frames[1:], strict=False):
             first = self.rate(angle)
             second = self.rate(first)
-            turns.append(Turn(axis, angle, *self.lower.angle(angle), self.lower(first), self.lower(second)))
+            sine, cosine = self.lower.angle(angle)
+            turns.append(Turn(axis, angle, sine, cosine, self.lower(first), self.lower(second), source, frame))
         return turns
 
     def rate(self, expression: Expression) -> Expression:
         """The time derivative of an expression, in this scene."""
         return time_derivative(expression, self.system, self.frozen)
 
-    # --- vectors between frames ------------------------------------------------------------------------------------
+    # --- vectors and their frames -----------------------------------------------------------------------------------
 
-    def to_axes(self, v: Vector, source: str, target: str) -> Vector:
-        """The components of a vector, given in the axes of one body, in those of another."""
-        up, down = self.system.path(source), self.system.path(target)
+    def vector(self, components: Sequence[Expression], frame: str) -> Vector:
+        """The vector that has these components in the axes of a body."""
+        return Vector(self.algebra, self.lower.vector(components), frame)
+
+    def zero(self, frame: str) -> Vector:
+        return zero_vector(self.algebra, frame)
+
+    def out(self, body: str, v: Vector) -> Vector:
+        """From the axes of the body that it is attached to, to its own."""
+        return forward(self.motions[body].turns, v, body)
+
+    def back(self, body: str, v: Vector) -> Vector:
+        """From a body's own axes to those of the body that it is attached to."""
+        motion = self.motions[body]
+        return back(motion.turns, v, motion.body.attached_to)
+
+    def to_axes(self, v: Vector, target: str) -> Vector:
+        """A vector in the axes of another body."""
+        up, down = self.system.path(v.frame), self.system.path(target)
         common = sum(a == b for a, b in zip(up, down, strict=False))
         for name in reversed(up[common:]):
-            v = back(self.algebra, self.motions[name].turns, v)
+            v = self.back(name, v)
         for name in down[common:]:
-            v = forward(self.algebra, self.motions[name].turns, v)
+            v = self.out(name, v)
         return v
 
-    def position(self, body: str, point: Vector, frame: str) -> Vector:
-        """The radius vector from the origin of ``frame`` (an ancestor of body) to a point of body, in frame's axes."""
-        while body != frame:
-            motion = self.motions[body]
-            point = self.algebra.add(motion.offset, back(self.algebra, motion.turns, point))
-            body = motion.body.attached_to
+    def position(self, point: Vector, frame: str) -> Vector:
+        """The radius vector from the origin of ``frame`` to a point, in the axes of ``frame``.
+
+        ``point`` is its radius vector from the origin of the body in whose axes it is; ``frame`` is an ancestor.
+        """
+        while point.frame != frame:
+            point = self.motions[point.frame].offset + self.back(point.frame, point)
         return point
 
     def common_ancestor(self, first: str, second: str) -> str:
@@ -153,3 +178,8 @@ class Scene:
     def carry(self, x: Polynomial) -> Any:
         """A polynomial of the ring, in this algebra."""
         return x if self.algebra is self.ring else self._carrier(x)
+
+    def carried(self, v: Vector) -> Vector:
+        """A vector over the ring, in this algebra."""
+        a, b, c = v
+        return Vector(self.algebra, (self.carry(a), self.carry(b), self.carry(c)), v.frame)

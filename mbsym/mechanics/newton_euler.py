@@ -12,9 +12,10 @@ projections on the joint's partial velocities are the residuals  M q'' - forcing
 
 from __future__ import annotations
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import differentiate, names
-from mbsym.mechanics.frames import axis_vector, back, forward, turn_back, turn_forward
+from mbsym.mechanics.frames import forward
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action
 from mbsym.mechanics.loads.kinds import actions
@@ -26,7 +27,7 @@ class _Accelerations:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        zero = scene.algebra.zero_vector
+        zero = scene.zero(INERTIAL)
         self.angular: dict[str, Vector] = {INERTIAL: zero}
         self.origin: dict[str, Vector] = {INERTIAL: zero}
         self.spin: dict[str, Vector] = {INERTIAL: zero}
@@ -34,22 +35,24 @@ class _Accelerations:
             self._step(name, motion)
 
     def _step(self, name: str, motion: BodyMotion) -> None:
-        algebra, parent = self.scene.algebra, motion.body.attached_to
+        scene, parent = self.scene, motion.body.attached_to
+        algebra, r = scene.algebra, motion.offset
         spin, angular = self.spin[parent], self.angular[parent]
-        first = [self.scene.rate(x) for x in motion.body.connection_point]
-        relative_velocity = self.scene.lower.vector(first)
-        second = self.scene.lower.vector([self.scene.rate(x) for x in first])
-        at = algebra.add(self.origin[parent], algebra.cross(angular, motion.offset))
-        at = algebra.add(at, algebra.cross(spin, algebra.cross(spin, motion.offset)))
-        at = algebra.add(at, algebra.scale(algebra.number(2), algebra.cross(spin, relative_velocity)))
-        self.origin[name] = forward(algebra, motion.turns, algebra.add(at, second))
+        first = [scene.rate(x) for x in motion.body.connection_point]
+        relative_velocity = scene.vector(first, parent)
+        second = scene.vector([scene.rate(x) for x in first], parent)
+        at = self.origin[parent] + angular.cross(r)
+        at = at + spin.cross(spin.cross(r))
+        two = algebra.number(2)
+        at = at + spin.cross(relative_velocity) * two
+        self.origin[name] = forward(motion.turns, at + second, name)
         for turn in motion.turns:
-            rate = axis_vector(algebra, turn.axis, turn.rate)
-            spin = turn_forward(algebra, turn, spin)
-            angular = algebra.add(turn_forward(algebra, turn, angular), algebra.cross(spin, rate))
-            angular = algebra.add(angular, axis_vector(algebra, turn.axis, turn.second_rate))
-            spin = algebra.add(spin, rate)
-        self.spin[name], self.angular[name] = spin, angular
+            rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)
+            spin = turn.out(spin)
+            angular = turn.out(angular) + spin.cross(rate)
+            angular = angular + axis_vector(algebra, turn.axis, turn.second_rate, turn.frame)
+            spin = spin + rate
+        self.spin[name], self.angular[name] = spin.in_parallel(name), angular.in_parallel(name)
 
 
 def origin_acceleration(scene: Scene, body: str) -> Vector:
@@ -59,21 +62,20 @@ def origin_acceleration(scene: Scene, body: str) -> Vector:
 
 def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: Vector) -> tuple[Vector, Vector]:
     """(F, N): the rate of momentum, and of angular momentum referred to O_k."""
-    algebra = scene.algebra
+    algebra, inertia = scene.algebra, motion.inertia
     spin, centre = motion.angular_velocity, motion.mass_centre
-    force, moment = algebra.zero_vector, algebra.zero_vector
+    force = moment = scene.zero(motion.body.name)
     about_joint = motion.body.inertia is not None and motion.body.inertia.about == "joint"
     if not algebra.vanishes(motion.mass):
-        about_origin = algebra.add(algebra.cross(angular, centre), algebra.cross(spin, algebra.cross(spin, centre)))
-        at_centre = algebra.add(origin, about_origin)
-        force = algebra.scale(motion.mass, at_centre)
+        at_centre = origin + (angular.cross(centre) + spin.cross(spin.cross(centre)))
+        force = at_centre * motion.mass
         lever = origin if about_joint else at_centre
-        moment = algebra.cross(centre, algebra.scale(motion.mass, lever))
-    if motion.inertia is not None:
-        moment = algebra.add(moment, algebra.apply(motion.inertia, angular))
-        moment = algebra.add(moment, algebra.cross(spin, algebra.apply(motion.inertia, spin)))
+        moment = centre.cross(lever * motion.mass)
+    if inertia is not None:
+        moment = moment + inertia @ angular
+        moment = moment + spin.cross(inertia @ spin)
     if motion.gyrostatic_moment is not None:
-        moment = algebra.add(moment, algebra.cross(spin, motion.gyrostatic_moment))
+        moment = moment + spin.cross(motion.gyrostatic_moment)
     return force, moment
 
 
@@ -82,35 +84,33 @@ class _Joints:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        zero = scene.algebra.zero_vector
-        self.force: dict[str, Vector] = dict.fromkeys(scene.motions, zero)
-        self.moment: dict[str, Vector] = dict.fromkeys(scene.motions, zero)
+        self.force: dict[str, Vector] = {name: scene.zero(name) for name in scene.motions}
+        self.moment = dict(self.force)
         self.totals: dict[str, Scalar] = dict.fromkeys(scene.system.coordinates, scene.algebra.zero)
 
     def need(self, body: str, force: Vector, moment: Vector) -> None:
-        self.force[body] = self.scene.algebra.add(self.force[body], force)
-        self.moment[body] = self.scene.algebra.add(self.moment[body], moment)
+        self.force[body] = self.force[body] + force
+        self.moment[body] = self.moment[body] + moment
 
     def supply(self, action: Action) -> None:
-        algebra = self.scene.algebra
         for name, value in action.generalized.items():
             self.totals[name] = self.totals[name] - value
         for wrench in action.wrenches:
-            self.force[wrench.body] = algebra.subtract(self.force[wrench.body], wrench.force)
-            self.moment[wrench.body] = algebra.subtract(self.moment[wrench.body], wrench.moment)
+            self.force[wrench.body] = self.force[wrench.body] - wrench.force
+            self.moment[wrench.body] = self.moment[wrench.body] - wrench.moment
 
     def projections(self) -> dict[str, Scalar]:
         """The backward recursion, from the tips to the base."""
-        algebra = self.scene.algebra
-        for name in reversed(self.scene.motions):
-            motion = self.scene.motions[name]
+        scene = self.scene
+        for name in reversed(scene.motions):
+            motion = scene.motions[name]
             force, moment = self.force[name], self.moment[name]
-            carried = back(algebra, motion.turns, force)
+            carried = scene.back(name, force)
             self._project(motion, carried, moment)
             if motion.body.attached_to != INERTIAL:
-                twist = algebra.add(back(algebra, motion.turns, moment), algebra.cross(motion.offset, carried))
+                twist = scene.back(name, moment) + motion.offset.cross(carried)
                 self.need(motion.body.attached_to, carried, twist)
-        return {name: algebra.reduce(value) for name, value in self.totals.items()}
+        return {name: scene.algebra.reduce(value) for name, value in self.totals.items()}
 
     def _project(self, motion: BodyMotion, carried: Vector, moment: Vector) -> None:
         """moment . (dx/dq) e_axis for each turn, force . dr/dq for a moving connection point."""
@@ -119,7 +119,7 @@ class _Joints:
             for name in names(turn.angle) & totals.keys():
                 share = algebra.times(moment[turn.axis - 1], lower(differentiate(turn.angle, name)))
                 totals[name] = totals[name] + share
-            moment = turn_back(algebra, turn, moment)
+            moment = turn.back(moment)
         for component, expression in zip(carried, motion.body.connection_point, strict=True):
             for name in names(expression) & totals.keys():
                 share = algebra.times(component, lower(differentiate(expression, name)))

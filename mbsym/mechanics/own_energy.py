@@ -60,7 +60,7 @@ def central_tensor(scene: Scene, body: str) -> list[list[Polynomial]]:
     """Theta_C = Theta_O - m (c.c 1 - c c^T)."""
     algebra, motion = scene.algebra, scene.motions[body]
     rows = [list(row) for row in mass_properties(scene, body).tensor]
-    c, square = motion.mass_centre, algebra.dot(motion.mass_centre, motion.mass_centre)
+    c, square = motion.mass_centre, motion.mass_centre.dot(motion.mass_centre)
     for i in range(3):
         for j in range(3):
             inner = (square if i == j else algebra.zero) - algebra.times(c[i], c[j])

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.vectors import axis_vector
 from mbsym.mechanics.rest import Rest
 from mbsym.model.system import INERTIAL
 
@@ -67,10 +68,10 @@ def _same_places(found: Rest, length: str, angle: str) -> bool:
         motion = scene.motions[body.name]
         if motion.mass == 0 and motion.inertia is None:
             continue
-        seen = list(scene.position(body.name, motion.mass_centre, INERTIAL))
+        seen = list(scene.position(motion.mass_centre, INERTIAL))
         if motion.inertia is not None:
-            axes = ((ring.one, ring.zero, ring.zero), (ring.zero, ring.one, ring.zero))
-            seen += [x for axis in axes for x in scene.to_axes(axis, body.name, INERTIAL)]
+            axes = [axis_vector(ring, k, ring.one, body.name) for k in (1, 2)]
+            seen += [x for axis in axes for x in scene.to_axes(axis, INERTIAL)]
         if any(ring.is_zero(reflected(found, x, length, angle) - x) is not True for x in seen):
             return False
     return True

@@ -20,8 +20,8 @@ import numpy as np
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.algebra.vectors import axis_vector
 from mbsym.mechanics.energy import body_energy
-from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
@@ -73,9 +73,9 @@ def followed_bodies(
     fixed: list[Node] = []
     for name in names:
         motion = scene.motions[name]
-        fixed += scene.position(name, motion.mass_centre, frame)
+        fixed += scene.position(motion.mass_centre, frame)
         for axis in (1, 2, 3):
-            fixed += scene.to_axes(axis_vector(algebra, axis, algebra.one), name, frame)
+            fixed += scene.to_axes(axis_vector(algebra, axis, algebra.one, name), frame)
         fixed += [*motion.angular_velocity, body_energy(scene, motion)]
     fixed.append(force_function(scene))
     fresh = bound(scenario)

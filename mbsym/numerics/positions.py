@@ -15,11 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.base import Vector
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Ring
+from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import ZERO, names
-from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import expressions, program_environment, ring_of
@@ -187,26 +186,22 @@ def _points(system: System, frame: str) -> list[Point]:
 
 def _place(scene: Scene, frame: str, point: Point) -> Vector:
     """r of a point; the tip of an axis as a unit vector."""
-    algebra = scene.algebra
-    here = algebra.zero_vector
     if point.kind == ORIGIN:
-        return here
+        return scene.zero(frame)
     if point.kind == AXIS:
-        return scene.to_axes(axis_vector(algebra, point.axis, algebra.one), point.body, frame)
-    own = scene.motions[point.body].mass_centre if point.kind == MASS_CENTRE else here
-    return scene.position(point.body, own, frame)
+        return scene.to_axes(axis_vector(scene.algebra, point.axis, scene.algebra.one, point.body), frame)
+    own = scene.motions[point.body].mass_centre if point.kind == MASS_CENTRE else scene.zero(point.body)
+    return scene.position(own, frame)
 
 
 def _upward(scene: Scene, frame: str) -> Iterator[Vector]:
     """Against gravity, in the axes of the frame: away from the centre, or opposite to uniform gravity."""
-    algebra = scene.algebra
     for load in scene.system.loads:
         if isinstance(load, UniformGravity):
-            falling = scene.lower.vector(load.acceleration)
-            yield scene.to_axes(algebra.subtract(algebra.zero_vector, falling), INERTIAL, frame)
+            yield scene.to_axes(-scene.vector(load.acceleration, INERTIAL), frame)
             return
         if isinstance(load, NewtonianGravity) and load.about == frame and load.centre == INERTIAL != frame:
-            yield scene.to_axes(scene.position(frame, algebra.zero_vector, INERTIAL), INERTIAL, frame)
+            yield scene.to_axes(scene.position(scene.zero(frame), INERTIAL), frame)
             return
 
 

@@ -96,11 +96,11 @@ class Kinds:
 
 def _moved(scene: Scene) -> list[Node]:
     """Velocities of joints and mass centres, and I omega of every body that has inertia."""
-    algebra, nodes = scene.algebra, []
+    nodes: list[Node] = []
     for motion in scene.motions.values():
         nodes += [*motion.velocity_origin, *motion.velocity_mass_centre]
         if motion.inertia is not None:
-            nodes += [*algebra.apply(motion.inertia, motion.angular_velocity)]
+            nodes += [*(motion.inertia @ motion.angular_velocity)]
     return nodes
 
 

@@ -37,10 +37,10 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.frames import axis_vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.oracle import Oracle, State
@@ -222,26 +222,26 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
     algebra = scene.algebra
     found = []
     for axis in (3, 1, 2):
-        direction = {INERTIAL: axis_vector(algebra, axis, algebra.one)}
-        origin = {INERTIAL: algebra.zero_vector}
+        direction = {INERTIAL: axis_vector(algebra, axis, algebra.one, INERTIAL)}
+        origin = {INERTIAL: scene.zero(INERTIAL)}
         linear, angular = algebra.zero, algebra.zero
         for name, motion in scene.motions.items():
             parent = motion.body.attached_to
-            direction[name] = scene.to_axes(direction[parent], parent, name)
-            origin[name] = scene.to_axes(algebra.add(origin[parent], motion.offset), parent, name)
+            direction[name] = scene.to_axes(direction[parent], name)
+            origin[name] = scene.to_axes(origin[parent] + motion.offset, name)
             along = direction[name]
             about_joint = motion.body.inertia is not None and motion.body.inertia.about == "joint"
-            momentum = algebra.scale(motion.mass, motion.velocity_mass_centre)
-            linear = linear + algebra.dot(momentum, along)
-            arm = origin[name] if about_joint else algebra.add(origin[name], motion.mass_centre)
-            angular = angular + algebra.dot(momentum, algebra.cross(along, arm))
+            momentum = motion.velocity_mass_centre * motion.mass
+            linear = linear + momentum.dot(along)
+            arm = origin[name] if about_joint else origin[name] + motion.mass_centre
+            angular = angular + momentum.dot(along.cross(arm))
             if about_joint:
-                carried = algebra.scale(motion.mass, motion.velocity_origin)
-                angular = angular + algebra.dot(carried, algebra.cross(along, motion.mass_centre))
+                carried = motion.velocity_origin * motion.mass
+                angular = angular + carried.dot(along.cross(motion.mass_centre))
             if motion.inertia is not None:
-                angular = angular + algebra.dot(motion.angular_velocity, algebra.apply(motion.inertia, along))
+                angular = angular + motion.angular_velocity.dot(motion.inertia @ along)
             if motion.gyrostatic_moment is not None:
-                angular = angular + algebra.dot(motion.gyrostatic_moment, along)
+                angular = angular + motion.gyrostatic_moment.dot(along)
         found.append(("linear momentum", axis, algebra.reduce(linear)))
         found.append(("angular momentum", axis, algebra.reduce(angular)))
     order = {"linear momentum": 0, "angular momentum": 1}

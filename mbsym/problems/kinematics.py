@@ -69,12 +69,13 @@ def kinematics(scene: Scene) -> Kinematics:
 
 def _body(scene: Scene, motion: BodyMotion) -> BodyKinematics:
     ring = scene.ring
+    rotation = direction_cosines(ring, motion.turns, motion.body.attached_to, motion.body.name)
     return BodyKinematics(
         name=motion.body.name,
         attached_to=motion.body.attached_to,
-        rotation=Matrix.of(ring, direction_cosines(ring, motion.turns)),
-        relative_angular_velocity=column(ring, motion.relative_angular_velocity),
-        angular_velocity=column(ring, motion.angular_velocity),
-        velocity_origin=column(ring, motion.velocity_origin),
-        velocity_mass_centre=column(ring, motion.velocity_mass_centre),
+        rotation=Matrix.of(ring, rotation.rows),
+        relative_angular_velocity=column(ring, motion.relative_angular_velocity.components),
+        angular_velocity=column(ring, motion.angular_velocity.components),
+        velocity_origin=column(ring, motion.velocity_origin.components),
+        velocity_mass_centre=column(ring, motion.velocity_mass_centre.components),
     )

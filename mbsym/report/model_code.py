@@ -8,7 +8,7 @@ energies, first integrals of problem 7, places of the bodies
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -139,16 +139,15 @@ def _scene(analysis: Analysis) -> tuple[Scene, Program]:
 def places(analysis: Analysis) -> tuple[Part, Part]:
     """Joints and mass centres of all bodies, a row each, from the inertial origin in inertial axes."""
     scene, program = _scene(analysis)
-    zero = program.zero_vector
-    joints = [scene.position(name, zero, INERTIAL) for name in scene.motions]
-    centres = [scene.position(name, motion.mass_centre, INERTIAL) for name, motion in scene.motions.items()]
+    joints = [scene.position(scene.zero(name), INERTIAL) for name in scene.motions]
+    centres = [scene.position(motion.mass_centre, INERTIAL) for motion in scene.motions.values()]
     return (
         _places("joints", "Connection points of the bodies", program, joints),
         _places("mass_centres", "Mass centres of the bodies", program, centres),
     )
 
 
-def _places(name: str, words: str, program: Program, rows: Sequence[Sequence[Node]]) -> Part:
+def _places(name: str, words: str, program: Program, rows: Sequence[Iterable[Node]]) -> Part:
     entries: dict[Place, Node] = {(i, k): x for i, row in enumerate(rows) for k, x in enumerate(row)}
     words += ", a row for each of BODIES, from the inertial origin in inertial axes"
     return Part(name, words, (len(rows), 3), program, _nonzero(program, entries))

@@ -301,15 +301,15 @@ def test_operations_of_parameters_alone_are_free() -> None:
 # --- planted mistakes ---
 
 MISTAKES = [
-    ("mechanics.composite:_Composite._climb", "algebra.cross(frame.offset, force)", "algebra.zero_vector"),
+    ("mechanics.composite:_Composite._climb", " + frame.offset.cross(force)", ""),
     ("mechanics.articulation:turned_symmetric", "p - across", "p + across"),
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
-    ("mechanics.articulation:shifted", "twice = algebra.add(h, moved)", "twice = algebra.add(h, h)"),
-    ("mechanics.articulation:_split", "algebra.zero, (across[0]", "own.mass, (across[0]"),
+    ("mechanics.articulation:shifted", "twice = h + moved", "twice = h + h"),
+    ("mechanics.articulation:_split", "algebra.zero, Vector", "own.mass, Vector"),
     ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
     ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
     ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),
-    ("mechanics.bias_forces:_gravity", "algebra.subtract(base", "algebra.add(base"),
+    ("mechanics.bias_forces:_gravity", "base - system", "base + system"),
 ]
 
 
@@ -326,8 +326,8 @@ ARTICULATED_MISTAKES = [
     ("mechanics.articulated:_shifted", "new[j][j]", "old[j][j]"),
     ("mechanics.articulated:_turned_general", "mixed - r", "mixed + r"),
     ("mechanics.articulated:_less", "- u[i] * v[j]", "+ u[i] * v[j]"),
-    ("mechanics.articulated:_Articulated._inwards", "algebra.cross(frame.offset, force)", "algebra.zero_vector"),
-    ("mechanics.articulated:_Articulated._outwards", "algebra.cross(angular, frame.offset)", "algebra.zero_vector"),
+    ("mechanics.articulated:_Articulated._inwards", " + frame.offset.cross(force)", ""),
+    ("mechanics.articulated:_Articulated._outwards", " + angular.cross(frame.offset)", ""),
     ("mechanics.factorisation:solve", "value - factor * found[i]", "value + factor * found[i]"),
 ]
 

@@ -404,10 +404,10 @@ PLANTED = [
     (3, MORE + ":_Expansion.torque", "algebra.number(3)", "algebra.number(2)", PROGRAM),
     (4, MORE + ":_Expansion.force", "Fraction(15, 2)", "Fraction(15, 4)", PROGRAM),
     (3, MORE + ":order_action", "else 0, order):", "else 0, order - 1):", PROGRAM),
-    (4, MORE + ":order_action", "factors[order + 1], left", "factors[order], left", PROGRAM),
+    (4, MORE + ":order_action", "left * factors[order + 1]", "left * factors[order]", PROGRAM),
     ("exact", MORE + ":_exact_force_function", "Fraction(1, 2)", "Fraction(1, 3)", "equations of motion"),
     ("exact", MORE + ":_exact_action", "algebra.number(5)", "algebra.number(3)", PROGRAM),
-    ("exact", MORE + ":_exact_action", "algebra.cross(r, turned)", "algebra.cross(turned, r)", PROGRAM),
+    ("exact", MORE + ":_exact_action", "r.cross(turned)", "turned.cross(r)", PROGRAM),
 ]
 
 

@@ -16,6 +16,7 @@ from random_systems import Description, analysed, orbiting, systems
 
 import mbsym
 from mbsym.algebra.program import Program
+from mbsym.algebra.vectors import Tensor, Vector
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import latex_names
@@ -164,10 +165,15 @@ def test_a_changed_definition_is_found() -> None:
 
 @pytest.mark.parametrize("plant", ["transposed", "coriolis", "steiner"])
 def test_a_mistake_in_the_recursion_is_never_told(plant: str, monkeypatch: pytest.MonkeyPatch) -> None:
+
+    def transposed(scene: NamedScene, body: str, v: Vector) -> Vector:
+        before = scene.motions[body].body.attached_to
+        return Tensor(v.algebra, scene.rotations[body].rows, before, body) @ v
+
     if plant == "transposed":
-        monkeypatch.setattr(NamedScene, "back", lambda self, body, v: self.algebra.apply(self.rotations[body], v))
+        monkeypatch.setattr(NamedScene, "back", transposed)
     elif plant == "coriolis":
-        monkeypatch.setattr(recursion, "_joint_acceleration", lambda scene, name: scene.algebra.zero_vector)
+        monkeypatch.setattr(recursion, "_joint_acceleration", lambda scene, name: scene.zero(name))
     else:
         monkeypatch.setattr(recursion, "shifted", lambda algebra, x, r: x)
     analysis = mbsym.load(SHIPPED / "spatial-arm.yaml")

@@ -24,7 +24,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import Vector
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression, differentiate, names, negative, subtract
 from mbsym.mechanics.constraints.seen import Moving, Rates, View, along_coordinate, along_motion, common_frame
@@ -147,8 +148,8 @@ def difference(left: Expression, right: Expression) -> Expression:
 def _pair(scene: Scene, first: Point, second: Point, rates: Rates) -> Moving:
     """r_1 - r_2 as seen from the last frame that carries both."""
     view = View(scene, common_frame(scene, (first.body, second.body)), rates)
-    ends = [view.point(x.body, view.moving(x.position)) for x in (first, second)]
-    return view.difference(ends[0], ends[1])
+    ends = [view.point(view.moving(x.position, x.body)) for x in (first, second)]
+    return ends[0] - ends[1]
 
 
 def _coincide(scene: Scene, first: Point, second: Point, rates: Rates) -> list[_Form]:
@@ -160,9 +161,9 @@ def _distance(scene: Scene, first: Point, second: Point, length: Expression, rat
     algebra, apart = scene.algebra, _pair(scene, first, second, rates)
     long, rate, second_rate = scene.lower(length), rates.first(length), rates.second(length)
     half = algebra.number(Fraction(1, 2))
-    squares = algebra.dot(apart.value, apart.value) - algebra.times(long, long)
-    speed = algebra.dot(apart.value, apart.first) - algebra.times(long, rate)
-    bent = algebra.dot(apart.first, apart.first) + algebra.dot(apart.value, apart.second)
+    squares = apart.value.dot(apart.value) - algebra.times(long, long)
+    speed = apart.value.dot(apart.first) - algebra.times(long, rate)
+    bent = apart.first.dot(apart.first) + apart.value.dot(apart.second)
     bent = bent - algebra.times(rate, rate) - algebra.times(long, second_rate)
     return _Form(algebra.times(half, squares), speed, bent)
 
@@ -170,17 +171,17 @@ def _distance(scene: Scene, first: Point, second: Point, length: Expression, rat
 def _parallel(scene: Scene, first: Axis, second: Axis, rates: Rates) -> list[_Form]:
     algebra = scene.algebra
     view = View(scene, common_frame(scene, (first.body, second.body)), rates)
-    other = view.vector(second.body, view.moving(second.direction))
+    other = view.vector(view.moving(second.direction, second.body))
     forms = []
     for normal in normals(first.direction):
-        n = view.vector(first.body, view.moving(normal))
+        n = view.vector(view.moving(normal, first.body))
         forms.append(
             _Form(
-                algebra.dot(n.value, other.value),
-                algebra.dot(n.first, other.value) + algebra.dot(n.value, other.first),
-                algebra.dot(n.second, other.value)
-                + algebra.times(algebra.number(2), algebra.dot(n.first, other.first))
-                + algebra.dot(n.value, other.second),
+                n.value.dot(other.value),
+                n.first.dot(other.value) + n.value.dot(other.first),
+                n.second.dot(other.value)
+                + algebra.times(algebra.number(2), n.first.dot(other.first))
+                + n.value.dot(other.second),
             )
         )
     return forms
@@ -204,23 +205,20 @@ def normals(e: Expressions) -> tuple[Expressions, Expressions]:
 
 
 def _rolling(scene: Scene, rolling: Rolling, rates: Rates) -> list[_Form]:
-    algebra = scene.algebra
     view = View(scene, common_frame(scene, (rolling.body, rolling.on, rolling.axes)), rates)
-    centre = view.point(rolling.body, view.fixed(algebra.zero_vector))
-    arm = view.vector(rolling.axes, view.moving(rolling.contact))
-    body = _material(algebra, centre, view.spin(rolling.body), arm)
-    base = view.point(rolling.on, view.fixed(algebra.zero_vector))
-    carrier = _material(algebra, base, view.spin(rolling.on), view.difference(view.sum(centre, arm), base))
-    speeds = algebra.subtract(body[0], carrier[0])
-    rates_of_speeds = algebra.subtract(body[1], carrier[1])
+    centre = view.point(view.fixed(scene.zero(rolling.body)))
+    arm = view.vector(view.moving(rolling.contact, rolling.axes))
+    body = _material(centre, view.spin(rolling.body), arm)
+    base = view.point(view.fixed(scene.zero(rolling.on)))
+    carrier = _material(base, view.spin(rolling.on), centre + arm - base)
+    speeds, rates_of_speeds = body[0] - carrier[0], body[1] - carrier[1]
     return [_Form(None, *x) for x in zip(speeds, rates_of_speeds, strict=True)]
 
 
-def _material(algebra: Algebra, origin: Moving, spin: Moving, arm: Moving) -> tuple[Vector, Vector]:
+def _material(origin: Moving, spin: Moving, arm: Moving) -> tuple[Vector, Vector]:
     """V_O + omega x c of the material point at a contact c that moves in its body, and the rate of that."""
-    swung = algebra.add(algebra.cross(spin.first, arm.value), algebra.cross(spin.value, arm.first))
-    speed = algebra.add(origin.first, algebra.cross(spin.value, arm.value))
-    return speed, algebra.add(origin.second, swung)
+    swung = spin.first.cross(arm.value) + spin.value.cross(arm.first)
+    return origin.first + spin.value.cross(arm.value), origin.second + swung
 
 
 def _velocity(scene: Scene, g: Expression, along: str | None) -> _Form:

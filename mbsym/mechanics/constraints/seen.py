@@ -14,9 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import Expression, differentiate, names
-from mbsym.mechanics.frames import Turn, axis_vector, turn_back
+from mbsym.mechanics.frames import Turn
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.system import INERTIAL
 from mbsym.model.system import Vector as Expressions
@@ -29,6 +30,19 @@ class Moving:
     value: Vector
     first: Vector
     second: Vector
+
+    @property
+    def frame(self) -> str:
+        return self.value.frame
+
+    def __add__(self, other: Moving) -> Moving:
+        return Moving(self.value + other.value, self.first + other.first, self.second + other.second)
+
+    def __sub__(self, other: Moving) -> Moving:
+        return Moving(self.value - other.value, self.first - other.first, self.second - other.second)
+
+    def in_parallel(self, frame: str) -> Moving:
+        return Moving(self.value.in_parallel(frame), self.first.in_parallel(frame), self.second.in_parallel(frame))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,53 +87,44 @@ class View:
     def algebra(self) -> Algebra:
         return self.scene.algebra
 
-    def moving(self, components: Expressions) -> Moving:
-        """A vector given by expressions, with the rates of its components."""
+    def moving(self, components: Expressions, frame: str) -> Moving:
+        """A vector given by expressions in the axes of a frame, with the rates of its components."""
+        rates = self.rates
         return Moving(
-            self.scene.lower.vector(components),
-            _triple([self.rates.first(x) for x in components]),
-            _triple([self.rates.second(x) for x in components]),
+            self.scene.vector(components, frame),
+            _vector(self.algebra, [rates.first(x) for x in components], frame),
+            _vector(self.algebra, [rates.second(x) for x in components], frame),
         )
 
     def fixed(self, v: Vector) -> Moving:
         """A vector whose components do not change."""
-        return Moving(v, self.algebra.zero_vector, self.algebra.zero_vector)
+        zero = self.scene.zero(v.frame)
+        return Moving(v, zero, zero)
 
-    def vector(self, body: str, u: Moving) -> Moving:
+    def vector(self, u: Moving) -> Moving:
         """A vector in the axes of a body, seen from the frame."""
-        while body != self.frame:
-            u = self._back(body, u)
-            body = self.scene.motions[body].body.attached_to
+        while u.frame != self.frame:
+            u = self._back(u)
         return u
 
-    def point(self, body: str, u: Moving) -> Moving:
+    def point(self, u: Moving) -> Moving:
         """A point, given by its radius vector from the origin of a body in the axes of that body."""
-        while body != self.frame:
-            motion = self.scene.motions[body]
-            u = self.sum(self.moving(motion.body.connection_point), self._back(body, u))
-            body = motion.body.attached_to
+        while u.frame != self.frame:
+            body = self.scene.motions[u.frame].body
+            u = self.moving(body.connection_point, body.attached_to) + self._back(u)
         return u
 
     def spin(self, body: str) -> Moving:
         """The angular velocity of a body relative to the frame and its rate; ``second`` is not used."""
-        zero = self.algebra.zero_vector
-        total = Moving(zero, zero, zero)
+        total = self.fixed(self.scene.zero(body))
         while body != self.frame:
+            before = self.scene.motions[body].body.attached_to
             for turn, rate, second in reversed(self.turns(body)):
-                axis = Moving(
-                    axis_vector(self.algebra, turn.axis, rate), axis_vector(self.algebra, turn.axis, second), zero
-                )
-                total = self._turned_back(turn, rate, second, self.sum(total, axis))
-            body = self.scene.motions[body].body.attached_to
+                lengths = (rate, second, self.algebra.zero)
+                axis = Moving(*(axis_vector(self.algebra, turn.axis, x, turn.frame) for x in lengths))
+                total = self._turned_back(turn, rate, second, total + axis)
+            body, total = before, total.in_parallel(before)
         return total
-
-    def sum(self, u: Moving, v: Moving) -> Moving:
-        add = self.algebra.add
-        return Moving(add(u.value, v.value), add(u.first, v.first), add(u.second, v.second))
-
-    def difference(self, u: Moving, v: Moving) -> Moving:
-        subtract = self.algebra.subtract
-        return Moving(subtract(u.value, v.value), subtract(u.first, v.first), subtract(u.second, v.second))
 
     def turns(self, body: str) -> tuple[tuple[Turn, Scalar, Scalar], ...]:
         """The elementary turns of a body's joint with their first and second rates."""
@@ -128,24 +133,20 @@ class View:
             self._turns[body] = tuple((x, self.rates.first(x.angle), self.rates.second(x.angle)) for x in turns)
         return self._turns[body]
 
-    def _back(self, body: str, u: Moving) -> Moving:
-        for turn, rate, second in reversed(self.turns(body)):
+    def _back(self, u: Moving) -> Moving:
+        """From the axes of a body to those of the one it is attached to, as seen from there."""
+        before = self.scene.motions[u.frame].body.attached_to
+        for turn, rate, second in reversed(self.turns(u.frame)):
             u = self._turned_back(turn, rate, second, u)
-        return u
+        return u.in_parallel(before)
 
     def _turned_back(self, turn: Turn, rate: Scalar, second: Scalar, u: Moving) -> Moving:
-        algebra = self.algebra
-        spin = axis_vector(algebra, turn.axis, rate)
-        swung = algebra.cross(spin, u.value)
-        first = algebra.add(u.first, swung)
-        twice = algebra.cross(spin, algebra.add(algebra.add(u.first, u.first), swung))
-        lag = algebra.cross(axis_vector(algebra, turn.axis, second), u.value)
-        acceleration = algebra.add(algebra.add(u.second, twice), lag)
-        return Moving(
-            turn_back(algebra, turn, u.value),
-            turn_back(algebra, turn, first),
-            turn_back(algebra, turn, acceleration),
-        )
+        spin = axis_vector(self.algebra, turn.axis, rate, turn.frame)
+        swung = spin.cross(u.value)
+        first = u.first + swung
+        twice = spin.cross(u.first + u.first + swung)
+        lag = axis_vector(self.algebra, turn.axis, second, turn.frame).cross(u.value)
+        return Moving(turn.back(u.value), turn.back(first), turn.back(u.second + twice + lag))
 
 
 def common_frame(scene: Scene, bodies: Sequence[str]) -> str:
@@ -156,5 +157,6 @@ def common_frame(scene: Scene, bodies: Sequence[str]) -> str:
     return frame
 
 
-def _triple(items: Sequence[Scalar]) -> Vector:
-    return (items[0], items[1], items[2])
+def _vector(algebra: Algebra, items: Sequence[Scalar], frame: str) -> Vector:
+    a, b, c = items
+    return Vector(algebra, (a, b, c), frame)

@@ -8,23 +8,20 @@ from mbsym.model.system import INERTIAL, PointForce, Torque
 
 
 def _force_action(load: PointForce, scene: Scene) -> Action:
-    force = scene.to_axes(scene.lower.vector(load.components), load.axes, load.point.body)
-    point = scene.lower.vector(load.point.position)
-    return Action((force_at(scene, load.point.body, point, force),))
+    force = scene.to_axes(scene.vector(load.components, load.axes), load.point.body)
+    point = scene.vector(load.point.position, load.point.body)
+    return Action((force_at(point, force),))
 
 
 FORCE = Kind(_force_action)
 
 
 def _torque_action(load: Torque, scene: Scene) -> Action:
-    algebra = scene.algebra
-    given = scene.lower.vector(load.components)
-    opposite = algebra.scale(algebra.number(-1), given)
+    given = scene.vector(load.components, load.axes)
     wrenches = []
-    for body, torque in ((load.body, given), (load.reaction_on, opposite)):
+    for body, torque in ((load.body, given), (load.reaction_on, -given)):
         if body is not None and body != INERTIAL:
-            local = scene.to_axes(torque, load.axes, body)
-            wrenches.append(Wrench(body, algebra.zero_vector, local))
+            wrenches.append(Wrench(body, scene.zero(body), scene.to_axes(torque, body)))
     return Action(tuple(wrenches))
 
 

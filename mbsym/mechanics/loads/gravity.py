@@ -17,28 +17,27 @@ from mbsym.model.system import INERTIAL, NewtonianGravity, UniformGravity
 def _uniform_force_function(load: UniformGravity, scene: Scene) -> Scalar:
     """U = sum m g.r_C, without turning r_C into inertial axes: g turns outwards, and g.r_O adds up joint by joint."""
     algebra = scene.algebra
-    field = {INERTIAL: scene.lower.vector(load.acceleration)}
+    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
     height = {INERTIAL: algebra.zero}
     total = algebra.zero
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
-        field[name] = scene.to_axes(field[parent], parent, name)
-        height[name] = algebra.reduce(height[parent] + algebra.dot(field[parent], motion.offset))
+        field[name] = scene.to_axes(field[parent], name)
+        height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
         if not algebra.vanishes(motion.mass):
-            rise = height[name] + algebra.dot(field[name], motion.mass_centre)
+            rise = height[name] + field[name].dot(motion.mass_centre)
             total = total + algebra.times(motion.mass, rise)
     return algebra.reduce(total)
 
 
 def _uniform_action(load: UniformGravity, scene: Scene) -> Action:
     """m g at each mass centre."""
-    field = {INERTIAL: scene.lower.vector(load.acceleration)}
+    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
     wrenches = []
     for name, motion in scene.motions.items():
-        field[name] = scene.to_axes(field[motion.body.attached_to], motion.body.attached_to, name)
+        field[name] = scene.to_axes(field[motion.body.attached_to], name)
         if not scene.algebra.vanishes(motion.mass):
-            weight = scene.algebra.scale(motion.mass, field[name])
-            wrenches.append(force_at(scene, name, motion.mass_centre, weight))
+            wrenches.append(force_at(motion.mass_centre, field[name] * motion.mass))
     return Action(tuple(wrenches))
 
 
@@ -54,14 +53,14 @@ def _newtonian_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
     half, three_halves = algebra.number(Fraction(1, 2)), algebra.number(Fraction(3, 2))
     total = algebra.zero
     for motion, e, c in orbit.bodies():
-        along = algebra.dot(e, c)
-        tide = algebra.times(three_halves, algebra.times(along, along)) - algebra.times(half, algebra.dot(c, c))
+        along = e.dot(c)
+        tide = algebra.times(three_halves, algebra.times(along, along)) - algebra.times(half, c.dot(c))
         second = algebra.times(motion.mass, tide)
         tensor = central_inertia(scene, motion)
         if tensor is not None:
             trace = tensor[0][0] + tensor[1][1] + tensor[2][2]
             second = second + algebra.times(half, trace)
-            second = second - algebra.times(three_halves, algebra.dot(e, algebra.apply(tensor, e)))
+            second = second - algebra.times(three_halves, e.dot(tensor @ e))
         monopole = algebra.times(motion.mass, orbit.potential - algebra.times(orbit.weight, along))
         total = total + monopole + algebra.times(orbit.cube, algebra.reduce(second))
     return algebra.reduce(total)
@@ -74,15 +73,14 @@ def _newtonian_action(load: NewtonianGravity, scene: Scene) -> Action:
     three = algebra.number(3)
     wrenches = []
     for motion, e, c in orbit.bodies():
-        along = algebra.times(three, algebra.times(orbit.cube, algebra.dot(e, c)))
-        pull = algebra.scale(algebra.reduce(along - orbit.weight), e)
-        per_mass = algebra.subtract(pull, algebra.scale(orbit.cube, c))
-        force = algebra.scale(motion.mass, per_mass)
-        moment = algebra.cross(motion.mass_centre, force)
+        along = algebra.times(three, algebra.times(orbit.cube, e.dot(c)))
+        per_mass = e * algebra.reduce(along - orbit.weight) - c * orbit.cube
+        force = per_mass * motion.mass
+        moment = motion.mass_centre.cross(force)
         tensor = central_inertia(scene, motion)
         if tensor is not None:
-            twist = algebra.cross(e, algebra.apply(tensor, e))
-            moment = algebra.add(moment, algebra.scale(algebra.times(three, orbit.cube), twist))
+            twist = e.cross(tensor @ e)
+            moment = moment + twist * algebra.times(three, orbit.cube)
         wrenches.append(Wrench(motion.body.name, force, moment))
     return completed(load, scene, wrenches, lambda: _on_the_expansion_point(orbit))
 
@@ -95,23 +93,21 @@ def _on_the_expansion_point(orbit: Orbit) -> Wrench:
     It is as small as what the expansion drops, but without it the field would not be conservative.
     """
     scene, algebra = orbit.scene, orbit.scene.algebra
-    total = algebra.zero_vector
+    total = scene.zero(orbit.about)
     three_halves, three, fifteen_halves = (algebra.number(Fraction(n, 2)) for n in (3, 6, 15))
     for motion, e, c in orbit.bodies():
-        along, square = algebra.dot(e, c), algebra.dot(c, c)
+        along, square = e.dot(c), c.dot(c)
         per_e = algebra.times(three_halves, square) - algebra.times(fifteen_halves, algebra.times(along, along))
-        force = algebra.add(algebra.scale(per_e, e), algebra.scale(algebra.times(three, along), c))
-        force = algebra.scale(motion.mass, force)
+        force = (e * per_e + c * algebra.times(three, along)) * motion.mass
         tensor = central_inertia(scene, motion)
         if tensor is not None:
-            turned = algebra.apply(tensor, e)
+            turned = tensor @ e
             trace = tensor[0][0] + tensor[1][1] + tensor[2][2]
-            per_e = algebra.times(fifteen_halves, algebra.dot(e, turned)) - algebra.times(three_halves, trace)
-            spread = algebra.subtract(algebra.scale(per_e, e), algebra.scale(three, turned))
-            force = algebra.add(force, spread)
-        total = algebra.add(total, scene.to_axes(force, motion.body.name, orbit.about))
+            per_e = algebra.times(fifteen_halves, e.dot(turned)) - algebra.times(three_halves, trace)
+            force = force + (e * per_e - turned * three)
+        total = total + scene.to_axes(force, orbit.about)
     fourth = algebra.times(orbit.cube, orbit.inverse)
-    return Wrench(orbit.about, algebra.scale(fourth, total), algebra.zero_vector)
+    return Wrench(orbit.about, total * fourth, scene.zero(orbit.about))
 
 
 def _force_function_of_order(load: NewtonianGravity, scene: Scene) -> Scalar:

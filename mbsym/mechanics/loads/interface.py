@@ -10,7 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
 
 L = TypeVar("L")
@@ -41,6 +42,6 @@ class Kind(Generic[L]):
     force_function: Callable[[L, Scene], Scalar] | None = None
 
 
-def force_at(scene: Scene, body: str, point: Vector, force: Vector) -> Wrench:
+def force_at(point: Vector, force: Vector) -> Wrench:
     """The wrench of a force on a point of a body, both in its axes."""
-    return Wrench(body, force, scene.algebra.cross(point, force))
+    return Wrench(force.frame, force, point.cross(force))

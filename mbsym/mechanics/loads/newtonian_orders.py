@@ -32,7 +32,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Algebra, Scalar, Vector
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Wrench
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radius_vectors, trace
@@ -47,7 +48,7 @@ def order_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
     orbit = Orbit(load, scene)
     by_degree = [algebra.zero] * (order + 1)
     for motion, e, c in orbit.bodies():
-        x, y = algebra.dot(e, c), algebra.dot(c, c)
+        x, y = e.dot(c), c.dot(c)
         for degree, polynomial in enumerate(legendre(algebra, x, y, order)):
             sign = algebra.number((-1) ** degree)
             by_degree[degree] = by_degree[degree] + algebra.times(sign, algebra.times(motion.mass, polynomial))
@@ -80,8 +81,8 @@ def _spread(
     if tensor is None:
         return {}
     algebra = scene.algebra
-    turned, t = algebra.apply(tensor, e), trace(tensor)
-    ee, ec = algebra.dot(e, turned), algebra.dot(c, turned)
+    turned, t = tensor @ e, trace(tensor)
+    ee, ec = e.dot(turned), c.dot(turned)
 
     def sum_of(*terms: tuple[Fraction | int, Scalar, Scalar]) -> Scalar:
         total = algebra.zero
@@ -94,7 +95,7 @@ def _spread(
     if order >= 3:
         found[3] = sum_of((-3 * half, x, t), (15 * half, x, ee), (-3, ec, one))
     if order >= 4:
-        cc, xx = algebra.dot(c, algebra.apply(tensor, c)), algebra.times(x, x)
+        cc, xx = c.dot(tensor @ c), algebra.times(x, x)
         pair = sum_of((15 * half, xx, one), (-3 * half, y, one))
         quartet = sum_of((105 * half, xx, one), (-15 * half, y, one))
         found[4] = sum_of((half, pair, t), (-half, quartet, ee), (15, x, ec), (-3 * half, cc, one))
@@ -121,20 +122,19 @@ def order_action(load: NewtonianGravity, scene: Scene) -> Action:
     expansions = [(motion, _Expansion(scene, motion, e, c, order)) for motion, e, c in orbit.bodies()]
     wrenches = []
     for motion, expansion in expansions:
-        force, torque = algebra.zero_vector, algebra.zero_vector
+        force = torque = scene.zero(motion.body.name)
         for degree in range(1 if orbit.falling else 0, order):
-            force = algebra.add(force, algebra.scale(factors[degree + 1], expansion.force(degree)))
+            force = force + expansion.force(degree) * factors[degree + 1]
         if expansion.tensor is not None:
             for degree in range(2, order + 1):
-                torque = algebra.add(torque, algebra.scale(factors[degree], expansion.torque(degree)))
-        moment = algebra.add(algebra.cross(motion.mass_centre, force), torque)
-        wrenches.append(Wrench(motion.body.name, force, moment))
+                torque = torque + expansion.torque(degree) * factors[degree]
+        wrenches.append(Wrench(motion.body.name, force, motion.mass_centre.cross(force) + torque))
 
     def on_the_expansion_point() -> Wrench:
-        left = algebra.zero_vector
-        for motion, expansion in expansions:
-            left = algebra.add(left, scene.to_axes(expansion.force(order), motion.body.name, load.about))
-        return Wrench(load.about, algebra.scale(factors[order + 1], left), algebra.zero_vector)
+        left = nothing = scene.zero(load.about)
+        for _, expansion in expansions:
+            left = left + scene.to_axes(expansion.force(order), load.about)
+        return Wrench(load.about, left * factors[order + 1], nothing)
 
     return completed(load, scene, wrenches, on_the_expansion_point)
 
@@ -145,37 +145,38 @@ class _Expansion:
     def __init__(self, scene: Scene, motion: BodyMotion, e: Vector, c: Vector, order: int) -> None:
         algebra = self.algebra = scene.algebra
         self.mass, self.e, self.c = motion.mass, e, c
-        x, y = algebra.dot(e, c), algebra.dot(c, c)
+        x, y = e.dot(c), c.dot(c)
         self.third = gegenbauer(algebra, x, y, 3, order)
         self.tensor = central_inertia(scene, motion)
         if self.tensor is not None:
             self.fifth = gegenbauer(algebra, x, y, 5, order)
             self.seventh = gegenbauer(algebra, x, y, 7, order)
-            self.turned = (algebra.apply(self.tensor, e), algebra.apply(self.tensor, c))
-            twice = algebra.times(algebra.number(2), algebra.dot(e, self.turned[1]))
-            self.quadratic = (algebra.dot(e, self.turned[0]), twice, algebra.dot(c, self.turned[1]))
+            self.turned = (self.tensor @ e, self.tensor @ c)
+            twice = algebra.times(algebra.number(2), e.dot(self.turned[1]))
+            self.quadratic = (e.dot(self.turned[0]), twice, c.dot(self.turned[1]))
             self.trace = trace(self.tensor)
 
     def _along(self, series: list[Scalar], k: int, pair: tuple[Vector, Vector]) -> Vector:
         """The coefficient of s^k in series (first + s second)."""
-        algebra = self.algebra
-        found = algebra.scale(series[k], pair[0])
-        return algebra.add(found, algebra.scale(series[k - 1], pair[1])) if k else found
+        found = pair[0] * series[k]
+        return found + pair[1] * series[k - 1] if k else found
 
     def force(self, degree: int) -> Vector:
         """The coefficient of nu/R^(degree + 2) in the force."""
         algebra = self.algebra
         r = (self.e, self.c)
-        total = algebra.scale(-self.mass, self._along(self.third, degree, r))
+        less = -self.mass
+        total = self._along(self.third, degree, r) * less
         if self.tensor is not None and degree >= 2:
             k = degree - 2
-            spread = algebra.scale(self.trace, self._along(self.fifth, k, r))
-            spread = algebra.add(spread, algebra.scale(algebra.number(2), self._along(self.fifth, k, self.turned)))
-            total = algebra.subtract(total, algebra.scale(algebra.number(Fraction(3, 2)), spread))
+            spread = self._along(self.fifth, k, r) * self.trace
+            two = algebra.number(2)
+            spread = spread + self._along(self.fifth, k, self.turned) * two
+            total = total - spread * algebra.number(Fraction(3, 2))
             central = [self._product(self.seventh, i) for i in range(k + 1)]
             along = self._along(central, k, r)
-            total = algebra.add(total, algebra.scale(algebra.number(Fraction(15, 2)), along))
-        return (algebra.reduce(total[0]), algebra.reduce(total[1]), algebra.reduce(total[2]))
+            total = total + along * algebra.number(Fraction(15, 2))
+        return total.reduced()
 
     def _product(self, series: list[Scalar], k: int) -> Scalar:
         """The coefficient of s^k in series (e + s c).Theta (e + s c)."""
@@ -187,13 +188,14 @@ class _Expansion:
     def torque(self, degree: int) -> Vector:
         """The coefficient of nu/R^(degree + 1) in the torque."""
         algebra, k = self.algebra, degree - 2
-        total = algebra.scale(self.fifth[k], algebra.cross(self.e, self.turned[0]))
+        e, c = self.e, self.c
+        total = e.cross(self.turned[0]) * self.fifth[k]
         if k >= 1:
-            mixed = algebra.add(algebra.cross(self.e, self.turned[1]), algebra.cross(self.c, self.turned[0]))
-            total = algebra.add(total, algebra.scale(self.fifth[k - 1], mixed))
+            mixed = e.cross(self.turned[1]) + c.cross(self.turned[0])
+            total = total + mixed * self.fifth[k - 1]
         if k >= 2:
-            total = algebra.add(total, algebra.scale(self.fifth[k - 2], algebra.cross(self.c, self.turned[1])))
-        return algebra.scale(algebra.number(3), total)
+            total = total + c.cross(self.turned[1]) * self.fifth[k - 2]
+        return total * algebra.number(3)
 
 
 def gegenbauer(algebra: Algebra, x: Scalar, y: Scalar, exponent: int, order: int) -> list[Scalar]:
@@ -214,7 +216,7 @@ def gegenbauer(algebra: Algebra, x: Scalar, y: Scalar, exponent: int, order: int
 
 def _inverse_distance(algebra: Algebra, r: Vector) -> tuple[Scalar, Scalar]:
     """1/|r| and 1/|r|^2."""
-    square = algebra.dot(r, r)
+    square = r.dot(r)
     inverse = algebra.reciprocal(square)
     return algebra.reduce(algebra.times(algebra.square_root(square), inverse)), inverse
 
@@ -232,9 +234,9 @@ class _Falling:
     def __init__(self, orbit: Orbit, e: Vector, c: Vector) -> None:
         algebra = self.algebra = orbit.scene.algebra
         self.orbit, self.e, self.c = orbit, e, c
-        scaled = algebra.scale(orbit.inverse, c)
-        self.y = algebra.dot(scaled, scaled)
-        self.u = algebra.times(algebra.number(2), algebra.dot(e, scaled)) + self.y
+        scaled = c * orbit.inverse
+        self.y = scaled.dot(scaled)
+        self.u = algebra.times(algebra.number(2), e.dot(scaled)) + self.y
         self.s = algebra.square_root(algebra.reduce(algebra.one + self.u))
 
     def force(self) -> Vector:
@@ -243,9 +245,9 @@ class _Falling:
         top = algebra.times(self.u, algebra.one + s + square)
         bottom = algebra.times(algebra.times(square, s), algebra.one + s)
         f = -algebra.times(top, algebra.reciprocal(bottom))
-        along = algebra.scale(algebra.times(f, self.orbit.square), self.e)
-        across = algebra.scale(algebra.times(algebra.one + f, self.orbit.cube), self.c)
-        return algebra.scale(algebra.number(-1), algebra.add(along, across))
+        along = self.e * algebra.times(f, self.orbit.square)
+        across = self.c * algebra.times(algebra.one + f, self.orbit.cube)
+        return -(along + across)
 
     def potential(self) -> Scalar:
         algebra, s = self.algebra, self.s
@@ -276,7 +278,7 @@ def _exact_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
             tides = tides + algebra.times(motion.mass, fallen[motion.body.name].potential())
         tensor = central_inertia(scene, motion)
         if tensor is not None:
-            turned = algebra.dot(r, algebra.apply(tensor, r))
+            turned = r.dot(tensor @ r)
             excess = trace(tensor) - algebra.times(algebra.number(3), algebra.reduce(algebra.times(square, turned)))
             cube = algebra.reduce(algebra.times(inverse, square))
             value = value + algebra.times(algebra.number(Fraction(1, 2)), algebra.times(cube, algebra.reduce(excess)))
@@ -293,22 +295,22 @@ def _exact_action(load: NewtonianGravity, scene: Scene) -> Action:
     for motion, r in radius_vectors(load, scene):
         inverse, square = _inverse_distance(algebra, r)
         cube = algebra.times(constant, algebra.reduce(algebra.times(inverse, square)))
-        force = algebra.scale(-algebra.times(motion.mass, cube), r)
+        force = r * -algebra.times(motion.mass, cube)
         if fallen:
-            force = algebra.scale(motion.mass, fallen[motion.body.name].force())
-        torque = algebra.zero_vector
+            force = fallen[motion.body.name].force() * motion.mass
+        torque = scene.zero(motion.body.name)
         tensor = central_inertia(scene, motion)
         if tensor is not None:
             fifth = algebra.reduce(algebra.times(cube, square))
-            turned = algebra.apply(tensor, r)
-            central = algebra.reduce(algebra.times(square, algebra.dot(r, turned)))
+            turned = tensor @ r
+            central = algebra.reduce(algebra.times(square, r.dot(turned)))
             central = algebra.times(algebra.number(5), central) - trace(tensor)
-            spread = algebra.scale(central, r)
-            spread = algebra.subtract(spread, algebra.scale(algebra.number(2), turned))
-            three_halves = algebra.times(algebra.number(Fraction(3, 2)), fifth)
-            force = algebra.add(force, algebra.scale(three_halves, spread))
-            torque = algebra.scale(algebra.times(algebra.number(3), fifth), algebra.cross(r, turned))
-        force = (algebra.reduce(force[0]), algebra.reduce(force[1]), algebra.reduce(force[2]))
-        moment = algebra.add(algebra.cross(motion.mass_centre, force), torque)
-        wrenches.append(Wrench(motion.body.name, force, moment))
+            spread = r * central
+            two = algebra.number(2)
+            spread = spread - turned * two
+            force = force + spread * algebra.times(algebra.number(Fraction(3, 2)), fifth)
+            thrice = algebra.times(algebra.number(3), fifth)
+            torque = r.cross(turned) * thrice
+        force = force.reduced()
+        wrenches.append(Wrench(motion.body.name, force, motion.mass_centre.cross(force) + torque))
     return completed(load, scene, wrenches)

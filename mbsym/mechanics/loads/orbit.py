@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Tensor, Vector, tensor_of
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Wrench
@@ -27,14 +28,14 @@ class Orbit:
         algebra, ring = scene.algebra, scene.ring
         # The distance is simplified in the ring, where sin^2 + cos^2 = 1, and then carried into the algebra at hand.
         radius = outward(load, scene)
-        distance = ring.square_root(ring.dot(radius, radius))
+        distance = ring.square_root(radius.dot(radius))
         self.inverse = scene.carry(ring.reciprocal(distance))
         inverse = ring.reciprocal(distance)
-        unit = [ring.dot((inverse,), (x,)) for x in radius]
+        a, b, c = (ring.dot((inverse,), (x,)) for x in radius)
         self.scene = scene
         self.about = load.about
         self.centre = load.centre
-        self.unit: Vector = (scene.carry(unit[0]), scene.carry(unit[1]), scene.carry(unit[2]))
+        self.unit = scene.carried(Vector(ring, (a, b, c), load.about))
         self.constant = scene.lower(load.constant)
         self.cube = algebra.times(self.constant, algebra.power(self.inverse, 3))
         self.square = algebra.times(self.constant, algebra.power(self.inverse, 2))
@@ -51,9 +52,8 @@ class Orbit:
 
 def radius_vectors(load: NewtonianGravity, scene: Scene) -> list[tuple[BodyMotion, Vector]]:
     """(motion, r) of every body carried by the frame ``about``: r from the centre to its mass centre, in its axes."""
-    radius = outward(load, scene)
-    start = (scene.carry(radius[0]), scene.carry(radius[1]), scene.carry(radius[2]))
-    return [(motion, scene.algebra.add(p, c)) for motion, p, c in _carried(scene, load.about, load.centre, start)]
+    start = scene.carried(outward(load, scene))
+    return [(motion, p + c) for motion, p, c in _carried(scene, load.about, load.centre, start)]
 
 
 def outward(load: NewtonianGravity, scene: Scene) -> Vector:
@@ -61,10 +61,10 @@ def outward(load: NewtonianGravity, scene: Scene) -> Vector:
     ring = scene.ring
     closed = scene if scene.algebra is ring else _closed_scene(scene)
     frame = scene.common_ancestor(load.about, load.centre)
-    p = closed.position(load.about, ring.zero_vector, frame)
+    p = closed.position(closed.zero(load.about), frame)
     if frame != load.centre:
-        p = ring.subtract(p, closed.position(load.centre, ring.zero_vector, frame))
-    return closed.to_axes(p, frame, load.about)
+        p = p - closed.position(closed.zero(load.centre), frame)
+    return closed.to_axes(p, load.about)
 
 
 def _closed_scene(scene: Scene) -> Scene:
@@ -78,23 +78,22 @@ def _carried(scene: Scene, about: str, centre: str, direction: Vector) -> list[t
     """
     algebra = scene.algebra
     turned: dict[str, Vector] = {about: direction}
-    origin: dict[str, Vector] = {about: algebra.zero_vector}
+    origin: dict[str, Vector] = {about: scene.zero(about)}
     found = []
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
         if name != about:
             if parent not in turned:
                 continue
-            turned[name] = scene.to_axes(turned[parent], parent, name)
-            moved = algebra.add(origin[parent], motion.offset)
-            origin[name] = scene.to_axes(moved, parent, name)
+            turned[name] = scene.to_axes(turned[parent], name)
+            origin[name] = scene.to_axes(origin[parent] + motion.offset, name)
         massless = algebra.vanishes(motion.mass) and motion.inertia is None
         if not massless and name != centre:
-            found.append((motion, turned[name], algebra.add(origin[name], motion.mass_centre)))
+            found.append((motion, turned[name], origin[name] + motion.mass_centre))
     return found
 
 
-def central_inertia(scene: Scene, motion: BodyMotion) -> tuple[Vector, Vector, Vector] | None:
+def central_inertia(scene: Scene, motion: BodyMotion) -> Tensor | None:
     """Theta_C = Theta_O - m (c.c 1 - c c^T) for a tensor given about the joint."""
     if motion.inertia is None or motion.body.inertia is None:
         return None
@@ -102,18 +101,18 @@ def central_inertia(scene: Scene, motion: BodyMotion) -> tuple[Vector, Vector, V
         return motion.inertia
     algebra = scene.algebra
     c = motion.mass_centre
-    square = algebra.dot(c, c)
+    square = c.dot(c)
     rows = []
     for i in range(3):
         row = []
         for j in range(3):
             steiner = (square if i == j else algebra.zero) - algebra.times(c[i], c[j])
             row.append(algebra.reduce(motion.inertia[i][j] - algebra.times(motion.mass, steiner)))
-        rows.append((row[0], row[1], row[2]))
-    return (rows[0], rows[1], rows[2])
+        rows.append(row)
+    return tensor_of(algebra, rows, c.frame)
 
 
-def trace(tensor: tuple[Vector, Vector, Vector]) -> Scalar:
+def trace(tensor: Tensor) -> Scalar:
     return tensor[0][0] + tensor[1][1] + tensor[2][2]
 
 
@@ -132,14 +131,13 @@ def completed(
     U changes neither when centre, O1 and bodies are all shifted, nor when all are turned about the centre.  So a centre
     that is a body itself feels minus the sum of all other forces, at its origin, and nothing else.
     """
-    algebra = scene.algebra
     found = list(wrenches)
     centre_moves = _moves(scene, load.centre)
     if at_origin is not None and (centre_moves or _moves(scene, load.about)):
         found.append(at_origin())
     if centre_moves:
-        total = algebra.zero_vector
+        total = scene.zero(load.centre)
         for wrench in found:
-            total = algebra.add(total, scene.to_axes(wrench.force, wrench.body, load.centre))
-        found.append(Wrench(load.centre, algebra.scale(algebra.number(-1), total), algebra.zero_vector))
+            total = total + scene.to_axes(wrench.force, load.centre)
+        found.append(Wrench(load.centre, -total, scene.zero(load.centre)))
     return Action(tuple(wrench for wrench in found if wrench.body != INERTIAL))

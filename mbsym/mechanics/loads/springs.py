@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar, Vector
+from mbsym.algebra.base import Scalar
 from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind, force_at
 from mbsym.model.system import (
@@ -57,18 +58,16 @@ class _Pair:
         self.scene = scene
         self.ends = (first, second)
         self.frame = scene.common_ancestor(first.body, second.body)
-        self.points = tuple(scene.lower.vector(end.position) for end in self.ends)
-        reach = [scene.position(end.body, point, self.frame) for end, point in zip(self.ends, self.points, strict=True)]
-        self.span = scene.algebra.subtract(reach[1], reach[0])
+        self.points = [scene.vector(end.position, end.body) for end in self.ends]
+        reach = [scene.position(point, self.frame) for point in self.points]
+        self.span = reach[1] - reach[0]
 
     def action(self, pull: Vector) -> Action:
         """``pull`` (in the frame's axes) on the first point and its opposite on the second."""
-        opposite = self.scene.algebra.scale(self.scene.algebra.number(-1), pull)
         wrenches = []
-        for end, point, force in zip(self.ends, self.points, (pull, opposite), strict=True):
-            if end.body != INERTIAL:
-                local = self.scene.to_axes(force, self.frame, end.body)
-                wrenches.append(force_at(self.scene, end.body, point, local))
+        for point, force in zip(self.points, (pull, -pull), strict=True):
+            if point.frame != INERTIAL:
+                wrenches.append(force_at(point, self.scene.to_axes(force, point.frame)))
         return Action(tuple(wrenches))
 
 
@@ -81,7 +80,7 @@ def _point_spring_force_function(load: PointSpring, scene: Scene) -> Scalar:
     """U = -stiffness (d^2 - 2 d length + length^2) / 2; without a natural length no root is taken."""
     algebra = scene.algebra
     span = _Pair(load.first, load.second, scene).span
-    square = algebra.dot(span, span)
+    square = span.dot(span)
     length = scene.lower(load.length)
     energy = square
     if not algebra.vanishes(length):
@@ -98,30 +97,27 @@ def _point_spring_action(load: PointSpring, scene: Scene) -> Action:
     length = scene.lower(load.length)
     factor = scene.lower(load.stiffness)
     if not algebra.vanishes(length):
-        distance = algebra.square_root(algebra.dot(pair.span, pair.span))
+        distance = algebra.square_root(pair.span.dot(pair.span))
         strain = algebra.one - algebra.times(length, algebra.reciprocal(distance))
         factor = algebra.times(factor, strain)
-    return pair.action(algebra.scale(algebra.reduce(factor), pair.span))
+    return pair.action(pair.span * algebra.reduce(factor))
 
 
 POINT_SPRING = Kind(_point_spring_action, _point_spring_force_function)
 
 
-def point_velocity(scene: Scene, body: str, point: Vector) -> Vector:
-    """V_O + omega x r, in the body's axes; zero for a point of the inertial frame."""
-    if body == INERTIAL:
-        return scene.algebra.zero_vector
-    motion = scene.motions[body]
-    return scene.algebra.add(motion.velocity_origin, scene.algebra.cross(motion.angular_velocity, point))
+def point_velocity(scene: Scene, point: Vector) -> Vector:
+    """V_O + omega x r of a point r of the body in whose axes it is; zero for a point of the inertial frame."""
+    if point.frame == INERTIAL:
+        return scene.zero(INERTIAL)
+    motion = scene.motions[point.frame]
+    return motion.velocity_origin + motion.angular_velocity.cross(point)
 
 
 def _closing(pair: _Pair, scene: Scene) -> Vector:
     """V_second - V_first, in the axes of the pair's frame."""
-    speeds = [
-        scene.to_axes(point_velocity(scene, end.body, point), end.body, pair.frame)
-        for end, point in zip(pair.ends, pair.points, strict=True)
-    ]
-    return scene.algebra.subtract(speeds[1], speeds[0])
+    speeds = [scene.to_axes(point_velocity(scene, point), pair.frame) for point in pair.points]
+    return speeds[1] - speeds[0]
 
 
 def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
@@ -138,15 +134,14 @@ def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
     coefficient = scene.lower(load.coefficient)
     along = [axis for axis in range(3) if not algebra.vanishes(pair.span[axis])]
     if len(along) == 1:
-        pull = [algebra.zero, algebra.zero, algebra.zero]
-        pull[along[0]] = algebra.times(coefficient, closing[along[0]])
-        return pair.action((pull[0], pull[1], pull[2]))
+        pull = algebra.times(coefficient, closing[along[0]])
+        return pair.action(axis_vector(algebra, along[0] + 1, pull, pair.frame))
     try:
-        inverse_square = algebra.reciprocal(algebra.dot(pair.span, pair.span))
+        inverse_square = algebra.reciprocal(pair.span.dot(pair.span))
     except SingularPoint:
         raise SingularPoint("the points of a damper coincide: the line between them has no direction") from None
-    rate = algebra.reduce(algebra.times(algebra.dot(pair.span, closing), inverse_square))
-    return pair.action(algebra.scale(algebra.reduce(algebra.times(coefficient, rate)), pair.span))
+    rate = algebra.reduce(algebra.times(pair.span.dot(closing), inverse_square))
+    return pair.action(pair.span * algebra.reduce(algebra.times(coefficient, rate)))
 
 
 POINT_DAMPER = Kind(_point_damper_action)
@@ -155,7 +150,8 @@ POINT_DAMPER = Kind(_point_damper_action)
 def _isotropic_damper_action(load: IsotropicDamper, scene: Scene) -> Action:
     """coefficient (V_second - V_first) on the first point."""
     pair = _Pair(load.first, load.second, scene)
-    return pair.action(scene.algebra.scale(scene.lower(load.coefficient), _closing(pair, scene)))
+    coefficient = scene.lower(load.coefficient)
+    return pair.action(_closing(pair, scene) * coefficient)
 
 
 ISOTROPIC_DAMPER = Kind(_isotropic_damper_action)

@@ -89,9 +89,9 @@ def _plane(system: System) -> int | None:
     try:
         scene = Scene(system, ring, ring_environment(system, ring), ring)
         axes = {1, 2, 3}
-        for name, motion in scene.motions.items():
-            spin = scene.to_axes(motion.angular_velocity, name, INERTIAL)
-            velocity = scene.to_axes(motion.velocity_mass_centre, name, INERTIAL)
+        for motion in scene.motions.values():
+            spin = scene.to_axes(motion.angular_velocity, INERTIAL)
+            velocity = scene.to_axes(motion.velocity_mass_centre, INERTIAL)
             for axis in tuple(axes):
                 others = [x for k, x in enumerate(spin, start=1) if k != axis]
                 if not all(ring.reduce(x).is_zero() for x in (*others, velocity[axis - 1])):

@@ -80,9 +80,9 @@ def _in_inertial_axes(scene: Scene, kind: str, body: str) -> tuple[Polynomial, P
     """Radius vector or velocity of the mass centre."""
     motion = scene.motions[body]
     if kind == "position":
-        found = scene.position(body, motion.mass_centre, INERTIAL)
+        found = scene.position(motion.mass_centre, INERTIAL)
     else:
-        found = scene.to_axes(motion.velocity_mass_centre, body, INERTIAL)
+        found = scene.to_axes(motion.velocity_mass_centre, INERTIAL)
     return (scene.ring.reduce(found[0]), scene.ring.reduce(found[1]), scene.ring.reduce(found[2]))
 
 
