@@ -11,7 +11,7 @@ from mbsym_cli.option_groups import group
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from mbsym.model.system import System
     from mbsym.numerics.models import Model
@@ -39,15 +39,9 @@ class Choosing:
     without: tuple[str, ...]
 
     @property
-    def typed(self) -> tuple[str, ...]:
-        """The options among them that were typed."""
-        given = {
-            "--accuracy": self.accuracy,
-            "--gravity": self.gravity,
-            "--linear": self.linear,
-            "--without": self.without,
-        }
-        return tuple(name for name, value in given.items() if value)
+    def models(self) -> bool:
+        """Whether a part of the model was settled by hand."""
+        return bool(self.gravity or self.linear or self.without)
 
     def added(self, request: Request, system: System | None, asked: Options) -> Request:
         """The request with the model that was settled by hand; complaints join ``asked``."""
@@ -59,13 +53,14 @@ class Choosing:
 class Wanted:
     """What is to be reached, and what is settled already; ``only_plan``: nothing is run.
 
-    ``settings`` are those of --set, for the command that repeats the run.
+    ``settings`` are those of --set, ``carried`` further options, for the command that repeats the run.
     """
 
     accuracy: Accuracy
     pins: Pins
     only_plan: bool
     settings: tuple[str, ...] = ()
+    carried: tuple[str, ...] = ()
 
 
 choice_options = group(
@@ -89,40 +84,33 @@ choice_options = group(
 
 
 def with_goal(
-    choosing: Group, system: System | None, wanted: Asked, settings: Sequence[str], varied: bool, asked: Options
+    choosing: Group,
+    system: System | None,
+    wanted: Asked,
+    settings: Sequence[str],
+    typed: Collection[str],
+    carried: Sequence[str],
+    asked: Options,
 ) -> Asked:
-    """What is asked for, with the accuracy that is to be reached, if one is.
-
-    ``varied``: many motions, or sensitivities, which go with no choice of models.
-    """
+    """What is asked for, with the accuracy that is to be reached, if one is; ``typed`` are the options' names."""
     assert isinstance(choosing, Choosing)
-    if varied:
-        for name in choosing.typed:
-            asked.complain(name, "conflicting-options", "models and accuracies are chosen for one motion by itself")
     accuracy = _accuracy(system, choosing.accuracy, asked)
-    if choosing.plan and choosing.accuracy is None:
-        asked.complain(
-            "--plan", "missing-option", "there is nothing to plan for", "give an --accuracy, for example 1e-6"
-        )
     if accuracy is None:
         return wanted
-    pins = _pins(wanted.request, choosing)
-    return replace(wanted, goal=Wanted(accuracy, pins, choosing.plan, tuple(settings)))
+    pins = _pins(wanted.request, choosing, "--arithmetic" in typed)
+    return replace(wanted, goal=Wanted(accuracy, pins, choosing.plan, tuple(settings), tuple(carried)))
 
 
-def _pins(request: Request, choosing: Choosing) -> Pins:
-    """What other options have settled."""
-    from click.core import ParameterSource
-
+def _pins(request: Request, choosing: Choosing, arithmetic: bool) -> Pins:
+    """What other options have settled; float64 settles the ``arithmetic`` only where it was typed."""
     from mbsym.numerics.planning import Pins
 
-    typed = click.get_current_context().get_parameter_source("arithmetic") is ParameterSource.COMMANDLINE
     return Pins(
-        model=request.model if {"--gravity", "--linear", "--without"} & set(choosing.typed) else None,
+        model=request.model if choosing.models else None,
         method=None if request.method == "auto" else request.method,
         tolerance=request.tolerance,
         step=request.step,
-        scalar=request.arithmetic if typed else None,
+        scalar=request.arithmetic if arithmetic else None,
         whole=request.whole,
     )
 

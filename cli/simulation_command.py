@@ -6,17 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import click
+
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, read_description
 from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_choice import with_goal
-from mbsym_cli.simulation_continue import check_values
+from mbsym_cli.simulation_continue import going_on
 from mbsym_cli.simulation_many import Many, read_many
 from mbsym_cli.simulation_options import Group
 from mbsym_cli.simulation_request import Flags, check_held, read_request
 from mbsym_cli.simulation_run import run
+from mbsym_cli.simulation_together import carried, complain_of_names, complain_of_pairs, typed_options
 
 
 def simulated(
@@ -31,14 +34,18 @@ def simulated(
     """The exit code of one command."""
     system = read_description(file, "simulate")
     asked = Options()
+    context = click.get_current_context()
+    typed = typed_options(context)
+    complain_of_pairs(typed, asked)
+    complain_of_names(settings, {"--vary": many.vary, "--without": context.params["without"]}, asked)
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     wanted = read_request(system, texts, flags, asked)
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, system, asked))
-    check_values(wanted.request, given, asked)
+    wanted = replace(wanted, request=going_on(wanted.request, given, typed, asked))
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
-    varied, sensitive = read_many(many, given, wanted, asked)
-    wanted = with_goal(further["choosing"], system, wanted, settings, bool(many.vary or many.sensitivity), asked)
+    varied, sensitive = read_many(many, given, wanted, typed, asked)
+    wanted = with_goal(further["choosing"], system, wanted, settings, typed, carried(context), asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)

@@ -34,8 +34,6 @@ class Watched:
             return request
         from mbsym.simulation.watching import Watch, section_of
 
-        if self.axes is not None and self.section is None:
-            asked.complain("--axes", "missing-option", "axes are those of a --section, and there is none")
         if system is None:
             return request
         events = _read("--event", self.events, system, asked)

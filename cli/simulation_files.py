@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,22 @@ MOST_DRAWN = 20_001
 SMOOTHER, MOST_PLACES = 8, 2_000_000
 
 
+class Hashed:
+    """Parts of a text as they are, and the SHA-256 of all that have been taken."""
+
+    def __init__(self, parts: Iterable[str]) -> None:
+        self._parts, self._found = parts, sha256()
+
+    def __iter__(self) -> Iterator[str]:
+        for part in self._parts:
+            self._found.update(part.encode())
+            yield part
+
+    @property
+    def digest(self) -> str:
+        return self._found.hexdigest()
+
+
 def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """The paths of what was written; names tell whether the trajectory is whole.
 
@@ -36,10 +53,12 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
 
     mark = "" if run.whole else "-partial"
     files: dict[str, Content] = {}
+    table: Hashed | None = None
     if "csv" in asked.formats:
         further = {kept.column: kept.values for kept in run.invariants}
         units = {kept.column: kept.unit for kept in run.invariants}
-        files[f"trajectory{mark}.csv"] = trajectory_parts(run.trajectory, further, units)
+        table = Hashed(trajectory_parts(run.trajectory, further, units))
+        files[f"trajectory{mark}.csv"] = table
     if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:
         files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
     files |= {f"{stem}{mark}.csv": text for stem, text in _happened(run).items()}
@@ -56,7 +75,9 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     for name, content in pictures.items():
         stem, _, kind = name.rpartition(".")
         files[f"{stem}{mark}.{kind}"] = content
-    files["simulation.json"] = simulation_json(run, list(files))
+    names = list(files)
+    # Made when the table, which stands before it, has been written: until then there is no hash of it.
+    files["simulation.json"] = (simulation_json(run, names, None if table is None else table.digest) for _ in range(1))
     paths = deliver(folder, files, "simulate")
     if stopped is not None:
         raise stopped

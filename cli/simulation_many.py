@@ -14,6 +14,8 @@ from mbsym_cli.option_groups import group
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.variation import Variation
     from mbsym_cli.simulation_request import Asked
@@ -67,17 +69,14 @@ class Varied:
 
 
 def read_many(
-    many: Many, given: Scenario | None, wanted: Asked, options: Options
+    many: Many, given: Scenario | None, wanted: Asked, typed: Collection[str], options: Options
 ) -> tuple[Varied | None, tuple[str, ...]]:
     """(the ensemble, names to differentiate by); what is wrong joins the complaints."""
     names = _sensitive(many.sensitivity, given, options)
-    if many.sensitivity is not None and many.vary:
-        options.complain("--sensitivity", "conflicting-options", "--sensitivity and --vary exclude each other")
     if not many.vary:
-        for option, text in (("--members", many.members),):
-            if text is not None:
-                options.complain(option, "missing-option", f"{option} goes with --vary", _HINT)
         return None, names
+    from mbsym.numerics.variation import Grid
+
     _check_method(wanted, options)
     if len(many.vary) > MOST_VARIED:
         options.complain("--vary", "too-large", f"at most {MOST_VARIED} names vary at once")
@@ -86,6 +85,10 @@ def read_many(
     seed = options.whole("--seed", many.seed, 0, 2**63 - 1)
     sampling = options.word("--sampling", many.sampling, ("random", "sobol"), "sampling")
     found = [one for text in many.vary for one in _variation(text, given, options)]
+    if found and all(isinstance(one, Grid) for one in found):
+        for option in sorted({"--seed", "--sampling"} & set(typed)):
+            told = f"{option} does not go with --vary {found[0].name}: a grid, of which nothing is drawn"
+            options.complain(option, "conflicting-options", told, "draw it: name=uniform(low, high)")
     if given is None or len(found) < len(many.vary) or seed is None or sampling is None:
         return None, names
     if many.members is not None and members is None:
@@ -104,19 +107,6 @@ def _check_method(wanted: Asked, options: Options) -> None:
     if request.method != "auto" and request.method not in TABLEAUX:
         told = f"members do not run side by side with {request.method}"
         options.complain("--method", "unsuitable-method", told, f"choose from {', '.join(TABLEAUX)}")
-    if request.arithmetic != "float64":
-        told = f"members are computed in float64, not in {request.arithmetic}"
-        options.complain("--arithmetic", "conflicting-options", told)
-    flags = (
-        ("--invariants", request.invariants),
-        ("--whole", request.whole),
-        ("--estimate", request.estimate is not None),
-        ("--event, --stop or --section", bool(request.events)),
-        ("--certify", request.certify is not None),
-    )
-    for option, asked in flags:
-        if asked:
-            options.complain(option, "conflicting-options", f"{option} does not go with --vary")
     for kind in wanted.formats:
         if kind not in ("csv", "svg", "png", "pdf"):
             told = f"there is no {kind} of an ensemble"

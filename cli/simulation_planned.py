@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.model.quantities import time_unit
 from mbsym.report.unit_text import pretty
-from mbsym_cli.console import BROKEN_DOWN, OK, console, printable, status
+from mbsym_cli.console import BROKEN_DOWN, OK, complain, console, printable, status
 from mbsym_cli.simulation_choice import Wanted
 from mbsym_cli.simulation_request import Asked
 
@@ -16,6 +17,20 @@ if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request, Simulation
     from mbsym.simulation.run import Stage
+
+
+class InterruptedPlanning(KeyboardInterrupt):
+    """Ctrl-C before there was a plan."""
+
+
+@contextmanager
+def planning(asked: Asked, file: Path) -> Iterator[None]:
+    """A spinner while a plan is made.  Raises InterruptedPlanning for Ctrl-C."""
+    try:
+        with status(asked.quiet, f"{file.name}: choosing model, method and tolerance"):
+            yield
+    except KeyboardInterrupt:
+        raise InterruptedPlanning from None
 
 
 def simulated_to(
@@ -36,8 +51,12 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
 
     goal = asked.goal
     assert goal is not None
-    with status(asked.quiet, f"{file.name}: choosing model, method and tolerance"):
+    with planning(asked, file):
         plan, settled = plan_for(given, asked.request, goal.accuracy, goal.pins)
+    if asked.quiet:
+        if not plan.reached:
+            complain(file, "no plan reaches the accuracy asked for")
+        return OK if plan.reached else BROKEN_DOWN
     out = console()
     out.print(Text.assemble((given.system.name, "bold"), (f"  {printable(file)}", "dim")))
     for name, text in plan_lines(plan, pretty(time_unit(given.system))):
@@ -51,4 +70,4 @@ def print_repeat(file: Path, goal: Wanted, settled: Request) -> None:
     """The command that makes the same trajectory without choosing, on a line of its own to be pasted."""
     from mbsym.report.plan_words import repeating_command
 
-    print(f"  to repeat:\n{repeating_command(str(file), goal.settings, settled)}")
+    print(f"  to repeat:\n{repeating_command(str(file), goal.settings, settled, goal.carried)}")

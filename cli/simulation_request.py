@@ -63,9 +63,7 @@ def read_request(system: System | None, texts: Mapping[str, str | None], flags: 
     arithmetic = asked.word("--arithmetic", texts["--arithmetic"] or "", ARITHMETIC, "arithmetic")
     step_limit = asked.whole("--step-limit", texts["--step-limit"], 1, 10**12)
     formats = asked.words("--format", texts["--format"] or "", FORMATS, "format")
-    if texts["--samples"] is not None and texts["--every"] is not None:
-        asked.complain("--every", "conflicting-options", "--samples and --every exclude each other")
-    elif system is not None:
+    if system is not None and (texts["--samples"] is None or texts["--every"] is None):
         _check_rows(system, end, every, samples, asked)
     if step is not None and end is not None and step > end:
         asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
@@ -125,7 +123,8 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, s
 
     name = request.method
     has_step, has_tolerance = texts["--step"] is not None, texts["--tolerance"] is not None
-    if has_step and has_tolerance:
+    given = METHODS.get(name)
+    if has_step and has_tolerance and not (given is not None and given.traits.fixed):
         hint = "a method takes one or the other"
         asked.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
     fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
@@ -139,8 +138,9 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, s
         able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
         message = f"{name} does not compute in {request.arithmetic}"
         asked.complain("--arithmetic", "conflicting-options", message, f"these do: {able or 'none'}")
-    if traits.fixed and has_tolerance and not has_step:
-        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
+    if traits.fixed and has_tolerance:
+        place = "leave it out" if has_step else "give a --step in its place"
+        hint = f"{place}, or take a method that chooses its steps, for example --method dop853"
         asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
     elif traits.fixed and not has_step:
         many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"

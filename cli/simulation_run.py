@@ -15,7 +15,7 @@ from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulation_files import write_files
-from mbsym_cli.simulation_planned import only_planned, print_repeat, simulated_to
+from mbsym_cli.simulation_planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
 from mbsym_cli.simulation_request import Asked
 from mbsym_cli.simulation_summary import broken, print_summary
 
@@ -42,6 +42,9 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
                 else:
                     found = simulate(given, request, watch, stage)
             return _delivered(file, folder, found, wanted)
+    except InterruptedPlanning:
+        complain(file, "interrupted while the run was being planned; nothing was run or written")
+        return INTERRUPTED
     except NoEvent as error:
         options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
         options.refused(file)
@@ -116,7 +119,6 @@ def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
     from mbsym.simulation.accurate import PLANNING
 
     said = {
-        PLANNING: "choosing model, method and tolerance",
         COMPILING: "compiling",
         ESTIMATING: "the same more finely, to see how good it is",
     }
@@ -125,6 +127,10 @@ def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
 
     @contextmanager
     def stage(what: str) -> Iterator[None]:
+        if what == PLANNING:
+            with planning(asked, file):
+                yield
+            return
         if what not in with_bar:
             with status(asked.quiet, f"{file.name}: {said[what]}"):
                 yield

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import warnings
 from collections.abc import Iterator, Mapping
@@ -17,6 +18,7 @@ from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.methods.interface import STEP_LIMIT
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.models import Model, scenario_of
 from mbsym.numerics.scenario import Scenario
 from mbsym.report.simulation_json import FORMAT
 from mbsym.report.trajectory_csv import column_units
@@ -64,7 +66,8 @@ def read_earlier(path: Path, system: System) -> Earlier:
     values = {**content["parameters"], **content["initial"]}
     exact = {name: _number(value, float) for name, value in values.items()}
     change = content["method"].get("may_change") is True
-    return Earlier(times, states, spacing, exact, method, tolerance, step, arithmetic, change)
+    model = _model(content, system)
+    return Earlier(times, states, spacing, exact, method, tolerance, step, arithmetic, change, model)
 
 
 def _last_method(changes: Any, first: str) -> str:
@@ -79,8 +82,8 @@ def _last_method(changes: Any, first: str) -> str:
 
 
 def changed(earlier: Earlier, scenario: Scenario) -> Iterator[str]:
-    """What has another value now, a phrase each."""
-    values = earlier.values
+    """What has another value now in the model of the earlier run, a phrase each."""
+    values, scenario = earlier.values, scenario_of(scenario, earlier.model)
     system = scenario.system
     now = {name: float(value) for name, value in scenario.parameters.items()}
     now |= {name: float(x) for name, x in zip([*system.coordinates, *system.velocities], scenario.state, strict=True)}
@@ -104,7 +107,10 @@ def _content(path: Path) -> dict[str, Any]:
     wanted |= {"parameters", "initial", "files"}
     if not isinstance(content, dict) or not wanted <= set(content) or content["format"] != FORMAT:
         raise Unfit("it is not a simulation.json of this version of mbsym")
+    if not {"table_sha256", "model"} <= set(content):
+        raise Unfit('it is damaged, or older than --continue: "table_sha256" and "model" are wanted')
     shapes = {"time": ("from", "to", "samples"), "reached": ("time", "samples", "state"), "method": ("name",)}
+    shapes["model"] = ("gravity", "linear", "without")
     for key, inner in shapes.items():
         if not isinstance(content[key], dict) or not set(inner) <= set(content[key]):
             raise Unfit(f'it is damaged, or older than --continue: {", ".join(inner)} are wanted under "{key}"')
@@ -133,10 +139,7 @@ def _number(value: Any, kind: Any) -> Any:
 
 def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, last: Any) -> tuple[Any, Any]:
     """(times, states) of the table beside it.  Raises Unfit where there is none, or another one."""
-    names = [name for name in content["files"] if name in ("trajectory.csv", "trajectory-partial.csv")]
-    if not names:
-        raise Unfit("that run wrote no table of rows (--format csv), which the new ones would follow")
-    table = path.parent / names[0]
+    table, digest = _table(path, content)
     size = 1 + len(last)
     wanted = [marked(name, unit) for name, unit in column_units(system).items()][:size]
     try:
@@ -157,5 +160,31 @@ def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, l
         or not np.all(np.diff(times) > 0)
     ):
         raise Unfit(f"{table.name} beside it does not end where that run did: one of the two has been changed")
+    if digest != content["table_sha256"]:
+        raise Unfit(f"{table.name} beside it has been changed since that run wrote it (its hash differs)")
     states[:, -1] = last
     return times, states
+
+
+def _table(path: Path, content: Mapping[str, Any]) -> tuple[Path, str]:
+    """The table beside a simulation.json, and the SHA-256 of what is in it.  Raises Unfit."""
+    names = [name for name in content["files"] if name in ("trajectory.csv", "trajectory-partial.csv")]
+    if not names:
+        raise Unfit("that run wrote no table of rows (--format csv), which the new ones would follow")
+    table = path.parent / names[0]
+    try:
+        with table.open("rb") as stream:
+            return table, hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise Unfit(f"{table.name} beside it cannot be read: {error}") from None
+
+
+def _model(content: Mapping[str, Any], system: System) -> Model:
+    """What was in the equations.  Raises Unfit."""
+    told = content["model"]
+    gravity, linear, without = told["gravity"], told["linear"], told["without"]
+    names = isinstance(without, list) and all(name in system.parameter_names for name in without)
+    orders = isinstance(gravity, (int, str, type(None))) and not isinstance(gravity, bool)
+    if not (names and orders and isinstance(linear, bool) and gravity in (None, 2, 3, 4, "exact")):
+        raise Unfit("it is damaged: its model is none")
+    return Model(gravity, linear, tuple(without))

@@ -16,10 +16,12 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if run.happened is None:
         return
     found, unit = run.happened.occurrences, pretty(time_unit(run.system))
+    begun = run.request.earlier
+    since = "" if begun is None else f" after t = {with_unit(f'{begun.time:.9g}', unit)}, from where on it was watched"
     for place, event in enumerate(found.events):
         own = found.which == place
         times, touches = found.times[own], int((found.turns[own] == 0).sum())
-        said = counted(len(times), "time", "times") if len(times) else "never"
+        said = (counted(len(times), "time", "times") if len(times) else "never") + since
         if len(times):
             said += f", first at t = {with_unit(f'{times[0]:.9g}', unit)}"
         if touches:
@@ -34,6 +36,9 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, str]]:
             f"{event.name}: the two sides were equal all along within the error of a step: nothing can be told",
         )
     if run.section is not None:
-        yield "section", f"{run.section.section.condition.text}: {counted(len(run.section.times), 'point', 'points')}"
+        yield (
+            "section",
+            f"{run.section.section.condition.text}: {counted(len(run.section.times), 'point', 'points')}{since}",
+        )
     if found.beyond:
         yield "warning", f"only the first {MOST} events were kept; there were {found.beyond} more"

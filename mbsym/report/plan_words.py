@@ -179,10 +179,10 @@ def _number(x: float) -> str:
     return repr(x).removesuffix(".0")
 
 
-def repeating_command(file: str, settings: Sequence[str], request: Request) -> str:
-    """A command to paste."""
+def repeating_command(file: str, settings: Sequence[str], request: Request, carried: Sequence[str] = ()) -> str:
+    """A command to paste; ``carried`` are words about what is written and estimated."""
     sets = [word for text in settings for word in ("--set", text)]
-    return shlex.join(["mbsym", "simulate", file, *sets, *repeating_options(request)])
+    return shlex.join(["mbsym", "simulate", file, *sets, *repeating_options(request), *carried])
 
 
 # --- simulation.json ---

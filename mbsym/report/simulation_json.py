@@ -33,8 +33,8 @@ FORMAT = 1
 PACKAGES = ("mbsym", "numpy", "scipy", "llvmlite", "python-flint", "heyoka")
 
 
-def simulation_json(run: Simulation, files: Sequence[str]) -> str:
-    """The file's text; ``files`` are those that belong to it."""
+def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | None = None) -> str:
+    """The file's text; ``files`` are those that belong to it, and the hash is that of the table of rows."""
     system, found, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
     state = [float(x) for x in scenario.state]
     traits, earlier = chosen.method.traits, run.request.earlier
@@ -63,6 +63,7 @@ def simulation_json(run: Simulation, files: Sequence[str]) -> str:
         "initial": dict(zip([*system.coordinates, *system.velocities], state, strict=True)),
         "work": {name: getattr(found.work, name) for name in COUNTS},
         "files": list(files),
+        "table_sha256": table_sha256,
         "versions": versions(),
         **_units(run),
         "energy": {"is": "T - U", **conservation_json(run.energy_conservation)},

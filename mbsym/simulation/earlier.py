@@ -13,13 +13,16 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.numerics.models import Model
+
 
 @dataclass(frozen=True, eq=False)
 class Earlier:
     """The rows of an earlier run, from t = 0 to where it ended: times (m,) and states (2n, m).
 
     ``spacing`` is the distance of rows that was asked for; ``values`` are parameters and the state at t = 0 by their
-    names, and the rest is how it was integrated: ``method`` is the last one, which may ``change`` on the way.
+    names, and the rest is how it was integrated: ``method`` is the last one, which may ``change`` on the way, ``model``
+    how much of the mechanics was in the equations.
     """
 
     times: Any
@@ -31,6 +34,7 @@ class Earlier:
     step: float | None
     arithmetic: str
     change: bool = False
+    model: Model = Model()
 
     @property
     def time(self) -> float:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
 from click.testing import CliRunner, Result
 
+from mbsym.numerics.pilot import Bench
 from mbsym.report import schemas
 from mbsym_cli.main import main
 
@@ -107,3 +109,24 @@ def test_what_makes_no_sense_is_complained_about(tmp_path: Path, options: list[s
     for text in complaints:
         assert text in done.stderr
     assert not out.exists()
+
+
+@pytest.mark.parametrize("more", [(), ("--plan",)])
+def test_a_plan_that_is_interrupted_says_so_and_leaves_nothing(
+    more: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C in the third of the runs that are tried."""
+    usual, runs = Bench.run, []
+
+    def run(*arguments: Any, **named: Any) -> Any:
+        runs.append(arguments)
+        if len(runs) == 3:
+            raise KeyboardInterrupt
+        return usual(*arguments, **named)
+
+    monkeypatch.setattr(Bench, "run", run)
+    done = called(SYSTEMS / "simple-pendulum.yaml", "--time", "5", "--accuracy", "1e-6", *more, "-o", tmp_path / "out")
+    assert len(runs) == 3
+    assert done.exit_code == 130
+    assert "interrupted while the run was being planned; nothing was run or written" in done.stderr
+    assert not list(tmp_path.iterdir())
