@@ -21,7 +21,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, expanded
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, curve_name
 
 #: A scalar of some algebra: anything with + - * among its own kind.
 Scalar = Any
@@ -58,7 +58,7 @@ class Algebra:
         raise NotImplementedError
 
     def function(self, name: str, x: Scalar) -> Scalar:
-        """exp, log, atan, sinh, cosh, tanh, abs or sign, the last two with their values at 0."""
+        """exp, log, atan, sinh, cosh, tanh, abs or sign, the last two with their values at 0; or a ``Tabulated``."""
         raise NotImplementedError
 
     def times(self, a: Scalar, b: Scalar) -> Scalar:
@@ -234,8 +234,8 @@ class Lowering:
                 return algebra.times(self(left), algebra.reciprocal(self(right)))
             case Operation("**", base, exponent):
                 return self._power(base, exponent)
-            case Call(_, argument, table=Table() as table):
-                return self(expanded(table, argument))
+            case Call(_, argument, table=Table() as table, order=order):
+                return self._tabulated(table, order, self(argument))
             case Call("sqrt", argument):
                 return algebra.square_root(self(argument))
             case Call("sin", argument):
@@ -252,6 +252,22 @@ class Lowering:
             case Call(function, argument):
                 return algebra.function(function, self(argument))
         raise TypeError(f"not an expression: {expression!r}")
+
+    def _tabulated(self, table: Table, order: int, x: Scalar) -> Scalar:
+        """f(x), where it is one polynomial as that; a table that is zero outside is one that holds, less its ends."""
+        algebra, name = self.algebra, curve_name(table, order)
+        polynomial = name.curve.polynomial
+        if polynomial is None:
+            found = algebra.function(name, x)
+        else:
+            found, u = algebra.zero, x - algebra.number(name.curve.bases[0])
+            for coefficient in reversed(polynomial):
+                found = algebra.times(found, u) + algebra.number(coefficient)
+        if order == 0 and table.jumps:
+            (first, start), (last, end) = table.points[0], table.points[-1]
+            found = found - algebra.times(algebra.number(start), self._step(algebra.number(first) - x))
+            found = found - algebra.times(algebra.number(end), self._step(x - algebra.number(last)))
+        return found
 
     def _step(self, x: Scalar) -> Scalar:
         """(1 + sign x)/2."""
@@ -285,6 +301,6 @@ def _label(expression: Expression) -> Any:
             return name
         case Operation(operator, _, _):
             return operator
-        case Call(function, _, table=table):
-            return table or function
+        case Call(function, _, table=table, order=order):
+            return function if table is None else (table, order)
     return None

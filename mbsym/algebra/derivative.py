@@ -16,6 +16,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from mbsym.algebra.program import Node, Program
+from mbsym.expressions.table import Tabulated
 
 #: Partial derivatives of an operation by its operands; None stands for 1, and the bool says whether the sign is minus.
 _Factor = tuple[Node | None, bool]
@@ -194,4 +195,6 @@ class _Sweeps:
                 return ((program.function("sign", a), False),)
             case "sign", _:
                 return ((program.zero, False),)  # off the jump, where states are
+            case Tabulated() as name, [a]:
+                return ((program.function(name.slope, a), False),)
         raise ValueError(f"no derivative is known for {operation}")

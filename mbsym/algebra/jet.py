@@ -11,10 +11,13 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from flint import fmpq
+
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression
 
 First = dict[int, Polynomial]
@@ -187,6 +190,8 @@ class Jets(Algebra):
             return sinh if name == "sinh" else cosh
         if name in ("abs", "sign"):
             return self._off_the_kink(name, x)
+        if isinstance(name, Tabulated):
+            return self._tabulated(name, x)
         value = ring.function(name, x.value)
         if name == "exp":
             return self._series(x, value, value, value * half)
@@ -211,6 +216,26 @@ class Jets(Algebra):
         if name == "sign":
             return Jet(sign)
         return self._series(x, ring.function("abs", x.value), sign, ring.zero)
+
+    def _tabulated(self, name: Tabulated, x: Jet) -> Jet:
+        """f(a) + f'(a) u + f''(a)/2 u^2 off the knots.
+
+        Raises NoClosedForm where a is a knot at which a derivative jumps, or is not known to be none: it is a number,
+        but no rational one, and its ball holds a knot.
+        """
+        ring = self.ring
+        if not x.first and not x.second:
+            return Jet(ring.function(name, x.value))
+        ball = ring.constant_value(x.value)
+        if ball is not None and any(
+            name.curve.kinked_at(knot) and ball.contains(fmpq(knot.numerator, knot.denominator))
+            for knot in name.curve.knots
+        ):
+            raise NoClosedForm(f"the table {name.table.name} has a kink at the motion that is expanded about")
+        slope, bend = name.slope, name.slope.slope
+        half = ring.number(Fraction(1, 2))
+        values = [ring.function(one, x.value) for one in (name, slope, bend)]
+        return self._series(x, values[0], values[1], ring.times(half, values[2]))
 
 
 def _small(x: Jet) -> Jet:

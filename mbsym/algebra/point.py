@@ -18,6 +18,7 @@ from flint import acb, arb, fmpq
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NotRational, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.table import Curve, Tabulated
 
 #: Multiples of an angle up to this one are formed from its sine and cosine.
 MOST_MULTIPLE = 256
@@ -68,6 +69,9 @@ class Rationals(Algebra):
     def function(self, name: str, x: Scalar) -> Scalar:
         if name in ("abs", "sign"):
             return abs(x) if name == "abs" else fmpq((x > 0) - (x < 0))
+        if isinstance(name, Tabulated):
+            value = name.curve(Fraction(int(x.p), int(x.q)))
+            return fmpq(value.numerator, value.denominator)
         raise NotRational(f"{name} of a rational number")
 
 
@@ -123,8 +127,46 @@ class Balls(Algebra):
 
 def enclosed(name: str, x: arb) -> arb:
     """A ball that holds f(x) for every x of a ball; [-1, 1] for the sign of what may be 0."""
+    if isinstance(name, Tabulated):
+        return _tabulated(name.curve, x)
     found: arb = getattr(x, {"abs": "__abs__", "sign": "sgn"}.get(name, name))()
     return found
+
+
+def _tabulated(curve: Curve, x: arb) -> arb:
+    """The union of what the pieces are that a ball touches, each on its part of the ball."""
+    if not x.is_finite():
+        return arb("nan")
+    lower, upper = (_fraction(end) for end in (x.lower(), x.upper()))
+    found = arb("nan")
+    for piece in range(curve.pieces_at(lower)[0], curve.pieces_at(upper)[-1] + 1):
+        u = x if lower == upper else _part(curve, piece, x, lower, upper)
+        u = u - arb(fmpq(curve.bases[piece].numerator, curve.bases[piece].denominator))
+        value = arb(0)
+        for coefficient in reversed(curve.polynomials[piece]):
+            value = value * u + arb(fmpq(coefficient.numerator, coefficient.denominator))
+        found = found.union(value) if found.is_finite() else value
+    if lower == upper and len(curve.pieces_at(lower)) == 2:  # at a knot it is the mean
+        mean = curve(lower)
+        return arb(fmpq(mean.numerator, mean.denominator))
+    return found
+
+
+def _part(curve: Curve, piece: int, x: arb, lower: Fraction, upper: Fraction) -> arb:
+    """What of a ball lies over a piece."""
+    ends = (None, *curve.knots, None)
+    left, right = ends[piece], ends[piece + 1]
+    low = lower if left is None else max(lower, left)
+    high = upper if right is None else min(upper, right)
+    if (low, high) == (lower, upper):
+        return x
+    return arb(fmpq(low.numerator, low.denominator)).union(arb(fmpq(high.numerator, high.denominator)))
+
+
+def _fraction(x: arb) -> Fraction:
+    """The number that a ball without radius is."""
+    mantissa, exponent = x.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 class BallsAtRationals(Balls):
@@ -184,4 +226,8 @@ class Arrays(Algebra):
         return self._functions.sqrt(x)
 
     def function(self, name: str, x: Any) -> Any:
+        if isinstance(name, Tabulated):
+            from mbsym.algebra.lookup import looked_up  # NumPy's
+
+            return looked_up(name.curve, x)
         return getattr(self._functions, {"atan": "arctan"}.get(name, name))(x)

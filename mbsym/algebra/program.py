@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.table import Tabulated
 
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
 MOST_BITS = 1_000
@@ -52,7 +53,7 @@ class Node:
 
 
 class Instruction(NamedTuple):
-    """``operation`` is input, constant, add, subtract, multiply, negative, divide or a function's name.
+    """``operation`` is input, constant, add, subtract, multiply, negative, divide or a function's name (``Tabulated``).
 
     ``operands`` are numbers of earlier instructions; ``payload`` is an input's name or a constant's value.
     """
@@ -220,6 +221,8 @@ class Program(Algebra):
         value = self._constant(x)
         if value is not None and name in ("abs", "sign"):
             return self.number(abs(value) if name == "abs" else (value > 0) - (value < 0))
+        if isinstance(name, Tabulated) and (value is not None or name.curve.constant is not None):
+            return self.number(name.curve(value or Fraction(0)))
         if name in ("abs", "sign"):  # of x and -x one is taken, so that both have one switch
             inner, difference = self._opposites[x.number], self.instructions[x.number]
             if inner is None and difference.operation == "subtract" and difference.operands[0] > difference.operands[1]:

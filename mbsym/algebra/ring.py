@@ -34,6 +34,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.table import Tabulated
 
 Polynomial = Any
 
@@ -625,6 +626,8 @@ class Ring(Algebra):
             return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(self.times(sinh, self.reciprocal(cosh)))
         if name in ("abs", "sign"):
             return self._absolute(x) if name == "abs" else self._sign(x)
+        if isinstance(name, Tabulated):
+            return self._tabulated(name, x)
         if x.is_zero() and name in ("exp", "atan"):
             return self.one if name == "exp" else self.zero
         if x.is_one() and name == "log":
@@ -665,12 +668,36 @@ class Ring(Algebra):
             self._jumps[index] = {name for name in self._derivatives if not self.derivative(x, name).is_zero()}
         return self._gens[index]
 
+    def _tabulated(self, name: Tabulated, x: Polynomial) -> Polynomial:
+        """A curve at x, adjoined; its derivative is the next curve, until one jumps, which has none.
+
+        Nothing is said about its values: what vanishes for these points only is not known to vanish.
+        """
+        x = self.reduce(x)
+        if x.is_constant() or name.curve.constant is not None:
+            at = x.leading_coefficient() if x.is_constant() and x else fmpq(0)
+            return self.number(name.curve(Fraction(int(at.p), int(at.q))))
+        index = self._adjoined("function", x, name)
+        if index is None:
+            moving = {variable for variable in self._derivatives if not self.derivative(x, variable).is_zero()}
+            smooth = name.curve.smoothness >= 0
+            outer = self._tabulated(name.slope, x) if moving and smooth else self.zero
+            index = self._adjoin("function", x, name)
+            if moving and smooth:
+                self._chain(index, outer, x)
+            elif moving:
+                self._jumps[index] = moving
+        return self._gens[index]
+
     @property
     def kinked(self) -> bool:
-        """Whether formulas hold a sign or modulus that may have either side: they may vanish on one side alone, so that
-        no number of states shows that they vanish.
+        """Whether formulas hold a sign, modulus or table that may have either side: they may vanish on one side alone,
+        so that no number of states shows that they vanish.
         """
-        return any(g.kind == "function" and g.name in ("abs", "sign") for g in self.generators[: self.spare])
+        return any(
+            g.kind == "function" and (g.name in ("abs", "sign") or isinstance(g.name, Tabulated))
+            for g in self.generators[: self.spare]
+        )
 
     def _absolute(self, x: Polynomial) -> Polynomial:
         """|x| with |x|^2 = x^2 and d|x| = sign(x) dx."""

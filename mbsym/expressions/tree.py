@@ -7,13 +7,13 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
 from mbsym.expressions.place import Span
-from mbsym.expressions.table import OUTSIDE_ZERO, Table, pieces
+from mbsym.expressions.table import Curve, Table, Tabulated
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
 SMOOTH = ("sin", "cos", "tan", "sqrt", "exp", "log", "atan", "sinh", "cosh", "tanh")
@@ -71,13 +71,14 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``function(argument, *more)`` with a function of :data:`FUNCTIONS`, or the name of a ``table``."""
+    """``function(argument, *more)`` with a function of :data:`FUNCTIONS`, or a ``table``'s ``order``-th derivative."""
 
     function: str
     argument: Expression
     span: Span | None = field(default=None, compare=False, repr=False)
     more: tuple[Expression, ...] = ()
     table: Table | None = None
+    order: int = 0
 
 
 Expression = Number | Name | Negative | Operation | Call
@@ -116,27 +117,71 @@ def names(expression: Expression) -> set[str]:
     return {node.name for node in walk(expression) if isinstance(node, Name)} - set(CONSTANTS)
 
 
-def expanded(table: Table, x: Expression) -> Expression:
-    """f(x) of a table by the functions that there are: every knot is a kink, where steps end,
+def curve_of(table: Table, order: int = 0) -> Curve:
+    """A derivative of what a table is, jumps at its ends apart."""
+    return curve_name(table, order).curve
 
-        f = y_0 + sum_k q_k(u_k),    u_k = (|x - x_k| - |x - x_(k+1)| + x_(k+1) - x_k)/2,
-        q_k(u) = u (a_k + u (b_k + u c_k))
+
+def curve_name(table: Table, order: int = 0) -> Tabulated:
+    """Its name in algebras."""
+    found = table.called
+    for _ in range(order):
+        found = found.slope
+    return found
+
+
+#: A table with more points is not written out by moduli.
+MOST_WRITTEN_OUT = 100
+
+
+def written_out(table: Table, x: Expression, whole: bool = True) -> Expression:
+    """f(x) of a table by moduli, for whoever knows no tables, or has to stay at a knot where a slope jumps:
+
+        f = y_0 + sum_k q_k(u_k),    u_k = (|x - x_k| - |x - x_(k+1)| + x_(k+1) - x_k)/2,    q_k(u) = f(x_k + u) - y_k
 
     u_k being x - x_k in its piece, 0 before it and the length of the piece behind: no digits are lost far from the
-    first point.  Where f is zero outside, its ends are steps.
+    first point.  Outside u is (x - x_0 - |x - x_0|)/2 or (x - x_n + |x - x_n|)/2; where f is zero there, its ends are
+    steps, if the ``whole`` of it is wanted.
     """
     (first, start), (last, end) = table.points[0], table.points[-1]
-    half = Number(Fraction(1, 2))
+    half, polynomials = Number(Fraction(1, 2)), table.curve.polynomials
     kinks = [Call("abs", subtract(x, _exact(place))) for place, _ in table.points]
+    inside = [multiply(half, subtract(subtract(x, _exact(first)), kinks[0]))]
+    for k, ((one, _), (later, _)) in enumerate(pairwise(table.points)):
+        inside.append(multiply(half, add(subtract(kinks[k], kinks[k + 1]), _exact(later - one))))
+    inside.append(multiply(half, add(subtract(x, _exact(last)), kinks[-1])))
     total = _exact(start)
-    for k, ((one, later), polynomial) in enumerate(zip(pairwise(table.points), pieces(table), strict=True)):
-        inside = multiply(half, add(subtract(kinks[k], kinks[k + 1]), _exact(later[0] - one[0])))
-        a, b, c = map(_exact, polynomial)
-        total = add(total, multiply(inside, add(a, multiply(inside, add(b, multiply(inside, c))))))
-    if table.outside == OUTSIDE_ZERO:
+    for u, polynomial in zip(inside, polynomials, strict=True):
+        grown: Expression = ZERO
+        for coefficient in reversed(polynomial[1:]):
+            grown = multiply(u, add(_exact(coefficient), grown))
+        total = add(total, grown)
+    if table.jumps and whole:
         total = subtract(total, multiply(_exact(start), Call("step", subtract(_exact(first), x))))
         total = subtract(total, multiply(_exact(end), Call("step", subtract(x, _exact(last)))))
     return total
+
+
+def without_tables(expression: Expression, chosen: Callable[[Call], bool]) -> Expression:
+    """The expression with the chosen calls of tables written out."""
+    match expression:
+        case Call(function, argument, more=more, table=table, order=order):
+            inner = without_tables(argument, chosen)
+            if table is not None and order == 0 and chosen(expression):
+                return written_out(table, inner)
+            others = tuple(without_tables(one, chosen) for one in more)
+            return Call(function, inner, more=others, table=table, order=order)
+        case Negative(operand):
+            return negative(without_tables(operand, chosen))
+        case Operation(operator, left, right):
+            return Operation(operator, without_tables(left, chosen), without_tables(right, chosen))
+    return expression
+
+
+def sticks(call: Call) -> bool:
+    """Whether a table has kinks in velocities: as a dissipation function it is dry friction, which holds there."""
+    moving = any(name.endswith("_dot") for name in names(call.argument))
+    return moving and call.table is not None and call.table.curve.smoothness == 0
 
 
 def _exact(value: Fraction) -> Expression:
@@ -224,7 +269,6 @@ class Derivation:
     def __init__(self, rates: Mapping[str, Expression]) -> None:
         self.rates = rates
         self._known: dict[int, Expression] = {}
-        self._kept: list[Expression] = []  # what tables are, for as long as their identities count
 
     def __call__(self, expression: Expression) -> Expression:
         found = self._known.get(id(expression))
@@ -257,9 +301,13 @@ class Derivation:
                 if isinstance(exponent, Number):
                     lowered = Number(exponent.value - 1)
                 return multiply(multiply(exponent, power(base, lowered)), inner)
-            case Call(_, argument, table=Table() as table):
-                self._kept.append(expanded(table, argument))
-                return self(self._kept[-1])
+            case Call(function, argument, table=Table() as table, order=order):
+                inner = self(argument)
+                if is_number(inner, 0):
+                    return ZERO
+                if table.jumps or curve_of(table, order).smoothness < 0:
+                    raise ValueError(f"{function} has a jump, and no derivative")
+                return multiply(Call(function + "'", argument, table=table, order=order + 1), inner)
             case Call(function, argument) if function in JUMPS:
                 if all(is_number(self(one), 0) for one in children(expression)):
                     return ZERO
@@ -306,9 +354,9 @@ def substitute(expression: Expression, replacements: Mapping[str, Expression]) -
             return negative(substitute(operand, replacements))
         case Operation(operator, left, right):
             return Operation(operator, substitute(left, replacements), substitute(right, replacements))
-        case Call(function, argument, more=more, table=table):
+        case Call(function, argument, more=more, table=table, order=order):
             others = tuple(substitute(one, replacements) for one in more)
-            return Call(function, substitute(argument, replacements), more=others, table=table)
+            return Call(function, substitute(argument, replacements), more=others, table=table, order=order)
     return expression
 
 

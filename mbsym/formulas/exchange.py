@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.python import declared_name
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Product, Sum, Wave
@@ -54,6 +55,12 @@ class _Translation:
                 return sympy.cos(argument / g.denominator)
             case "root":
                 return sympy.sqrt(argument)
+            case "function" if isinstance(g.name, Tabulated):
+                function, order = sympy.Function(g.name.table.name), g.name.curve.order
+                if not order:
+                    return function(argument)
+                own = sympy.Dummy("x")
+                return sympy.Subs(sympy.Derivative(function(own), (own, order)), own, argument)
             case "function":
                 return getattr(sympy, {"abs": "Abs"}.get(g.name, g.name))(argument)
         return sympy.pi if g.name == "pi" else sympy.Symbol(declared_name(g))

@@ -19,6 +19,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import Angles, Factor, Product, Sum, Wave, angles_or
@@ -288,6 +289,8 @@ class LatexPrinter:
             return f"\\sqrt{{{self._quiet(g.argument)}}}", ""
         if g.kind == "function" and g.name == "abs":
             return f"\\lvert {self._quiet(g.argument)} \\rvert", ""
+        if isinstance(g.name, Tabulated):
+            return latex_table(g.name), f"({self._quiet(g.argument)})"
         if g.kind == "function":
             return _NAMED[g.name], f"({self._quiet(g.argument)})"
         if g.name == "pi":
@@ -333,7 +336,13 @@ def _joined(factors: Sequence[str]) -> str:
 
 #: Names of several letters, which must not run into their neighbours.
 _WORDS = (r"\mathit", r"\mathtt")
-_FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{sign}")
+_FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{")
+
+
+def latex_table(name: Tabulated) -> str:
+    """A table, with a prime for each derivative."""
+    written = name.table.name.replace("_", "\\_")
+    return f"\\operatorname{{{written}}}{chr(39) * name.curve.order}"
 
 
 def latex_matrix(rows: Sequence[Sequence[str]]) -> str:

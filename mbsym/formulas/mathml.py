@@ -16,6 +16,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves
@@ -333,7 +334,8 @@ class MathPrinter:
         if g.kind == "function" and g.name == "abs":
             return Symbol(f"<mrow>{mo('|')}{self._inner(g.argument)}{mo('|')}</mrow>").raised(exponent)
         if g.kind == "function":
-            name = Symbol(mi(_NAMED[g.name])).raised(exponent)
+            table = g.name.table.name + "\u2032" * g.name.curve.order if isinstance(g.name, Tabulated) else ""
+            name = Symbol(mi(table or _NAMED[g.name])).raised(exponent)
             return f"<mrow>{name}{APPLY}{bracketed(self._inner(g.argument))}</mrow>"
         if g.name == "pi":
             return Symbol(mi("π")).raised(exponent)

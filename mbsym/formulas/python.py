@@ -6,6 +6,7 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 from __future__ import annotations
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
@@ -107,6 +108,9 @@ FUNCTION_OF_KIND = {"sine": "sin", "cosine": "cos", "root": "sqrt", "function": 
 
 class _PythonPrinter(InfixPrinter):
     def call(self, function: str, argument: str) -> str:
+        if isinstance(function, Tabulated):
+            order = function.curve.order
+            function = "derivative(" * order + function.table.name + ")" * order
         return f"{function}({argument})"
 
     def symbol(self, generator: Generator) -> str:

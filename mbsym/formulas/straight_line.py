@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from mbsym.algebra.program import Instruction, Node, Program
 from mbsym.formulas.numerals import writable
+from mbsym.formulas.unfolded import unfolded
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60
@@ -24,7 +25,7 @@ class Dialect:
     """How a language writes what differs between languages.
 
     ``call`` applies a function, known by Python's name; ``local`` is the k-th local name; ``angle`` names the sine or
-    cosine of a name, if the language has a nice way.
+    cosine of a name, if the language has a nice way.  ``tables``: whether ``call`` can write those.
     """
 
     call: Callable[[str, str], str]
@@ -32,6 +33,7 @@ class Dialect:
     number: Callable[[Fraction], str] = str
     times: str = "*"
     angle: Callable[[str, str], str] | None = None
+    tables: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,13 @@ def listing(
 ) -> Listing:
     """Straight-line code for the outputs; ``names`` renames the inputs, locals avoid them and ``taken``.
 
-    With ``inline`` there are no assignments: what is used twice is written twice.
+    With ``inline`` there are no assignments: what is used twice is written twice.  Raises NoClosedForm for a table that
+    the language cannot have.
     """
-    return _Writer(program, list(outputs), names, dialect, {*taken, *names.values()}).listing(inline)
+    wanted = list(outputs)
+    if not dialect.tables:
+        program, wanted = unfolded(program, wanted)
+    return _Writer(program, wanted, names, dialect, {*taken, *names.values()}).listing(inline)
 
 
 class _Writer:

@@ -12,8 +12,8 @@ from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, expanded
+from mbsym.expressions.table import OUTSIDE_ZERO, Table, Tabulated
+from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
 from mbsym.formulas.shape import present
@@ -113,8 +113,39 @@ class WolframPrinter(InfixPrinter):
 
 
 def wolfram_call(function: str, argument: str) -> str:
-    """A function of one argument, known by Python's name."""
+    """A function of one argument, known by Python's name, or a table."""
+    if isinstance(function, Tabulated):
+        return f"{wolfram_table(function.table)}{chr(39) * function.curve.order}[{argument}]"
     return f"{_FUNCTIONS.get(function, function.capitalize())}[{argument}]"
+
+
+def wolfram_table(table: Table) -> str:
+    """The name of a table, which no other name can be."""
+    return "table$" + "$".join(table.name.split("_"))
+
+
+def wolfram_definition(table: Table) -> str:
+    """``table$push[x_] := Piecewise[{{1 + 2*(x - 0), x < 1}, ...}]``: exact; its derivatives are Wolfram's own.
+
+    Outside it goes on as it does here: where nothing is given there, it is ``Indeterminate``.
+    """
+    curve = table.curve
+    written = [
+        " + ".join(
+            f"({wolfram_number(c)})" + (f"*(x - ({wolfram_number(base)}))" + (f"^{k}" if k > 1 else "") if k else "")
+            for k, c in enumerate(polynomial)
+            if c or not k
+        )
+        for base, polynomial in zip(curve.bases, curve.polynomials, strict=True)
+    ]
+    before, *inner, last = written
+    if table.outside == OUTSIDE_ZERO:
+        before = last = "0"
+    if curve.bounded:
+        before = last = "Indeterminate"
+    cases = [f"{{{before}, x < {wolfram_number(curve.knots[0])}}}"]
+    cases += [f"{{{one}, x <= {wolfram_number(knot)}}}" for one, knot in zip(inner, curve.knots[1:], strict=True)]
+    return f"{wolfram_table(table)}[x_] := Piecewise[{{{', '.join(cases)}}}, {last}]"
 
 
 def wolfram_expression(expression: Expression, names: WolframNames) -> str:
@@ -127,7 +158,7 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
         case Negative(operand):
             return f"-{_operand(operand, names)}"
         case Call(_, argument, table=Table() as table):
-            return wolfram_expression(expanded(table, argument), names)
+            return f"{wolfram_table(table)}[{wolfram_expression(argument, names)}]"
         case Call(function):
             arguments = [wolfram_expression(one, names) for one in children(expression)]
             if function == "step":

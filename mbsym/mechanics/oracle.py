@@ -20,6 +20,7 @@ from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import names
 from mbsym.model import system as model
 from mbsym.model.system import INERTIAL, System, velocity_name
@@ -126,6 +127,9 @@ class TaylorSeries(Algebra):
                 return self._compose(x, sign, nothing, nothing)
             return self._compose(x, x.a * sign, sign, nothing)
         value = self.numbers.function(name, x.a)
+        if isinstance(name, Tabulated):  # off the knots
+            slope, bend = self.numbers.function(name.slope, x.a), self.numbers.function(name.slope.slope, x.a)
+            return self._compose(x, value, slope, self.numbers.number(Fraction(1, 2)) * bend)
         half_number = self.numbers.number(Fraction(1, 2))
         if name == "exp":
             return self._compose(x, value, value, half_number * value)

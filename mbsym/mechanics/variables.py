@@ -25,6 +25,7 @@ from mbsym.expressions.tree import (
     children,
     differentiate,
     multiply,
+    sticks,
     walk,
 )
 from mbsym.model.system import EXACT, NewtonianGravity, System, acceleration_name, velocity_name
@@ -174,8 +175,7 @@ def ring_of(
     adjunctions += 4 * exact * sum(body.mass != ZERO or body.inertia is not None for body in system.bodies)
     for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):
-            knots = len(node.table.points) if isinstance(node, Call) and node.table is not None else 1
-            adjunctions += 2 * knots * _may_adjoin(node)
+            adjunctions += 2 * _own_generators(node) * _may_adjoin(node)
     return Ring(
         system.coordinates,
         [*(item.name for item in system.prescribed), *system.input_names, *moving],
@@ -187,6 +187,15 @@ def ring_of(
         terms=terms,
         typed=[form.coefficients for form in map(linear_form, angles_of(system)) if form is not None],
     )
+
+
+def _own_generators(node: Expression) -> int:
+    """A function has one; a table one for each derivative, and a modulus for each point where it is written out."""
+    if not isinstance(node, Call) or node.table is None:
+        return 1
+    if sticks(node):
+        return len(node.table.points)
+    return 2 + max(node.table.curve.smoothness, 0) + 2 * node.table.jumps
 
 
 def _may_adjoin(node: Expression) -> bool:

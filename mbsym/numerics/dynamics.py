@@ -11,20 +11,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
 
 from mbsym.algebra.derivative import gradient, jacobian
 from mbsym.algebra.increment import Increment, Increments
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
+from mbsym.expressions.table import Curve
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
-from mbsym.numerics.features import SLIDING, Features, features, held, sign_that_holds
+from mbsym.numerics.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
 from mbsym.numerics.kernels.cells import Cells
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
@@ -76,7 +80,8 @@ class Dynamics:
         return self.features.switches
 
     def on_sides(self, sides: tuple[int, ...]) -> Frozen:
-        """The same with the signs of its switches held, each -1 or 1, or 0 for one that stays where it changes.
+        """The same with the signs of its switches held, each -1 or 1, or 0 for one that stays where it changes; of a
+        table the piece, counted from 1.
 
         Until it is asked for with other sides: the code is the same for all that have the same 0, and is so told of
         the sides; whoever runs it asks before every step.
@@ -85,7 +90,7 @@ class Dynamics:
         if sliding not in self._on_sides:
             self._on_sides[sliding] = Frozen(self, sliding)
         found = self._on_sides[sliding]
-        found.cells.values[:] = sides
+        found.take(sides)
         return found
 
     @cached_property
@@ -202,16 +207,28 @@ class Dynamics:
 class Frozen(Dynamics):
     """A scenario's dynamics with the signs of its switches held: smooth, and right on that side of every switch.
 
-    The signs stand in ``cells``; that of the switch number ``sliding`` is what keeps it at 0.
+    The signs stand in ``cells``; that of the switch number ``sliding`` is what keeps it at 0.  Behind them stand, for
+    each table, the base and the coefficients of the piece, every number as a sum of two.
     """
 
     def __init__(self, whole: Dynamics, sliding: int | None) -> None:
         super().__init__(whole.scenario, whole.ring, whole.apart)
         self.whole, self.sliding = whole, sliding
-        self.cells = Cells(len(whole.switches.outputs))
+        curves = whole.features.curves
+        self._lengths = [0 if curve is None else 2 * (1 + len(curve.polynomials[0])) for curve in curves]
+        self.cells = Cells(len(curves) + sum(self._lengths))
         self.inputs, self.size = whole.inputs, whole.size  # a state may go on behind (q, q')
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
+
+    def take(self, sides: Sequence[int]) -> None:
+        """These sides from now on."""
+        values, place = self.cells.values, len(sides)
+        values[:place] = sides
+        for side, curve, length in zip(sides, self.whole.features.curves, self._lengths, strict=True):
+            if curve is not None:
+                values[place : place + length] = _in_pairs(curve)[side - 1]
+            place += length
 
     def _code(self, nodes: list[Node], thorough: bool = False) -> Code:
         found = super()._code(nodes, thorough)
@@ -227,19 +244,42 @@ class Frozen(Dynamics):
     def holding(self) -> Code:
         """(t, q, q') -> (s, 0 where that is a solution); see ``sign_that_holds``."""
         assert self.sliding is not None
-        others, node = dict(self._read), self.whole.switches.outputs[self.sliding]
+        others, node = dict(self._held), self.whole.switches.outputs[self.sliding]
         del others[node.number]
         return sign_that_holds(self.whole.right_hand_side, node, others)
 
     @cached_property
-    def _signs(self) -> dict[int, Node]:
-        found = dict(self._read)
+    def _signs(self) -> Standing:
+        found = dict(self._held)
         if self.sliding is not None:
             found[self.whole.switches.outputs[self.sliding].number] = self.holding.outputs[0]
         return found
 
     @property
-    def _read(self) -> dict[int, Node]:
-        """The signs as they stand in memory, by the numbers of the switches."""
-        pairs = zip(self.whole.switches.outputs, self.cells.names, strict=True)
-        return {node.number: self._specialised.input(name) for node, name in pairs}
+    def _held(self) -> dict[int | tuple[int, Curve], Any]:
+        """The signs as they stand in memory, by the numbers of the switches, and the pieces of tables."""
+        outputs, program = self.whole.switches.outputs, self._specialised
+        read = [program.input(name) for name in self.cells.names]
+        found: dict[int | tuple[int, Curve], Any] = {}
+        place = len(outputs)
+        for node, sign, curve, length in zip(
+            outputs, read[:place], self.whole.features.curves, self._lengths, strict=True
+        ):
+            if curve is None:
+                found[node.number] = sign
+                continue
+            pairs = read[place : place + length]
+            base, *own = (program.plus(high, low) for high, low in zip(pairs[::2], pairs[1::2], strict=True))
+            found[node.number, curve] = Polynomial(base, tuple(own))
+            place += length
+        return found
+
+
+@lru_cache(64)
+def _in_pairs(curve: Curve) -> Any:
+    """Base and coefficients of every piece, shape (n + 1, 2 (degree + 2)), each number as high and low."""
+    rows = []
+    for base, polynomial in zip(curve.bases, curve.polynomials, strict=True):
+        highs = [(value, float(value)) for value in (base, *polynomial)]
+        rows.append([part for value, high in highs for part in (high, float(value - Fraction(high)))])
+    return np.array(rows)

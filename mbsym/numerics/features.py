@@ -1,6 +1,7 @@
 """What is not smooth, or narrow, in the rates of a scenario: found in the program, not by looking at numbers.
 
-    switches   g of every sign(g) and |g|: where g changes its sign the rates jump, or have a kink
+    switches   g of every sign(g) and |g|: where g changes its sign the rates jump, or have a kink;
+               x of every table f(x): where x passes a knot
     narrow     u of exp(u), whose peaks are where u is greatest, and which becomes a wall where u rises from far below
                0; of tanh u, atan u and cosh u, which turn where u = 0;
                and where u depends on t alone of 1/u and sqrt(u), which are narrow where |u| is least
@@ -13,9 +14,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import perm
+from typing import Any
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.program import Instruction, Node, Program
+from mbsym.expressions.table import Curve, Tabulated
 from mbsym.numerics.kernels.interface import Code
 
 #: Where a function of u is narrow: at a greatest u, at u = 0, or at a least |u|.
@@ -28,9 +32,13 @@ SLIDING = 0
 
 @dataclass(frozen=True)
 class Features:
-    """``switches`` and ``narrow`` are (t, q, q') -> g and u; ``kinds`` are those of the latter."""
+    """``switches`` and ``narrow`` are (t, q, q') -> g and u; ``kinds`` are those of the latter.
+
+    ``curves`` says of each switch whose argument it is: None for a sign or modulus.
+    """
 
     switches: Code
+    curves: tuple[Curve | None, ...]
     narrow: Code
     kinds: tuple[str, ...]
 
@@ -44,18 +52,21 @@ def features(code: Code) -> Features:
     """What is not smooth, or narrow, in the outputs of a code."""
     program = code.program
     moving = _moving(program, code)
-    switches: dict[int, None] = {}
+    switches: dict[tuple[int, Curve | None], None] = {}
     narrow: dict[int, str] = {}
     for number in program.live(code.outputs):
         operation, operands, _ = program.instructions[number]
         if operation in ("abs", "sign"):
-            switches[operands[0]] = None
+            switches[operands[0], None] = None
+        elif isinstance(operation, Tabulated):
+            switches[operands[0], operation.table.curve] = None
         elif operation in _KINDS:
             below = operands[-1]
             if moving[below] and (_KINDS[operation] != DIP or moving[below] == {"t"}):
                 narrow.setdefault(below, _KINDS[operation])
     return Features(
-        Code(program, code.inputs, tuple(program.node(number) for number in switches)),
+        Code(program, code.inputs, tuple(program.node(number) for number, _ in switches)),
+        tuple(curve for _, curve in switches),
         Code(program, code.inputs, tuple(program.node(number) for number in narrow)),
         tuple(narrow.values()),
     )
@@ -73,15 +84,38 @@ def _moving(program: Program, code: Code) -> dict[int, set[str]]:
     return found
 
 
-def held(code: Code, signs: Mapping[int, Node]) -> tuple[Node, ...]:
-    """The outputs with ``signs[number of g]`` in place of sign(g), and g times that in place of |g|."""
+@dataclass(frozen=True)
+class Polynomial:
+    """The piece of a table that is held: its base and its coefficients by rising powers, as nodes."""
+
+    base: Node
+    coefficients: tuple[Node, ...]
+
+    def at(self, program: Program, x: Node, order: int) -> Node:
+        """Its derivative of that order at x."""
+        u, total = program.difference(x, self.base), program.zero
+        for power in range(len(self.coefficients) - 1, order - 1, -1):
+            own = program.product(program.number(perm(power, order)), self.coefficients[power])
+            total = program.plus(program.product(total, u), own)
+        return total
+
+
+#: What stands for sign(g), by the number of g; for a table, by its argument's number and its curve.
+Standing = Mapping[int | tuple[int, Curve], Any]
+
+
+def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
+    """The outputs with what stands for sign(g) in its place, and g times that in place of |g|; a table's polynomial."""
     program = code.program
     values: dict[int, Node] = {}
 
     def standing(number: int, value: Node) -> Node:
         operation, operands, _ = program.instructions[number]
-        if operation in ("abs", "sign") and operands[0] in signs:
-            sign = signs[operands[0]]
+        if isinstance(operation, Tabulated) and (operands[0], operation.table.curve) in standing_for:
+            piece = standing_for[operands[0], operation.table.curve]
+            value = piece.at(program, values[operands[0]], operation.curve.order)
+        elif operation in ("abs", "sign") and operands[0] in standing_for:
+            sign = standing_for[operands[0]]
             value = sign if operation == "sign" else program.product(sign, values[operands[0]])
         values[number] = value
         return value
@@ -90,14 +124,14 @@ def held(code: Code, signs: Mapping[int, Node]) -> tuple[Node, ...]:
     return tuple(program.evaluate(code.outputs, inputs, program, standing))
 
 
-def sign_that_holds(rates: Code, sliding: Node, others: Mapping[int, Node]) -> Code:
+def sign_that_holds(rates: Code, sliding: Node, others: Standing) -> Code:
     """(t, q, q') -> s and g'(-1) - 2 g'(0) + g'(1), where the one ``sliding`` switch g stays 0 with s for its sign,
 
         g' = g_t + g_x . x' = a + b s = 0,    s = -a/b,
 
     g' along the motion being linear in s where the second is 0 (Filippov, Differential equations with discontinuous
-    righthand sides, 1988, chapter 2; it is Utkin's equivalent control).  ``others`` are the signs of the
-    other switches, by their numbers.
+    righthand sides, 1988, chapter 2; it is Utkin's equivalent control).  ``others`` stands for the
+    other switches.
     """
     program = rates.program
     slopes = gradient(program, sliding, [program.input(name) for name in rates.inputs])

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.lookup import numbers_of
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Run, Setting, Traits, Work
@@ -80,7 +81,11 @@ def _on_one_side(dynamics: Dynamics, t: float, x: Any) -> Dynamics:
         return dynamics
     code = dynamics.switches
     values = once(dynamics, ("features", "switches"), lambda: kernel(code))(np.concatenate(([t], x)))
-    return dynamics.on_sides(tuple(-1 if value < 0 else 1 for value in values))
+    sides = []
+    for value, curve in zip(values, dynamics.features.curves, strict=True):
+        on_piece = curve is not None and 1 + int(np.searchsorted(numbers_of(curve, np.float64)[0], value, "right"))
+        sides.append(on_piece or (-1 if value < 0 else 1))
+    return dynamics.on_sides(tuple(sides))
 
 
 class Switching:

@@ -33,6 +33,10 @@ from mbsym.report.language import Language
 _FUNCTIONS = {"atan": "arctan", "log": "ln"}
 
 
+#: A table of more points is shown by so many of its first and of its last.
+MOST_LISTED, SHOWN_FIRST = 100, 4
+
+
 def call(function: str, argument: str) -> str:
     """A function of one argument, known by Python's name."""
     if function == "sqrt":
@@ -50,9 +54,16 @@ def expression(value: Expression, names: LatexNames) -> str:
 
 
 def points(value: Sequence[tuple[Fraction, Fraction]], names: LatexNames) -> str:
-    """The points of a table; a line may end behind each."""
-    written = (f"({expression(Number(x), names)},\\, {expression(Number(y), names)})" for x, y in value)
+    """The points of a table; a line may end behind each.  Of many the first and last."""
+    written = [f"({expression(Number(x), names)},\\, {expression(Number(y), names)})" for x, y in shown_points(value)]
+    if len(value) > MOST_LISTED:
+        written[SHOWN_FIRST:SHOWN_FIRST] = [r"\dots"]
     return ",\\; \\allowbreak ".join(written)
+
+
+def shown_points(value: Sequence[tuple[Fraction, Fraction]]) -> Sequence[tuple[Fraction, Fraction]]:
+    """All of them, or some from either end where there are too many to read."""
+    return value if len(value) <= MOST_LISTED else (*value[:SHOWN_FIRST], *value[-SHOWN_FIRST:])
 
 
 def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:

@@ -13,6 +13,7 @@ from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.formulas.wolfram import (
     WolframNames,
     wolfram_call,
+    wolfram_definition,
     wolfram_expression,
     wolfram_names,
     wolfram_number,
@@ -32,6 +33,7 @@ DIALECT = Dialect(
     call=wolfram_call,
     local=lambda count: f"s{count}",
     number=wolfram_number,
+    tables=True,
 )
 
 
@@ -68,6 +70,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in found else None,
+        tables=[wolfram_definition(table) for table in analysis.system.tables],
         prescribed=[(names[item.name], prescribed_value(item)) for item in analysis.system.prescribed],
         statements=statements,
         polynomial=polynomial,

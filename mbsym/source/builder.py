@@ -7,6 +7,7 @@ can show (:mod:`mbsym.source.checks`).
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
@@ -37,12 +38,13 @@ from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
 
-def build(node: Node, complaints: Complaints, by_use: bool = False) -> System | None:
+def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path | None = None) -> System | None:
     """The system that a placed tree describes, or None if anything in it is wrong.
 
-    ``by_use``: where no parameters are declared at all, the names in the bodies, loads and relations are parameters.
+    ``folder`` is where the description is.  ``by_use``: where no parameters are declared at all, the names in the
+    bodies, loads and relations are parameters.
     """
-    reading = Reading(complaints, Scope(complaints))
+    reading = Reading(complaints, Scope(complaints), folder=folder)
     fields = reading.fields(node, "a description", SYSTEM)
     if by_use and fields.get("parameters") is None:
         reading.scope.by_use = {}

@@ -48,10 +48,11 @@ class _BoundedComplaints(Complaints):
             yield Complaint("too-many", f"with {len(self.items) + self.more.total()} complaints reading was given up")
 
 
-def read(text: str, filename: str = "<string>") -> tuple[System | None, Complaints]:
+def read(text: str, filename: str = "<string>", folder: Path | None = None) -> tuple[System | None, Complaints]:
     """The system that a text describes, or None, with all complaints; warnings may stand beside a system.
 
-    The text itself tells its spelling; where it does not, a name ending in ``.txt`` means editor text.
+    The text itself tells its spelling; where it does not, a name ending in ``.txt`` means editor text.  Files that it
+    names are looked for in ``folder``.
     """
     text = normalised(text)
     complaints = _BoundedComplaints()
@@ -59,7 +60,7 @@ def read(text: str, filename: str = "<string>") -> tuple[System | None, Complain
     try:
         if check_characters(text, complaints):
             node, editor = _placed_tree(text, filename, complaints)
-            system = None if node is None else build(node, complaints, by_use=editor)
+            system = None if node is None else build(node, complaints, by_use=editor, folder=folder)
     except TooManyComplaints:
         system, stopped = None, True
     return system, Complaints([*complaints.sorted(), *complaints.rest(stopped)])
@@ -86,15 +87,17 @@ def _placed_tree(text: str, filename: str, complaints: Complaints) -> tuple[Node
 def load(path: str | Path) -> tuple[System | None, Complaints, str]:
     """Read a file: the system or None, the complaints, and the text that they point into."""
     data, complaint = file_bytes(Path(path))
-    return (None, Complaints([complaint]), "") if complaint is not None else load_bytes(data, str(path))
+    return (
+        (None, Complaints([complaint]), "") if complaint is not None else load_bytes(data, str(path), Path(path).parent)
+    )
 
 
-def load_bytes(data: bytes, filename: str) -> tuple[System | None, Complaints, str]:
-    """What ``load`` gives of a file with this content."""
+def load_bytes(data: bytes, filename: str, folder: Path | None = None) -> tuple[System | None, Complaints, str]:
+    """What ``load`` gives of a file with this content; without its ``folder`` it can name no other files."""
     text, complaint = _decoded(data)
     if complaint is not None:
         return None, Complaints([complaint]), text
-    system, complaints = read(text, filename)
+    system, complaints = read(text, filename, folder)
     return system, complaints, text
 
 

@@ -58,8 +58,11 @@ INPUT = {
 
 TABLE = {
     "points": "[argument, value], two or more, arguments increasing",
+    "file": "in place of points: a file of rows (CSV) beside the description, or in a folder below",
+    "columns": "[argument, value]: the two columns of the file, by name or by number from 1 on; [1, 2] when left out",
+    "sha256": "of the file: where it is given, another content is complained about",
     "between": "linear, or cubic: the natural spline through the points",
-    "outside": "hold: the first or the last value; or zero",
+    "outside": "hold: the first or the last value; zero; extrapolate: as the end pieces go on; error: a run ends there",
     "unit": "the unit of its values, such as N*m",
 }
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
+from pathlib import Path
 
 from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -89,11 +90,15 @@ def _is_empty(node: Node) -> bool:
 
 @dataclass(slots=True)
 class Reading:
-    """The complaints and the declared names of one description; ``units`` are those that stand in records."""
+    """The complaints and the declared names of one description; ``units`` are those that stand in records.
+
+    ``folder`` is where the description is, if it is a file.
+    """
 
     complaints: Complaints
     scope: Scope
     units: list[Declared] = field(default_factory=list)
+    folder: Path | None = None
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self.complaints.error(code, message, span, hint)

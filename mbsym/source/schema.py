@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mbsym.expressions.table import CUBIC, HOLD, LINEAR, OUTSIDE_ZERO
+from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
 from mbsym.model.system import EXACT, GRAVITY_ORDERS, LANGUAGES, SHAPES
 from mbsym.source.keys import (
@@ -87,7 +87,7 @@ def _system_values() -> dict[str, Schema]:
         "prescribed": _named({"anyOf": [expression, _record(PRESCRIBED, _TEXTS, required=("rate",))]}),
         "inputs": {"anyOf": [_named({"anyOf": [_TEXT, {"type": "null"}, _record(INPUT, _TEXTS)]}), names]},
         "outputs": _named(expression),
-        "tables": _named(_record(TABLE, _table_values(), required=("points",))),
+        "tables": _named(_table_record()),
         "bodies": {"type": "array", "items": _reference("body"), "minItems": 1},
         "loads": {"type": "array", "items": _reference("load")},
         "constraints": {"type": "array", "items": _reference("constraint")},
@@ -114,8 +114,16 @@ _BODY_NAME = _TEXT
 
 def _table_values() -> dict[str, Schema]:
     points: Schema = {"type": "array", "items": {**_list(2), "minItems": 2}, "minItems": 2, "maxItems": MAX_POINTS}
-    words: dict[str, Schema] = {"between": {"enum": [LINEAR, CUBIC]}, "outside": {"enum": [HOLD, OUTSIDE_ZERO]}}
-    return {"points": points, **words, "unit": _UNIT}
+    words: dict[str, Schema] = {"between": {"enum": [LINEAR, CUBIC]}}
+    words["outside"] = {"enum": [HOLD, OUTSIDE_ZERO, EXTRAPOLATE, ENDS]}
+    columns: Schema = {"type": "array", "items": _UNIT, "minItems": 2, "maxItems": 2}
+    own: dict[str, Schema] = {"file": {"type": "string"}, "columns": columns, "sha256": {"type": "string"}}
+    return {"points": points, **own, **words, "unit": _UNIT}
+
+
+def _table_record() -> Schema:
+    """A table has points, or a file of them."""
+    return {**_record(TABLE, _table_values()), "oneOf": [{"required": ["points"]}, {"required": ["file"]}]}
 
 
 def _definitions() -> dict[str, Schema]:

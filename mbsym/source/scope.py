@@ -10,7 +10,18 @@ from dataclasses import dataclass, field
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import CONSTANTS, FUNCTIONS, JUMPS, KINKED, Call, Expression, Name, walk
+from mbsym.expressions.tree import (
+    CONSTANTS,
+    FUNCTIONS,
+    JUMPS,
+    KINKED,
+    MOST_WRITTEN_OUT,
+    Call,
+    Expression,
+    Name,
+    sticks,
+    walk,
+)
 from mbsym.model.system import acceleration_name, velocity_name
 
 MAX_NAME = 64
@@ -130,6 +141,8 @@ class Scope:
         for node in walk(expression):
             if isinstance(node, Call) and _kinked_as(node) not in ("", *allowed.kinked):
                 self._refuse_kinked(node, allowed)
+            if allowed is DISSIPATION and isinstance(node, Call) and sticks(node):
+                self._bound_points(node)
             if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
                 self.check_name(node.name, node.span, allowed)
 
@@ -142,6 +155,16 @@ class Scope:
             kind = "jump" if _kinked_as(node) in JUMPS else "kink"
             message = f"{allowed.what} may not hold {node.function}, which has a {kind}"
         self.complaints.error("not-smooth", message, node.span, hint)
+
+    def _bound_points(self, node: Call) -> None:
+        """Friction that may hold at each knot has a switch for each."""
+        assert node.table is not None
+        count = len(node.table.points)
+        if count > MOST_WRITTEN_OUT:
+            message = (
+                f"a dissipation function with kinks in velocities has at most {MOST_WRITTEN_OUT} points, not {count}"
+            )
+            self.complaints.error("too-large", message, node.span, "give the force itself: 'generalized force'")
 
     def check_key(self, key: Span, name: str, keys: Iterable[str], allowed: Allowed) -> bool:
         """The same for a key beside others, none of which is what it was meant to be."""

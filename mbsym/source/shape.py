@@ -78,8 +78,13 @@ def motion_shapes(system: System) -> dict[str, Shape]:
 
 
 def table_shape(table: Table) -> dict[str, Shape]:
-    points: list[Shape] = [[text(Number(x)), text(Number(y))] for x, y in table.points]
-    shape: dict[str, Shape] = {"points": points}
+    shape: dict[str, Shape]
+    if table.source is not None:
+        columns: list[Shape] = [*table.source.columns]
+        shape = {"file": table.source.file, "columns": columns, "sha256": table.source.digest}
+    else:
+        points: list[Shape] = [[text(Number(x)), text(Number(y))] for x, y in table.points]
+        shape = {"points": points}
     if table.between != LINEAR:
         shape["between"] = table.between
     if table.outside != HOLD:

@@ -7,16 +7,16 @@ from itertools import pairwise
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.expressions.table import CUBIC, HOLD, LINEAR, OUTSIDE_ZERO, Table
+from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO, Points, Source, Table
 from mbsym.model.system import rational
 from mbsym.model.units import Declared
 from mbsym.source.keys import TABLE
 from mbsym.source.placed import Entry, Node, Sequence
-from mbsym.source.reading import Reading
+from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER
 
-#: A table has at most so many points: each is a kink, and between two of them the rates are compiled anew.
-MAX_POINTS = 100
+#: A table in a description has at most so many points, one from a file ``table_file.MOST_POINTS``.
+MAX_POINTS = 500
 
 Place = tuple[Fraction, Fraction]
 
@@ -39,16 +39,52 @@ def _table(entry: Entry, reading: Reading) -> Table:
     hint = "write {points: [[0, 0], [1, 2.5]]}"
     fields = reading.fields(entry.value, what, TABLE, hint)
     between = _word("between", (LINEAR, CUBIC), fields.get("between"), reading)
-    outside = _word("outside", (HOLD, OUTSIDE_ZERO), fields.get("outside"), reading)
+    outside = _word("outside", (HOLD, OUTSIDE_ZERO, EXTRAPOLATE, ENDS), fields.get("outside"), reading)
     unit = fields.get("unit")
     scalar = None if unit is None else reading.scalar(unit, f"the unit of {ascii_safe(name)}")
     if scalar is not None:
         reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
-    node = fields.require("points", hint)
-    points = () if node is None else _points(node, what, reading)
+    source = None
+    if fields.get("file") is not None:
+        fields.exclude("file", ["points"])
+        points, source = _from_file(fields, reading)
+    else:
+        node = fields.require("points", hint)
+        fields.exclude("points", ["columns", "sha256"])
+        points = () if node is None else _points(node, what, reading)
     if len(points) < 2:  # something was complained about; this goes on for it
         points = ((Fraction(0), Fraction(0)), (Fraction(1), Fraction(0)))
-    return Table(name, points, between, outside, entry.key.span)
+    return Table(name, points, between, outside, entry.key.span, source)
+
+
+def _from_file(fields: Fields, reading: Reading) -> tuple[Points, Source | None]:
+    """The points of a file, every complaint about it at the place where it is named."""
+    node = fields.get("file")
+    scalar = None if node is None else reading.scalar(node, "'file'")
+    columns = _columns(fields.get("columns"), reading)
+    if scalar is None or columns is None:
+        return (), None
+    from mbsym.source.table_file import read_points  # few descriptions have such a file
+
+    found = read_points(reading.folder, scalar.text.strip(), columns)
+    for message, hint in found.complaints:
+        reading.error("table-file", message, scalar.span, hint)
+    wanted = fields.get("sha256")
+    stated = None if wanted is None else reading.scalar(wanted, "'sha256'")
+    if stated is not None and found.digest and stated.text.strip().lower() != found.digest:
+        message = f"{scalar.text.strip()} is not the file that is meant: its SHA-256 is {found.digest}"
+        reading.error("table-file", message, stated.span, "leave the key out where any content will do")
+    return found.points, Source(scalar.text.strip(), columns, found.digest)
+
+
+def _columns(node: Node | None, reading: Reading) -> tuple[str, str] | None:
+    if node is None:
+        return "1", "2"
+    if not isinstance(node, Sequence) or len(node.items) != 2:
+        reading.shape_error(node, "'columns'", "two columns", "write [t, speed], or [1, 3]")
+        return None
+    first, second = (reading.scalar(item, "a column") for item in node.items)
+    return None if first is None or second is None else (first.text.strip(), second.text.strip())
 
 
 def _word(key: str, choices: tuple[str, ...], node: Node | None, reading: Reading) -> str:

@@ -187,6 +187,8 @@ class _TextReader:
 
     def table_entry(self, entry: Entry) -> Entry:
         value = entry.value
+        if entry.key.text == "columns" and isinstance(value, Scalar):
+            return Entry(entry.key, self.items(value))
         if entry.key.text != "points" or not isinstance(value, Scalar):
             return entry
         points = self.items(value)

@@ -86,7 +86,9 @@ def _record(shape: Data, first: str) -> str:
 
 
 def _table(shape: dict[str, Data]) -> str:
-    """``((0, 0), (1, 2.5)); between = cubic``."""
+    """``((0, 0), (1, 2.5)); between = cubic``, or ``file = wind.csv; columns = (1, 3)``."""
+    if "points" not in shape:
+        return _record({key: _value(value) for key, value in shape.items()}, "points")
     points = shape["points"]
     assert isinstance(points, list)
     return _record({**shape, "points": f"({', '.join(_value(point) for point in points)})"}, "points")

@@ -14,10 +14,11 @@ import mbsym
 from mbsym.numerics.accuracy import NoEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.numerics.methods import landing, runge_kutta
+from mbsym.numerics.methods import runge_kutta, sides
 from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.landing import LandingRun
+from mbsym.numerics.methods.leaving import Leaving
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 
@@ -169,7 +170,7 @@ def test_a_motion_that_two_frictions_would_hold_ends_by_name() -> None:
     run = run_of("dop853", text)
     with pytest.raises(Breakdown, match="hold at once") as found:
         run.advance(5.0)
-    assert found.value.kind == landing.SWITCHING
+    assert found.value.kind == sides.SWITCHING
     assert found.value.time == pytest.approx(2)
 
 
@@ -185,15 +186,15 @@ def test_a_kernel_of_signs_is_what_the_text_says() -> None:
 
 
 def test_a_dropped_switch_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(LandingRun, "_first", lambda self, piece: (piece.end, ()))
+    monkeypatch.setattr(Leaving, "first", lambda self, piece: (piece.end, ()))
     for case in ("a push of 2 ms", "bang-bang", "dry friction"):
         with pytest.raises(Breakdown, match="a switch was missed"):
             run_of("dop853", CASES[case][0]).advance(10.0)
 
 
 def test_a_switch_at_the_wrong_time_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = LandingRun._polished
-    monkeypatch.setattr(LandingRun, "_polished", lambda *arguments: right(*arguments) + 1e-3)
+    right = Leaving._polished
+    monkeypatch.setattr(Leaving, "_polished", lambda *arguments: right(*arguments) + 1e-3)
     run = mbsym.simulate(mbsym.loads(CASES["bang-bang"][0]), 10, method="dop853", estimate=True)
     assert not run.whole or isinstance(run.error, NoEstimate) or run.error.largest > 1e-6
 

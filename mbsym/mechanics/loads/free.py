@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsym.algebra.base import Scalar
-from mbsym.expressions.tree import differentiate, names
+from mbsym.expressions.tree import differentiate, names, sticks, without_tables
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model.system import ForceFunction, GeneralizedForce, Rayleigh, velocity_name
@@ -29,10 +29,11 @@ FORCE_FUNCTION = Kind(_force_function_action, _force_function)
 
 
 def _rayleigh_action(load: Rayleigh, scene: Scene) -> Action:
-    """Q = -dR/dq'."""
+    """Q = -dR/dq'.  A kink of R in a velocity is dry friction, which holds there: its table becomes moduli."""
     present = names(load.expression)
+    potential = without_tables(load.expression, sticks)
     forces = {
-        name: -scene.lower(differentiate(load.expression, velocity_name(name)))
+        name: -scene.lower(differentiate(potential, velocity_name(name)))
         for name in scene.system.coordinates
         if velocity_name(name) in present
     }

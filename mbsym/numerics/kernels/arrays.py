@@ -8,12 +8,15 @@ asked for in another type.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.lookup import looked_up
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
@@ -45,13 +48,17 @@ def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:
         constants[name] = dtype(head) if dtype is not np.longdouble else _long(value, head)
         return name
 
-    dialect = Dialect(
-        call=lambda function, argument: f"np.{_NAMES.get(function, function)}({argument})",
-        local=lambda count: f"s{count}",
-        number=constant,
-    )
-    text = _text(code, listing(code.program, code.outputs, names, dialect, {"np", "f", "c"}), names)
-    scope: dict[str, Any] = {"np": np, "c": list(constants.values())}
+    tables: list[Callable[[Any], Any]] = []
+
+    def call(function: str, argument: str) -> str:
+        if isinstance(function, Tabulated):
+            tables.append(partial(looked_up, function.curve))
+            return f"tables[{len(tables) - 1}]({argument})"
+        return f"np.{_NAMES.get(function, function)}({argument})"
+
+    dialect = Dialect(call=call, local=lambda count: f"s{count}", number=constant, tables=True)
+    text = _text(code, listing(code.program, code.outputs, names, dialect, {"np", "f", "c", "tables"}), names)
+    scope: dict[str, Any] = {"np": np, "c": list(constants.values()), "tables": tables}
     exec(compile(text, "<straight-line program>", "exec"), scope)  # our own text, made of numbers and own names only
     run = scope["f"]
 

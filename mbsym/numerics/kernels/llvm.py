@@ -28,7 +28,8 @@ import numpy as np
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
-from mbsym.numerics.kernels import sine_cosine
+from mbsym.expressions.table import Tabulated
+from mbsym.numerics.kernels import lookup, sine_cosine
 from mbsym.numerics.kernels.cells import address_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.sine_cosine import splat, vector
@@ -375,6 +376,8 @@ class _Form:
                 yield from self._kinked(operation, local, a)
             case [a] if operation == "sqrt" and self.lanes > 1:
                 yield f"  {local} = call {kind} @llvm.sqrt.{suffix(self.scalar, self.lanes)}({kind} {a})"
+            case [a] if isinstance(operation, Tabulated):
+                yield from self._function(lookup.called(operation, self.scalar.suffix), local, a)
             case [a]:
                 yield from self._function(f"{operation}{self.scalar.suffix}", local, a)
             case [a, b] if operation in ROUNDINGS:
@@ -608,7 +611,11 @@ def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
         called.remove("sqrt")
         lines.append(f"declare {kind} @llvm.sqrt.{suffix(scalar, lanes)}({kind})\n")
     one = scalar.type
-    lines += [f"declare {one} @{name}{scalar.suffix}({one}) #1\n" for name in sorted(called)]
+    for name in sorted(called):
+        if isinstance(name, Tabulated):
+            lines.append(lookup.llvm_text(name, one, scalar.suffix, constant))
+        else:
+            lines.append(f"declare {one} @{name}{scalar.suffix}({one}) #1\n")
     return "".join(lines)
 
 

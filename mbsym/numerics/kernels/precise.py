@@ -52,8 +52,9 @@ def written(
                 case operation, [a, b]:
                     text = f"{a} {_SIGNS[operation]} {b}"
                 case function, [a]:
-                    scope[f"call_{function}"] = meaning(function)
-                    text = f"call_{function}({a})"
+                    called = scope.setdefault("names", {}).setdefault(function, f"call_{len(scope['names'])}")
+                    scope[called] = meaning(function)
+                    text = f"{called}({a})"
             lines.append(f"    {local} = {text}")
     lines.append("    return [" + ", ".join(values[node.number] for node in code.outputs) + "]")
     exec(compile("\n".join(lines), "<straight-line program>", "exec"), scope)  # our own text, made of numbers only

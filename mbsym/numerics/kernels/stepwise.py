@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.lookup import looked_up
 from mbsym.algebra.program import PRODUCT_ROUNDING, SUM_ROUNDING
+from mbsym.expressions.table import Tabulated
 from mbsym.numerics.kernels.interface import FLOAT32, Code, Kernel
 
 
@@ -29,7 +32,7 @@ def stepwise(code: Code, scalar: str) -> Kernel:
         elif operation == "input":
             entries.append((number, slots[str(payload)]))
         else:
-            function = binary.get(operation) or named.get(operation) or getattr(np, operation)
+            function = binary.get(operation) or named.get(operation) or _function(operation)
             steps.append((number, function, operands))
 
     def kernel(inputs: Any) -> Any:
@@ -41,6 +44,12 @@ def stepwise(code: Code, scalar: str) -> Kernel:
         return np.array([values[node.number] for node in code.outputs])
 
     return kernel
+
+
+def _function(operation: str) -> Any:
+    if isinstance(operation, Tabulated):
+        return partial(looked_up, operation.curve)
+    return getattr(np, operation)
 
 
 def _sum_rounding(a: Any, b: Any) -> Any:

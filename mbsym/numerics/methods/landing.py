@@ -13,7 +13,6 @@ steps of fixed length pass it, and that is told.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from time import perf_counter
@@ -21,35 +20,21 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.crossings import Sign, free_of_zeros, passages, resolved, series
 from mbsym.numerics.dynamics import Dynamics, Frozen
-from mbsym.numerics.features import SLIDING
-from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
-from mbsym.numerics.methods.kept import compiled_kernel, once
+from mbsym.numerics.methods.leaving import TOGETHER, Leaving
 from mbsym.numerics.methods.narrow import BESIDE, along, met
-from mbsym.numerics.methods.passed import Narrow, Passed
+from mbsym.numerics.methods.passed import MOST_KEPT, Narrow, Passed
+from mbsym.numerics.methods.sides import Sides, endless, feature_kernel
 
-#: Why a run cannot go on at a switch.
-SWITCHING = "switching without end"
-
-#: A piece is halved so often to resolve a g.
-DEPTH = 12
-
-#: Values of g below this part of its size are 0: they are what roundings leave of a step that ends at g = 0.
-BLUR = 1e-13
-
-#: Switches so close to each other, relative to the time, that nothing moves between them; so many end the run.
-TOGETHER, MOST_TOGETHER = 1e-12, 24
+#: So many switches where nothing moves between them end the run.
+MOST_TOGETHER = 24
 
 #: No step is longer, relative to the time: where nothing moves until it is pushed, steps would grow without end.
 FAR = 100.0
 
 #: A step is shortened so often for what it would pass.
 MOST_WINDOWS = 40
-
-#: So many passages and features are kept one by one.
-MOST_KEPT = 10_000
 
 
 class Landing:
@@ -90,13 +75,14 @@ class LandingRun:
         self, method: Method, dynamics: Dynamics, setting: Setting, scalar: str, initial: Any, at: float
     ) -> None:
         self._method, self._dynamics, self._setting, self._scalar = method, dynamics, setting, scalar
-        self._switch_values = _kernel(dynamics, "switches")
-        self._narrow_values = _kernel(dynamics, "narrow")
-        self._count = len(dynamics.features.switches.outputs)
+        self._switches = Sides(dynamics)
+        self._narrow_values = feature_kernel(dynamics, "narrow")
+        self._count = self._switches.count
         self._kinds = dynamics.features.kinds
         self._longest = _longest(method, setting)
         self._runs: dict[int | None, Run] = {}
         self.work, self.passed = Work(), Passed()
+        self._leaving = Leaving(self._positive, self._switches.looked_for, setting.tolerance or 0.0, self.passed)
         first = method.start(dynamics, setting, scalar, initial, at) if not self._count else None
         start = np.array([float(x) for x in dynamics.scenario.state]) if initial is None else np.asarray(initial)
         if first is not None:
@@ -162,7 +148,8 @@ class LandingRun:
         if self._beyond is not None:
             return self._rest(until)
         if self._sides is None:
-            self._sides = self._choose((), ())
+            self._sides = self._switches.choose(self.time, self.state, (), ())
+        self._switches.require_inside(self.time, self.state, self._sides)
         for _ in range(MOST_TOGETHER):
             piece, place, turned = self._tried(until)
             if not turned:
@@ -171,7 +158,7 @@ class LandingRun:
                 return self._landed(place, turned)
             self._note_switch()
             self._switch(turned)
-        raise self._endless("its switches lead back to each other")
+        raise endless("its switches lead back to each other", self.time, self.state)
 
     def _rest(self, until: float | None) -> Piece:
         """What is left of a step of which a part was asked for, or another part of it."""
@@ -195,11 +182,14 @@ class LandingRun:
                 break
             self._windows.append(window)
             self._go_back(start, state)
-        place, turned = self._first(piece)
+        assert self._sides is not None
+        place, turned = self._leaving.first(piece)
         return piece, place, turned
 
     def _bound(self, until: float | None) -> float:
         bound = self.time + FAR * (1.0 + abs(self.time)) if until is None else until  # at rest steps know no bound
+        assert self._sides is not None
+        bound = min(bound, self._switches.next_knot(self._sides))
         if self._longest is not None:
             bound = min(bound, self.time + self._longest)
         for window in self._windows:
@@ -247,6 +237,10 @@ class LandingRun:
         self.time, self.state = piece.end, self._ahead.state
         self._windows = [window for window in self._windows if window.end > self.time]
         self._together = 0
+        knots = self._switches.reached(self.time, self._sides or ())
+        if knots:
+            self._note_switch()
+            self._switch(knots)
         return piece
 
     def _landed(self, place: float, turned: tuple[int, ...]) -> Piece:
@@ -264,7 +258,7 @@ class LandingRun:
         self.time, self.state = piece.end, self._ahead.state
         self._together = 0 if apart > 1e-9 * max(1.0, abs(place)) else self._together + 1
         if self._together > MOST_TOGETHER:
-            raise self._endless("they come ever closer to each other")
+            raise endless("they come ever closer to each other", self.time, self.state)
         self._note_switch()
         self._switch(turned)
         return piece
@@ -279,163 +273,33 @@ class LandingRun:
     def _switch(self, turned: tuple[int, ...]) -> None:
         """Other sides for some switches: those that the motion then stays on."""
         assert self._sides is not None
-        self._sides = self._choose(self._sides, turned)
+        self._sides = self._switches.choose(self.time, self.state, self._sides, turned)
         self._ahead = None
 
-    def _choose(self, before: tuple[int, ...], turned: tuple[int, ...]) -> tuple[int, ...]:
-        """The sides from here on: of the present ones those in ``turned`` change; all are looked for where none is."""
-        values = self._values(self.time, self.state)
-        sides = list(before) if before else [0 if abs(v) <= self._blur(v) else int(np.sign(v)) for v in values]
-        open_ = list(turned) if before else [k for k, side in enumerate(sides) if side == 0]
-        for k in open_:
-            was = sides[k]
-            if before and was == SLIDING:  # it leaves where the sign that held it has become that of a side
-                frozen = self._dynamics.on_sides(before)
-                sides[k] = 1 if self._holding(frozen, self.time, self.state)[0] > 0 else -1
-                continue
-            first = -was if was else 1
-            for side in (first, -first):
-                sides[k] = side
-                if self._stays(tuple(sides), k):
-                    break
-            else:
-                sides[k] = SLIDING
-                self._check_sliding(tuple(sides))
-        return tuple(sides)
-
-    def _stays(self, sides: tuple[int, ...], k: int) -> bool:
-        """Whether a motion that begins on g_k = 0 goes to the given side of it, or stays: by two short steps."""
-        state = np.asarray(self.state, dtype=float)
-        frozen = self._dynamics.on_sides(tuple(side or 1 for side in sides) if sides.count(0) > 1 else sides)
-        rates = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([self.time], state)))
-        scale = np.max(np.abs(state), initial=0.0) + np.max(np.abs(rates), initial=0.0) + abs(self.time) + 1.0
-        reach = 1e-6 * (1.0 + np.max(np.abs(state), initial=0.0)) / (1.0 + np.max(np.abs(rates), initial=0.0))
-        begun = self._values(self.time, state)[k]
-        # A Taylor step of third order: g may begin to move by its second derivative only.
-        for length in (reach, 1e3 * reach):
-            later = state + length * rates
-            middle = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([self.time + length], later)))
-            later = state + 0.5 * length * (rates + middle)
-            moved = self._values(self.time + length, later)[k] - begun
-            if abs(moved) > 1e-15 * scale * 4:
-                return bool(moved * sides[k] > 0)
-        return True
-
-    def _check_sliding(self, sides: tuple[int, ...]) -> None:
-        if sides.count(SLIDING) > 1:
-            raise self._endless("two of its switches would have to hold at once")
-        frozen = self._dynamics.on_sides(sides)
-        sign, curvature = self._holding(frozen, self.time, self.state)
-        if not abs(sign) <= 1 + 1e-9 or not abs(curvature) <= 1e-9 * max(1.0, abs(sign)):
-            raise self._endless("no force between the two sides holds it there")
-
-    @staticmethod
-    def _holding(frozen: Frozen, times: Any, states: Any) -> Any:
-        point = np.vstack([np.atleast_1d(np.asarray(times, float)), np.asarray(states, float).reshape(len(states), -1)])
-        return np.squeeze(once(frozen, "holding", lambda: kernel(frozen.holding))(point))
-
-    def _endless(self, why: str) -> Breakdown:
-        return Breakdown(SWITCHING, why, self.time, np.array(self.state, dtype=float))
-
-    def _values(self, time: float, state: Any) -> Any:
-        return self._switch_values(np.concatenate(([float(time)], np.asarray(state, dtype=float))))
-
-    @staticmethod
-    def _blur(size: Any) -> Any:
-        return BLUR * (1.0 + np.abs(size))
-
-    # --- where sides are left ---
-
-    def _first(self, piece: Piece) -> tuple[float, tuple[int, ...]]:
-        """The first time at which switches leave their sides in a piece, and which do so then; (end, ()) if none."""
-        if not self._count or self._sides is None:
-            return piece.end, ()
-        found: list[tuple[float, int]] = []
-        whole = along(self._leaving, piece, piece.start, piece.end)
-        for k in range(self._count):
-            place = self._left(k, piece, piece.start, piece.end, whole[k], DEPTH)
-            if place is not None:
-                found.append((place, k))
-        if not found:
-            return piece.end, ()
-        first = min(place for place, _ in found)
-        together = TOGETHER * max(1.0, abs(first))
-        return first, tuple(k for place, k in found if place <= first + together)
-
-    def _leaving(self, points: Any) -> Any:
-        """g_k s_k, positive on its side; of a sliding switch 1 - s^2."""
+    def _positive(self, points: Any) -> Any:
+        """What is positive on the present sides."""
         assert self._sides is not None
-        values = np.array(self._switch_values(points)) * np.array(self._sides)[:, None]
-        if SLIDING in self._sides:
-            frozen = self._dynamics.on_sides(self._sides)
-            sign = once(frozen, "holding", lambda: kernel(frozen.holding))(points)[0]
-            values[self._sides.index(SLIDING)] = 1.0 - sign * sign
-        return values
-
-    def _left(self, k: int, piece: Piece, start: float, end: float, values: Any, depth: int) -> float | None:
-        """Where a function that begins positive, or at 0, becomes negative."""
-        if not np.all(np.isfinite(values)):
-            return None
-        size = float(np.max(np.abs(values)))
-        begins = start == piece.start
-        shifted = values - min(values[0], 0.0) if begins else values
-        known = series(shifted)
-        if free_of_zeros(known) and shifted[0] > 0:
-            return None
-        if not resolved(known, 1e-14 * size) and depth > 0:
-            middle = 0.5 * (start + end)
-            for a, b in ((start, middle), (middle, end)):
-                place = self._left(k, piece, a, b, along(self._leaving, piece, a, b)[k], depth - 1)
-                if place is not None:
-                    return place
-            return None
-        if not resolved(known, 1e-14 * size) and len(self.passed.unresolved) < MOST_KEPT:
-            self.passed.unresolved.append(start)
-        # Beside a switch that was just passed, what is within the tolerance of it is at it.
-        near = 0.1 * (self._setting.tolerance or 0.0) if begins and abs(values[0]) < 1e-6 * (1 + size) else 0.0
-        passed, _, _ = passages(known, Sign(1, begins), max(BLUR * size, near))
-        down = [one.place for one in passed if one.turn < 0]
-        if not down:
-            return None
-        return self._polished(k, piece, start + 0.5 * (down[0] + 1) * (end - start), start, end)
-
-    def _polished(self, k: int, piece: Piece, guess: float, start: float, end: float) -> float:
-        """The zero of g itself on the dense output, beside that of its interpolant; by bisection."""
-
-        def value(time: float) -> float:
-            return float(self._leaving(np.vstack([[[time]], np.asarray(piece(np.array([time])), float)]))[k, 0])
-
-        reach = 1e-12 * (end - start)
-        while reach < end - start:
-            left, right = max(start, guess - reach), min(end, guess + reach)
-            if value(left) > 0 >= value(right):
-                for _ in range(80):
-                    middle = 0.5 * (left + right)
-                    if middle in (left, right):
-                        break
-                    left, right = (middle, right) if value(middle) > 0 else (left, middle)
-                return right
-            reach *= 16
-        return guess
+        return self._switches.leaving(points, self._sides)
 
     def _check_sides(self, piece: Piece) -> None:
         """A step that ends on another side than it was made for has missed a switch: nothing may hide that."""
-        if not self._count or self._ahead is None:
+        if not self._switches.looked_for or self._ahead is None:
             return
-        point = np.concatenate(([piece.end], np.asarray(self._ahead.state, dtype=float)))[:, None]
-        values, sizes = self._leaving(point)[:, 0], np.abs(self._switch_values(point)[:, 0])
-        middle = along(self._leaving, piece, piece.start, piece.end)
+        state = np.asarray(self._ahead.state, dtype=float)
+        point = np.concatenate(([piece.end], state))[:, None]
+        values, sizes = self._positive(point)[:, 0], np.abs(self._switches.at(piece.end, state))
+        middle = along(self._positive, piece, piece.start, piece.end)
         allowed = 1e-6 * (np.max(np.abs(middle), axis=1) + sizes) + 1e-9
         if np.any(values < -allowed):
-            raise Breakdown(SWITCHING, "a switch was missed", piece.end, np.array(self._ahead.state, dtype=float))
+            raise endless("a switch was missed", piece.end, state)
 
     def _check_landing(self, piece: Piece, state: Any, turned: tuple[int, ...]) -> None:
         """A step to a switch has to end at it."""
         state = np.array(state, dtype=float)
-        sizes = np.max(np.abs(along(self._leaving, piece, piece.start, piece.end)), axis=1)
-        left = np.abs(self._leaving(np.concatenate(([piece.end], state))[:, None])[:, 0])
+        sizes = np.max(np.abs(along(self._positive, piece, piece.start, piece.end)), axis=1)
+        left = np.abs(self._positive(np.concatenate(([piece.end], state))[:, None])[:, 0])
         if np.any(left[list(turned)] > (1e-5 * sizes + 1e-7)[list(turned)]):
-            raise Breakdown(SWITCHING, "a switch is not where it should be", piece.end, state)
+            raise endless("a switch is not where it should be", piece.end, state)
 
     # --- narrow features ---
 
@@ -468,8 +332,3 @@ class LandingRun:
 def _longest(method: Method, setting: Setting) -> float | None:
     """The longest step, where the method itself takes no notice of it."""
     return setting.longest if method.traits.name == "taylor" else None
-
-
-def _kernel(dynamics: Dynamics, name: str) -> Callable[[Any], Any]:
-    code = getattr(dynamics.features, name)
-    return once(dynamics, ("features", name), lambda: kernel(code)) if code.outputs else lambda points: np.empty((0,))

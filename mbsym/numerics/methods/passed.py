@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from mbsym.numerics.methods.interface import Run
 
+#: So many passages and features are kept one by one.
+MOST_KEPT = 10_000
+
 
 @dataclass(frozen=True)
 class Narrow:

@@ -1,0 +1,200 @@
+"""On which side of its switches, and on which piece of its tables, a motion goes on.
+
+    a sign or modulus of g   side -1 or 1; 0 where both sides lead back to g = 0 and the motion stays there
+    a table at x             piece 1, ..., n + 1 between its n knots, and outside; the next one follows on each
+
+Tables of the time alone have their knots where the clock says: nobody has to look for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.lookup import numbers_of
+from mbsym.expressions.table import Curve
+from mbsym.numerics.dynamics import Dynamics, Frozen
+from mbsym.numerics.features import SLIDING
+from mbsym.numerics.kernels.llvm import kernel
+from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.methods.kept import compiled_kernel, once
+
+#: Why a run cannot go on at a switch, and beyond the points of a table.
+SWITCHING = "switching without end"
+OUTSIDE = "outside of a table"
+
+#: Values of g below this part of its size are 0: they are what roundings leave of a step that ends at g = 0.
+BLUR = 1e-13
+
+
+class Sides:
+    """The switches of a dynamics; ``count`` of them, one side each."""
+
+    def __init__(self, dynamics: Dynamics) -> None:
+        self._dynamics, found = dynamics, dynamics.features
+        self.curves: tuple[Curve | None, ...] = found.curves
+        self.count = len(self.curves)
+        self._knots = [None if curve is None else numbers_of(curve, np.float64)[0] for curve in self.curves]
+        program, outputs = found.switches.program, found.switches.outputs
+        clock = [program.instructions[node.number].payload == "t" for node in outputs]
+        self.by_clock = tuple(k for k, knots in enumerate(self._knots) if clock[k] and knots is not None)
+        self.looked_for = tuple(k for k in range(self.count) if k not in self.by_clock)
+        self.values = feature_kernel(dynamics, "switches")
+
+    def at(self, time: float, state: Any) -> Any:
+        """All g and x in a state."""
+        return self.values(np.concatenate(([float(time)], np.asarray(state, dtype=float))))
+
+    def next_knot(self, sides: tuple[int, ...]) -> float:
+        """When the first table of the time comes to its next knot."""
+        return min((self._ends(k, sides[k])[1] for k in self.by_clock), default=inf)
+
+    def reached(self, time: float, sides: tuple[int, ...]) -> tuple[int, ...]:
+        """The tables of the time that have come to their next knot."""
+        return tuple(k for k in self.by_clock if self._ends(k, sides[k])[1] <= time)
+
+    def leaving(self, points: Any, sides: tuple[int, ...]) -> Any:
+        """For every switch what is positive on its side, shape (count, m): g s, of a sliding one 1 - s^2,
+
+        (x - a)(b - x)/(b - a)   of a table between two knots, x_0 - x and x - x_n outside; 1 for the time's.
+        """
+        values = np.array(self.values(points))
+        for k, side in enumerate(sides):
+            if self._knots[k] is None:
+                values[k] *= side
+                continue
+            below, above = self._ends(k, side)
+            if k in self.by_clock:
+                values[k] = 1.0
+            elif below == -inf:
+                values[k] = above - values[k]
+            elif above == inf:
+                values[k] -= below
+            else:
+                values[k] = (values[k] - below) * (above - values[k]) / (above - below)
+        if SLIDING in sides:
+            values[sides.index(SLIDING)] = 1.0 - self.holding(self._dynamics.on_sides(sides), points)[0] ** 2
+        return values
+
+    def _ends(self, k: int, side: int) -> tuple[float, float]:
+        """The knots around a piece."""
+        knots = self._knots[k]
+        assert knots is not None
+        return (
+            float(knots[side - 2]) if side > 1 else -inf,
+            float(knots[side - 1]) if side <= len(knots) else inf,
+        )
+
+    # --- choosing ---
+
+    def choose(self, time: float, state: Any, before: tuple[int, ...], turned: tuple[int, ...]) -> tuple[int, ...]:
+        """The sides from here on: of those ``before``, the ones in ``turned`` change; all are looked for without any.
+
+        Raises Breakdown where the motion can go nowhere.
+        """
+        values = self.at(time, state)
+        sides = list(before) if before else [self._plainly(k, float(v)) for k, v in enumerate(values)]
+        open_ = list(turned) if before else [k for k, v in enumerate(values) if self._at_border(k, float(v))]
+        for k in open_:
+            if before and sides[k] == SLIDING:  # it leaves where the sign that held it has become that of a side
+                frozen = self._dynamics.on_sides(before)
+                sides[k] = 1 if self._sign_there(frozen, time, state)[0] > 0 else -1
+                continue
+            for side, way in self._ways(k, sides[k], float(values[k])):
+                sides[k] = side
+                if k in self.by_clock or self._stays(time, state, tuple(sides), k, way):
+                    break
+            else:
+                if self.curves[k] is not None:
+                    raise endless("a force that jumps at a knot leads back to it from both sides", time, state)
+                sides[k] = SLIDING
+                self._check_sliding(time, state, tuple(sides))
+        return tuple(sides)
+
+    def _plainly(self, k: int, value: float) -> int:
+        knots = self._knots[k]
+        if knots is not None:
+            return 1 + int(np.searchsorted(knots, value, side="right"))
+        return 0 if abs(value) <= blur(value) else int(np.sign(value))
+
+    def _at_border(self, k: int, value: float) -> bool:
+        knots = self._knots[k]
+        if knots is None:
+            return abs(value) <= blur(value)
+        return k not in self.by_clock and float(np.min(np.abs(knots - value))) <= blur(value)
+
+    def _ways(self, k: int, was: int, value: float) -> tuple[tuple[int, int], ...]:
+        """The sides that there are, the likelier first, and in which direction g or x would move there."""
+        knots = self._knots[k]
+        if knots is None:
+            first = -was if was else 1
+            return (first, first), (-first, -first)
+        if k in self.by_clock:
+            return ((was + 1, 1),)
+        border = int(np.argmin(np.abs(knots - value)))
+        left, right = (border + 1, -1), (border + 2, 1)
+        return (left, right) if was == right[0] else (right, left)
+
+    def _stays(self, time: float, state: Any, sides: tuple[int, ...], k: int, way: int) -> bool:
+        """Whether a motion that begins at a border goes that way, or stays: by two short steps."""
+        state = np.asarray(state, dtype=float)
+        frozen = self._dynamics.on_sides(tuple(side or 1 for side in sides) if sides.count(0) > 1 else sides)
+        rates = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([time], state)))
+        scale = np.max(np.abs(state), initial=0.0) + np.max(np.abs(rates), initial=0.0) + abs(time) + 1.0
+        reach = 1e-6 * (1.0 + np.max(np.abs(state), initial=0.0)) / (1.0 + np.max(np.abs(rates), initial=0.0))
+        begun = self.at(time, state)[k]
+        # A Taylor step of third order: g may begin to move by its second derivative only.
+        for length in (reach, 1e3 * reach):
+            later = state + length * rates
+            middle = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([time + length], later)))
+            later = state + 0.5 * length * (rates + middle)
+            moved = self.at(time + length, later)[k] - begun
+            if abs(moved) > 1e-15 * scale * 4:
+                return bool(moved * way > 0)
+        return True
+
+    def _check_sliding(self, time: float, state: Any, sides: tuple[int, ...]) -> None:
+        if sides.count(SLIDING) > 1:
+            raise endless("two of its switches would have to hold at once", time, state)
+        sign, curvature = self._sign_there(self._dynamics.on_sides(sides), time, state)
+        if not abs(sign) <= 1 + 1e-9 or not abs(curvature) <= 1e-9 * max(1.0, abs(sign)):
+            raise endless("no force between the two sides holds it there", time, state)
+
+    @staticmethod
+    def holding(frozen: Frozen, points: Any) -> Any:
+        """The sign that holds a sliding switch, and 0 where it does, at points (1 + 2n, m)."""
+        return once(frozen, "holding", lambda: kernel(frozen.holding))(points)
+
+    def _sign_there(self, frozen: Frozen, time: float, state: Any) -> Any:
+        point = np.concatenate(([float(time)], np.asarray(state, float)))[:, None]
+        return self.holding(frozen, point)[:, 0]
+
+    def require_inside(self, time: float, state: Any, sides: tuple[int, ...]) -> None:
+        """Raises Breakdown where a table is left that says nothing outside of its points."""
+        for k, (side, curve) in enumerate(zip(sides, self.curves, strict=True)):
+            if curve is not None and curve.bounded and side in (1, len(curve.knots) + 1):
+                value = float(self.at(time, state)[k])
+                end = float(curve.knots[0] if side == 1 else curve.knots[-1])
+                where = f"begins at {end:.9g}" if side == 1 else f"ends at {end:.9g}"
+                beyond = "" if abs(value - end) <= 1e-9 * (1 + abs(end)) else f", and its argument is {value:.9g}"
+                message = f"the table {curve.table.name} {where}{beyond}"
+                raise Breakdown(OUTSIDE, message, float(time), np.array(state, dtype=float))
+
+
+def feature_kernel(dynamics: Dynamics, name: str) -> Callable[[Any], Any]:
+    """The ``switches`` or the ``narrow`` of a dynamics, compiled once."""
+    code = getattr(dynamics.features, name)
+    return once(dynamics, ("features", name), lambda: kernel(code)) if code.outputs else lambda points: np.empty((0,))
+
+
+def blur(size: Any) -> Any:
+    """What roundings leave of a g that is 0."""
+    return BLUR * (1.0 + np.abs(size))
+
+
+def endless(why: str, time: float, state: Any) -> Breakdown:
+    """A run that cannot go on at a switch."""
+    return Breakdown(SWITCHING, why, float(time), np.array(state, dtype=float))
