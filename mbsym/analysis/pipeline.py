@@ -54,6 +54,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
+    from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.equilibria import Equilibria
 
 T = TypeVar("T")
@@ -65,6 +66,11 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 
 #: The stages that know constraints, or hold whether there are any or not.
 KNOW_CONSTRAINTS = frozenset(("scene", "parameters_scene", "signs", "kinematics", "claims", "checks"))
+
+#: The stages that know speeds, or hold whether there are any or not.
+KNOW_SPEEDS = frozenset(
+    ("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "programs", "claims", "checks")
+)
 
 
 class Problem(Derived["Analysis", T]):
@@ -143,9 +149,11 @@ class Analysis(Stages):
         return replace(stage, value=None, failure=self.withheld[number]) if number in self.withheld else stage
 
     def result(self, name: str, compute: Callable[[], Any]) -> Any:
-        """The value of a stage; one that does not know constraints has none where there are some."""
+        """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
         if self.system.constraints and name not in KNOW_CONSTRAINTS:
             compute = self._without_constraints
+        elif self.system.speeds and name not in KNOW_SPEEDS:
+            compute = _without_speeds
         return super().result(name, compute)
 
     def _without_constraints(self) -> None:
@@ -176,11 +184,22 @@ class Analysis(Stages):
         """The states at which checks compare two routes, and d'Alembert's principle there."""
         return oracles(self.system, self.ring)
 
+    @cached_property
+    def speed_form(self) -> SpeedForm | None:
+        """The variables of a system that has speeds of its own; None where velocities are the coordinates' rates."""
+        if not self.system.speeds:
+            return None
+        from mbsym.mechanics.speeds import SpeedForm  # few systems have speeds of their own
+
+        return SpeedForm(self.system, self.ring)
+
     def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
 
         Without ``inputs`` these keep their values on the unperturbed motion.
         """
+        if self.speed_form is not None:
+            return self.speed_form.scene(bodies)
         system = self.system if inputs else held(self.system)
         return Scene(system, self.ring, ring_environment(system, self.ring), self.ring, bodies=bodies)
 
@@ -189,12 +208,12 @@ class Analysis(Stages):
     kinematics = Problem[Kinematics](
         1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene), ("kinematics",)
     )
-    energy = Problem[Energy](2, "energy and force function", energy, lambda a: energy.energy(a.scene), ("energy",))
+    energy = Problem[Energy](2, "energy and force function", energy, lambda a: a._energy(), ("energy",))
     equations = Problem[Equations](
         3,
         "nonlinear Lagrange equations",
         equations,
-        lambda a: equations.equations(a.scene, a.energy),
+        lambda a: a._equations(),
         ("equations of motion",),
     )
     residuals = Derived["Analysis", Column](
@@ -258,6 +277,20 @@ class Analysis(Stages):
         for check in found:
             self._checks.setdefault(check.name, check)
 
+    def _energy(self) -> Energy:
+        if self.speed_form is None:
+            return energy.energy(self.scene)
+        from mbsym.problems import speeds
+
+        return speeds.energy(self.speed_form, self.scene)
+
+    def _equations(self) -> Equations:
+        if self.speed_form is None:
+            return equations.equations(self.scene, self.energy)
+        from mbsym.problems import speeds
+
+        return speeds.equations(self.speed_form, self.scene)
+
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.judgeable
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
@@ -283,6 +316,12 @@ class Analysis(Stages):
         from mbsym.problems import equilibria
 
         return equilibria.equilibria(self.system, values)
+
+
+def _without_speeds() -> None:
+    reason = "not derived: speeds and unit vectors are not taken into account here yet"
+    hint = "without 'speeds' and 'orientation' it is derived in generalised velocities"
+    raise Unavailable("speeds", NoResult(reason, hint, "speeds", "speeds"))
 
 
 #: Every numbered problem, by its number.

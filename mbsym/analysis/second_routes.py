@@ -69,6 +69,11 @@ def _kinematics(analysis: Analysis) -> Check | None:
 
 def _energy(analysis: Analysis) -> Check | None:
     found = analysis.optional("energy")
+    if found is not None and analysis.speed_form is not None:
+        from mbsym.problems import speed_checks
+
+        names = tuple(u.name for u in analysis.speed_form.speeds)
+        return speed_checks.check_energy(analysis.oracles, found, names)
     return None if found is None else comparison.check_energy(analysis.oracles, found)
 
 
@@ -79,6 +84,12 @@ def _closed(analysis: Analysis) -> Equations | None:
 
 def _equations(analysis: Analysis) -> Check | None:
     closed = _closed(analysis)
+    if closed is not None and analysis.speed_form is not None:
+        from mbsym.problems import speed_checks
+        from mbsym.problems.speeds import SpeedEquations
+
+        assert isinstance(closed, SpeedEquations)
+        return speed_checks.check_equations(analysis.oracles, closed)
     return None if closed is None else comparison.check_equations(analysis.oracles, closed)
 
 

@@ -94,6 +94,8 @@ _PRESENTERS: WeakKeyDictionary[Ring, Presenter] = WeakKeyDictionary()
 
 _RECIPROCAL, _VELOCITY = 2, 3
 _MOTION = {"velocity": _VELOCITY, "acceleration": 4}
+#: The level of derivatives of speeds that are variables of their own.
+_SPEED_RATE = 5
 _PLACE = ("coordinate", "prescribed", "time", "sine", "cosine")
 #: Numbers that order by level, place and exponent: (level, adjoined, declared, within) and, in keys, the exponent.
 _PLACES, _EXPONENTS = 1 << 24, 1 << 32
@@ -206,6 +208,12 @@ class Presenter:
     def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
         if self.ring.leading and not under:
             level = max(self.level(monomial[0][0]) for monomial in terms if monomial) if any(terms) else 0
+            if level == _SPEED_RATE:  # A p' + (C - B) q r + l q: first the derivatives, then what is left by itself
+                first = {m: c for m, c in terms.items() if m and self.level(m[0][0]) == level}
+                rest = {m: c for m, c in terms.items() if m not in first}
+                grouped = self._grouped(first, self._at_level(level), True)
+                parts = [x._replace(coefficient=x.coefficient / scale) for x in grouped.terms]
+                return Sum((*parts, *(self._shape(scale, rest, under).terms if rest else ())))
             if level >= _VELOCITY:  # m l w/2 + l F, not l (m w + 2 F)/2: what leads is read term by term
                 grouped = self._grouped(terms, self._at_level(level), True)
                 return Sum(tuple(x._replace(coefficient=x.coefficient / scale) for x in grouped.terms))
@@ -257,8 +265,13 @@ class Presenter:
                 level = 0
             elif index in self.ring.leading:
                 level = _VELOCITY
+            elif generator.kind == "velocity" and self.ring.leading and self._leads(generator.name):
+                level = _SPEED_RATE
             self._levels[index] = level
         return self._levels[index]
+
+    def _leads(self, name: str) -> bool:
+        return self.ring.has("coordinate", name) and self.ring.index("coordinate", name) in self.ring.leading
 
     def place(self, index: int) -> int:
         """The order in which people read: by level, then as declared; adjoined generators last, the newest first."""

@@ -79,6 +79,7 @@ RESERVED = (
     "linearG", "linearK", "linearN", "subsystems", "characteristicPolynomials", "stabilityConditions", "notation",
     "firstIntegrals", "prescribed", "equilibriumConditions", "lambda", "tau", "tEnd", "dynamics", "mbsymSolution",
     "mbsymRate", "mbsymInitial", "mbsymState", "pieces", "positions", "velocities",
+    "speeds", "rates", "needed", "supplied",
 )  # fmt: skip
 
 _NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()

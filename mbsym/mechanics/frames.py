@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.vectors import FramesDiffer, Tensor, Vector, axis_vector
-from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import ZERO, Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +22,7 @@ class Turn:
     """One elementary rotation: axis 1, 2 or 3, the angle, its sine and cosine, its rate and second rate.
 
     It leads from the axes of ``source`` to those of ``frame``; a vector along its axis is the same in both.
+    Axis 0 is a rotation that is given by its direction cosines, the matrix R of v_new = R v_old, and by no angle.
     """
 
     axis: int
@@ -32,18 +33,30 @@ class Turn:
     second_rate: Scalar
     source: str
     frame: str
+    given: Tensor | None = None
 
     def out(self, v: Vector) -> Vector:
         """C_a(x) v, from the axes of the source to those after the turn.  Raises FramesDiffer."""
         if v.frame != self.source:
             raise FramesDiffer(self.source, v.frame)
+        if self.given is not None:
+            return self.given @ v
         return _turned(self.axis, self.sine, self.cosine, v, self.frame)
 
     def back(self, v: Vector) -> Vector:
         """C_a(x)^T v, from the axes after the turn to those of the source.  Raises FramesDiffer."""
         if v.frame != self.frame:
             raise FramesDiffer(self.frame, v.frame)
+        if self.given is not None:
+            return self.given.T @ v
         return _turned(self.axis, -self.sine, self.cosine, v, self.source)
+
+
+def given_rotation(cosines: Tensor) -> Turn:
+    """The turn that a matrix of direction cosines stands for."""
+    algebra = cosines.algebra
+    zero, one = algebra.zero, algebra.one
+    return Turn(0, ZERO, zero, one, zero, zero, cosines.source, cosines.frame, cosines)
 
 
 def _turned(axis: int, s: Scalar, c: Scalar, v: Vector, frame: str) -> Vector:

@@ -19,7 +19,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, tensor_of, zero_vector
 from mbsym.expressions.tree import ZERO, Expression
-from mbsym.mechanics.frames import Turn, back, forward
+from mbsym.mechanics.frames import Turn, back, forward, given_rotation
 from mbsym.mechanics.variables import time_derivative
 from mbsym.model.system import INERTIAL, Body, System
 
@@ -44,12 +44,25 @@ class BodyMotion:
     gyrostatic_moment: Vector | None
 
 
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A body whose angular velocity and acceleration are variables of their own, in its axes (``mechanics.speeds``).
+
+    ``cosines`` are its direction cosines where these are variables, too; None where it is turned by angles.
+    """
+
+    angular_velocity: Vector
+    angular_acceleration: Vector
+    cosines: Tensor | None = None
+
+
 class Scene:
     """A system seen through one algebra: lowered expressions and the motion of every body.
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
     it and carried over.  With ``frozen`` the prescribed quantities and t stand still;
-    without ``bodies`` only expressions are lowered.  Seen from frames that are ``falling`` their origins are at rest,
+    without ``bodies`` only expressions are lowered.  What is ``given`` of bodies is taken as it is.
+    Seen from frames that are ``falling`` their origins are at rest,
     and gravity is what it is beyond that at the origin (``mbsym.mechanics.falling``).
     """
 
@@ -62,8 +75,10 @@ class Scene:
         frozen: bool = False,
         bodies: bool = True,
         falling: frozenset[str] = frozenset(),
+        given: Mapping[str, Given] | None = None,
     ) -> None:
         self.system = system
+        self.given = given or {}
         self.algebra = algebra
         self.ring = ring
         self.frozen = frozen
@@ -77,16 +92,23 @@ class Scene:
 
     def _motion(self, body: Body) -> BodyMotion:
         algebra, lower, name, before = self.algebra, self.lower, body.name, body.attached_to
-        turns = tuple(self._turns(body))
+        given = self.given.get(name)
+        if given is not None and given.cosines is not None:
+            turns: tuple[Turn, ...] = (given_rotation(given.cosines),)
+        else:
+            turns = tuple(self._turns(body))
         parent_spin = parent_velocity = self.zero(before)
         if before != INERTIAL:
             parent_spin, parent_velocity = self.motions[before].angular_velocity, self.motions[before].velocity_origin
         relative, spin = self.zero(before), parent_spin
-        for turn in turns:
+        for turn in turns if given is None else ():
             rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)
             relative = turn.out(relative) + rate
             spin = turn.out(spin) + rate
-        if not turns:
+        if given is not None:
+            spin = given.angular_velocity
+            relative = spin - forward(turns, parent_spin, name)
+        elif not turns:
             relative, spin = relative.in_parallel(name), spin.in_parallel(name)
         offset = self.vector(body.connection_point, before)
         relative_velocity = self.vector([self.rate(x) for x in body.connection_point], before)

@@ -46,6 +46,10 @@ class _Accelerations:
         two = algebra.number(2)
         at = at + spin.cross(relative_velocity) * two
         self.origin[name] = forward(motion.turns, at + second, name)
+        given = scene.given.get(name)
+        if given is not None:
+            self.spin[name], self.angular[name] = given.angular_velocity, given.angular_acceleration
+            return
         for turn in motion.turns:
             rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)
             spin = turn.out(spin)
@@ -77,6 +81,15 @@ def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: V
     if motion.gyrostatic_moment is not None:
         moment = moment + spin.cross(motion.gyrostatic_moment)
     return force, moment
+
+
+def inertia_wrenches(scene: Scene) -> dict[str, tuple[Vector, Vector]]:
+    """(F, N) of every body, in its axes: what its motion needs, the moment about O_k."""
+    found = _Accelerations(scene)
+    return {
+        name: _inertia_wrench(scene, motion, found.angular[name], found.origin[name])
+        for name, motion in scene.motions.items()
+    }
 
 
 class _Joints:
@@ -132,9 +145,8 @@ def residuals(scene: Scene, loads: bool = True) -> dict[str, Scalar]:
     With ``loads`` false the loads are left out: what remains is the inertia part alone.
     """
     joints = _Joints(scene)
-    accelerations = _Accelerations(scene)
-    for name, motion in scene.motions.items():
-        joints.need(name, *_inertia_wrench(scene, motion, accelerations.angular[name], accelerations.origin[name]))
+    for name, wrench in inertia_wrenches(scene).items():
+        joints.need(name, *wrench)
     for action in actions(scene) if loads else []:
         joints.supply(action)
     return joints.projections()

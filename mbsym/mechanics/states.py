@@ -81,9 +81,18 @@ class Oracles:
 
     @cached_property
     def rational(self) -> tuple[Oracle, ...]:
-        return tuple(Oracle(self.system, state) for state in rational_states(self.system, self.ring, self.count))
+        return tuple(self._oracle(state) for state in rational_states(self.system, self.ring, self.count))
 
     @cached_property
     def balls(self) -> tuple[Oracle, ...]:
         """To be used at one working precision only: values are remembered."""
-        return tuple(Oracle(self.system, state) for state in enclosed_states(self.system, self.ring, self.count))
+        return tuple(self._oracle(state) for state in enclosed_states(self.system, self.ring, self.count))
+
+    def _oracle(self, state: State) -> Oracle:
+        """With speeds and unit vectors as the placement of the bodies gives them."""
+        oracle = Oracle(self.system, state)
+        if not self.system.speeds:
+            return oracle
+        from mbsym.mechanics.speed_states import completed  # few systems have speeds of their own
+
+        return Oracle(self.system, completed(oracle))

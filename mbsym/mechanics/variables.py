@@ -176,8 +176,9 @@ def ring_of(
     for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):
             adjunctions += 2 * _own_generators(node) * _may_adjoin(node)
-    return Ring(
-        system.coordinates,
+    adjunctions += 4 * len(system.speeds)
+    ring = Ring(
+        [*system.coordinates, *system.variables],
         [*(item.name for item in system.prescribed), *system.input_names, *moving],
         [*system.parameter_names, *(item.name for item in system.notation), *fixed],
         angle_denominators(system, arguments),
@@ -187,6 +188,9 @@ def ring_of(
         terms=terms,
         typed=[form.coefficients for form in map(linear_form, angles_of(system)) if form is not None],
     )
+    if system.speeds:
+        ring.leading = frozenset(ring.index("coordinate", speed.name) for speed in system.speeds)
+    return ring
 
 
 def _own_generators(node: Expression) -> int:
@@ -225,6 +229,9 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
         environment[name] = ring.generator("coordinate", name)
         environment[velocity_name(name)] = ring.generator("velocity", name)
         environment[acceleration_name(name)] = ring.generator("acceleration", name)
+    for name in system.variables:
+        environment[name] = ring.generator("coordinate", name)
+        environment[velocity_name(name)] = ring.generator("velocity", name)
     environment["t"] = ring.generator("time", "t")
     environment["pi"] = ring.generator("parameter", "pi")
     return environment
@@ -233,6 +240,8 @@ def ring_environment(system: System, ring: Ring) -> dict[str, Scalar]:
 def program_environment(system: System, program: Program) -> dict[str, Scalar]:
     """Every name as an input of a straight-line program."""
     names_ = [*system.parameter_names, *(item.name for item in system.prescribed), *system.input_names, "t", "pi"]
+    for name in system.variables:
+        names_ += [name, velocity_name(name)]
     for name in system.coordinates:
         names_ += [name, velocity_name(name), acceleration_name(name)]
     return {name: program.input(name) for name in names_}

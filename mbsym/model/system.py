@@ -31,6 +31,7 @@ from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
+from mbsym.model.speeds import Speed, UnitVector
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
@@ -149,7 +150,8 @@ class Body:
     ``relative_velocity`` is V^j_Ok as the description gives it (it must equal the derivative of the radius vector),
     or None where it is left to be derived.  ``coordinates`` are the generalised coordinates that this joint
     introduces, in the order in which they count.  ``gyrostatic_moment`` is h in the axes of the body, None where it is
-    zero.
+    zero.  ``speeds`` take the place of generalised velocities; with unit vectors of ``orientation`` the axes of the
+    body are told by these, and its angles are no variables of the equations.
     """
 
     name: str
@@ -163,6 +165,8 @@ class Body:
     coordinates: tuple[str, ...]
     gyrostatic_moment: Vector | None = None
     shapes: tuple[Shape, ...] = ()
+    speeds: tuple[Speed, ...] = ()
+    orientation: tuple[UnitVector, ...] = ()
     span: Span | None = _span()
 
 
@@ -423,6 +427,17 @@ class System(GuessesNames):
     @property
     def velocities(self) -> tuple[str, ...]:
         return tuple(velocity_name(name) for name in self.coordinates)
+
+    @property
+    def speeds(self) -> tuple[Speed, ...]:
+        """The velocities that the description declares; none where they are the derivatives of the coordinates."""
+        return tuple(speed for body in self.bodies for speed in body.speeds)
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The names of speeds and of components of unit vectors: what the state holds besides q and q'."""
+        vectors = (name for body in self.bodies for vector in body.orientation for name in vector.components)
+        return (*vectors, *(speed.name for speed in self.speeds))
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

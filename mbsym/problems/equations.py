@@ -37,6 +37,11 @@ class Equations(Shown):
     generalized_force: Column
 
     @property
+    def in_speeds(self) -> bool:
+        """Whether they are in speeds of their own (``mbsym.problems.speeds``), not in generalised velocities."""
+        return False
+
+    @property
     def terms(self) -> int:
         """Terms of M and f."""
         return self.mass_matrix.terms + sum(x.terms for x in self.forcing)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 from markupsafe import Markup, escape
 
@@ -21,6 +22,7 @@ from mbsym.formulas.mathml import (
     row,
     sign,
 )
+from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import (
     EXACT,
     INERTIAL,
@@ -47,9 +49,36 @@ _DOTS = {"dot": "˙", "ddot": "¨"}
 # --- expressions ------------------------------------------------------------------------------------------------------
 
 
-def expression(value: Expression, names: MathNames) -> Markup:
+def expression(value: Expression, names: MathNames | _WithSpins) -> Markup:
     """An expression of the description as MathML, as it stands."""
     return Markup(_expression(value, names)[0])
+
+
+class _WithSpins:
+    """The names of a system, and the components of the angular velocity of a body: (omega_2)_1."""
+
+    def __init__(self, names: MathNames, number: int) -> None:
+        self.names = names
+        self.spins = {
+            name: Markup(
+                f"<msub><mrow><mo>(</mo><msub><mi>ω</mi><mn>{number}</mn></msub><mo>)</mo></mrow><mn>{k}</mn></msub>"
+            )
+            for k, name in enumerate(OMEGA, start=1)
+        }
+
+    def __getitem__(self, name: str) -> Any:
+        return self.spins.get(name) or self.names[name]
+
+
+def speed_form(one: Speed, names: MathNames, number: int) -> Markup:
+    """What a speed is made of; ``number`` is that of its body."""
+    return expression(one.form, _WithSpins(names, number))
+
+
+def speed(name: str, names: MathNames) -> Markup:
+    """A speed by name: p, or a dotted coordinate."""
+    plain = name.removesuffix("_dot")
+    return Markup(str(names[name]) if plain == name else str(names[plain].dotted("˙")))
 
 
 def point_of_table(x: Fraction, y: Fraction, names: MathNames) -> str:
@@ -57,7 +86,7 @@ def point_of_table(x: Fraction, y: Fraction, names: MathNames) -> str:
     return bracketed(f"{expression(Number(x), names)}{mo(',')}{expression(Number(y), names)}")
 
 
-def _expression(value: Expression, names: MathNames) -> tuple[str, int]:
+def _expression(value: Expression, names: MathNames | _WithSpins) -> tuple[str, int]:
     """(MathML, precedence): 1 sum, 2 product, 3 power, 4 atom."""
     match value:
         case Number(number):
@@ -91,7 +120,7 @@ def _expression(value: Expression, names: MathNames) -> tuple[str, int]:
     raise TypeError(f"not an expression: {value!r}")
 
 
-def _bracketed(value: Expression, wanted: int, names: MathNames) -> str:
+def _bracketed(value: Expression, wanted: int, names: MathNames | _WithSpins) -> str:
     text, precedence = _expression(value, names)
     return text if precedence >= wanted else bracketed(text)
 

@@ -26,7 +26,7 @@ from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repai
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
-from mbsym.report.html_description import expression, load_in_words, point_of_table
+from mbsym.report.html_description import expression, load_in_words, point_of_table, speed, speed_form
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
@@ -63,6 +63,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "name": lambda name: Markup(str(names[name])),
         "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
         "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
+        "speed": lambda name: speed(name, names),
+        "speed_form": lambda one: speed_form(one, names, [body.name for body in system.bodies].index(one.body) + 1),
         "expression": lambda value: expression(value, names),
         "points": lambda value: Markup(", ".join(shown.math(point_of_table(x, y, names)) for x, y in value)),
         "vector": lambda values: Markup(shown.row([expression(x, names) for x in values])),
@@ -118,6 +120,7 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "mo": lambda sign: Markup(mo(sign)),
         "squared": lambda value: Markup(power(value, "<mn>2</mn>")),
         "line": lambda left, value, right="": shown.line(left, value, long, right),
+        "balance": lambda left, right: shown.line(shown.inline(left), right, long),
         "text_line": shown.text_line,
         "components": lambda values: shown.components(values, long),
         "matrix": lambda value: shown.matrix(value, long),

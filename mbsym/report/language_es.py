@@ -6,6 +6,13 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Ecuaciones de Kane (igualmente de Boltzmann y Hamel) en las cuasivelocidades $[[speeds]]$: lo que el movimiento necesita es lo que dan las cargas.",
+    "Kinematic equations:": "Ecuaciones cinemáticas:",
+    "No equation above depends on $[[names]]$, which follow by integration:": "Ninguna de estas ecuaciones depende de $[[names]]$, que se obtienen por integración:",
+    "As $M \\dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero.": "Como $M \\dot u = f$ con $u = ([[speeds]])$; $M$ es simétrica, los elementos que no se escriben son cero.",
+    "speeds": "cuasivelocidades",
+    "told by unit vectors, in its axes, along the axes of the frame that it hangs on": "orientación dada por vectores unitarios de los ejes del sistema anterior, en ejes del cuerpo",
+    "axis": "eje",
     "with": "con",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "desarrollado, [[terms]] términos, de grado [[degree]]; entero en results.json",
     "where $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ and $T_0$, the value of $T$ at $\\dot q = 0$, are the parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is that of problem 3.": "donde $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ y $T_0$, el valor de $T$ en $\\dot q = 0$, son las partes de $T$ cuadrática en las velocidades y libre de ellas; $T$ y $U$ son las del problema 2, $M$ es la del problema 3.",

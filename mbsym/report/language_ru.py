@@ -8,6 +8,13 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Уравнения Кейна (то же — уравнения Больцмана — Гамеля) в квазискоростях $[[speeds]]$: слева — то, чего требует движение, справа — то, что дают нагрузки.",
+    "Kinematic equations:": "Кинематические уравнения:",
+    "No equation above depends on $[[names]]$, which follow by integration:": "Ни одно из этих уравнений не зависит от $[[names]]$; они находятся интегрированием:",
+    "As $M \\dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero.": "В виде $M \\dot u = f$, где $u = ([[speeds]])$; матрица $M$ симметрична, невыписанные элементы равны нулю.",
+    "speeds": "квазискорости",
+    "told by unit vectors, in its axes, along the axes of the frame that it hangs on": "ориентация задана единичными векторами осей предыдущей системы, в осях тела",
+    "axis": "ось",
     "with": "где",
     "written out [[terms]] terms, of degree [[degree]]; in full in results.json": "в развёрнутом виде слагаемых: [[terms]], степень [[degree]]; целиком --- в results.json",
     "where $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ and $T_0$, the value of $T$ at $\\dot q = 0$, are the parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is that of problem 3.": "где $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ и $T_0$ (значение $T$ при $\\dot q = 0$) --- части $T$, квадратичная по скоростям и свободная от них; $T$ и $U$ --- из задачи 2, $M$ --- из задачи 3.",

@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
-from mbsym.formulas.latex import LatexNames
+from mbsym.formulas.latex import LatexNames, Symbol
+from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import (
     EXACT,
     INERTIAL,
@@ -48,9 +49,31 @@ def call(function: str, argument: str) -> str:
     return f"\\{_FUNCTIONS.get(function, function)}({argument})"
 
 
-def expression(value: Expression, names: LatexNames) -> str:
+def expression(value: Expression, names: LatexNames | _WithSpins) -> str:
     """An expression of the description, as it stands."""
     return _expression(value, names)[0]
+
+
+class _WithSpins:
+    """The names of a system, and the components of the angular velocity of a body: (omega_2)_1."""
+
+    def __init__(self, names: LatexNames, number: int) -> None:
+        self.names = names
+        self.spins = {name: Symbol(f"(\\omega_{{{number}}})", str(k)) for k, name in enumerate(OMEGA, start=1)}
+
+    def __getitem__(self, name: str) -> Symbol:
+        return self.spins.get(name) or self.names[name]
+
+
+def speed_form(one: Speed, names: LatexNames, number: int) -> str:
+    """What a speed is made of; ``number`` is that of its body."""
+    return expression(one.form, _WithSpins(names, number))
+
+
+def speed(name: str, names: LatexNames) -> str:
+    """A speed by name: p, or a dotted coordinate."""
+    plain = name.removesuffix("_dot")
+    return str(names[name]) if plain == name else names[plain].accented("dot")
 
 
 def points(value: Sequence[tuple[Fraction, Fraction]], names: LatexNames) -> str:
@@ -66,7 +89,7 @@ def shown_points(value: Sequence[tuple[Fraction, Fraction]]) -> Sequence[tuple[F
     return value if len(value) <= MOST_LISTED else (*value[:SHOWN_FIRST], *value[-SHOWN_FIRST:])
 
 
-def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
+def _expression(value: Expression, names: LatexNames | _WithSpins) -> tuple[str, int]:
     """(text, precedence): 1 sum, 2 product, 3 power, 4 atom."""
     match value:
         case Number(number):
@@ -99,7 +122,7 @@ def _expression(value: Expression, names: LatexNames) -> tuple[str, int]:
     raise TypeError(f"not an expression: {value!r}")
 
 
-def _bracketed(value: Expression, wanted: int, names: LatexNames) -> str:
+def _bracketed(value: Expression, wanted: int, names: LatexNames | _WithSpins) -> str:
     text, precedence = _expression(value, names)
     return text if precedence >= wanted else f"({text})"
 

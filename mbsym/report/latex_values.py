@@ -17,6 +17,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.formulas.tree import angles_or
 from mbsym.model.quantities import rate_unit, unit_of
+from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
@@ -26,7 +27,7 @@ from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
-from mbsym.report.latex_description import call, expression, load_in_words, points
+from mbsym.report.latex_description import call, expression, load_in_words, points, speed, speed_form
 from mbsym.report.latex_diagram import diagram
 from mbsym.report.latex_form import Form, heading, subheading
 from mbsym.report.latex_formulas import (
@@ -147,6 +148,8 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "theorem": lambda name: escaped(tongue.say(name)),
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
+        "speed": lambda name: speed(name, names),
+        "speed_form": lambda one: speed_form(one, names, _number_of(system, one.body)),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
         "points": lambda value: points(value, names),
@@ -177,6 +180,10 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "packed": lambda value, symbol, key: packed(entries(value, True), symbol, key),
         "zero": lambda values: all(x.is_zero for x in values),
     }
+
+
+def _number_of(system: System, body: str) -> int:
+    return next(k for k, one in enumerate(system.bodies, start=1) if one.name == body)
 
 
 def _literature(found: Stability | None, tongue: Language) -> list[tuple[str, str]]:

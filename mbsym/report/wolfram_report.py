@@ -59,6 +59,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "wl": written,
             "expression": lambda value: wolfram_expression(value, names),
             "list": listed,
+            "speed": lambda name: names[name] + "[t]" if name in analysis.system.variables else _rate(name, names),
             "entries": entries,
             "string": string,
             "comment": comment,
@@ -81,6 +82,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
         checks=analysis.checks,
     )
+
+
+def _rate(velocity: str, names: WolframNames) -> str:
+    """``x'[t]`` for ``x_dot``."""
+    return f"{names[velocity.removesuffix('_dot')]}'[t]"
 
 
 def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Expression]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from mbsym.expressions.angles import angle_name
@@ -11,6 +11,7 @@ from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, is_number, subtract, walk
 from mbsym.model.admissibility import ROUNDING
+from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector, rational
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, INERTIA, ROTATION
@@ -39,6 +40,8 @@ class Draft:
     fields: Fields
     coordinates: list[Scalar]
     whole: bool = True  # False: a coordinate was forgotten, or its list cannot be read
+    speeds: list[tuple[Scalar, Node]] = field(default_factory=list)
+    orientation: tuple[UnitVector, ...] = ()
 
 
 def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:

@@ -34,6 +34,7 @@ from mbsym.source.settings import (
     read_notation,
     read_relations,
 )
+from mbsym.source.speeds import check_speeds, declare_speeds, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -56,6 +57,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
     inputs = read_inputs(fields.get("inputs"), reading)
     drafts = draft_bodies(fields.get("bodies"), reading)
+    for draft in drafts:
+        declare_speeds(draft, reading)
     prescribed = tuple(read_prescribed(entry, reading) for entry in prescribed_entries)
     parameters = read_values(fields.get("values"), parameters, reading)
     relations = read_relations(fields.get("relations"), reading)
@@ -64,6 +67,11 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         before = complaints.error_count
         bodies.append(read_body(draft, drafts, reading))
         sound.append(draft.whole and complaints.error_count == before)
+    speeds = [read_speeds(draft, drafts, reading) for draft in drafts]
+    bodies = [
+        replace(body, speeds=own, orientation=draft.orientation)
+        for body, own, draft in zip(bodies, speeds, drafts, strict=True)
+    ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
     constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
     parameters += declared_by_use(reading)
@@ -102,6 +110,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     for draft, good in zip(drafts, sound, strict=True):
         if good:
             check_body(system, draft, values, reading)
+    if all(sound):
+        check_speeds(system, drafts, reading)
     if drafts and all(sound) and not system.coordinates:
         hint = "a coordinate is an undeclared name used as an angle, or is listed in a body: 'coordinates: [x]'"
         reading.error("no-coordinates", "nothing moves: there are no coordinates", fields.key_span("bodies"), hint)

@@ -30,7 +30,7 @@ from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
 from mbsym.source.settings import read_comparisons
 
 _CONSTANTS = ("parameter", "notation", "abbreviation")
-_PLACES = ("coordinate", "velocity", "prescribed", "time", "input", *_CONSTANTS)
+_PLACES = ("coordinate", "velocity", "speed", "unit vector", "prescribed", "time", "input", *_CONSTANTS)
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
 #: Kinds that are about constants alone.

@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import Any
 
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import KINKED, Call, Expression, Name, Negative, Number, Operation, names, walk
@@ -39,6 +40,39 @@ def vanishes(expression: Expression, replaced: Mapping[str, Expression] | None =
         return all(_FieldPoint(seed, scales, replaced).value(expression) == 0 for seed in range(_POINTS))
     except (_NotRational, RecursionError):
         return _vanishes_in_floats(expression, replaced)
+
+
+def independent(rows: Sequence[Sequence[Expression]]) -> list[int]:
+    """The columns, from the left, that make a matrix as regular as it is; as many as its rank at a random point.
+
+    Full rank is proved; a deficient one may be by accident, as ``vanishes`` says, or by rounding where the entries are
+    no rational functions of names, sines and cosines.
+    """
+    entries = [x for row in rows for x in row]
+    try:
+        point = _FieldPoint(0, _denominators(entries), {})
+        return _pivots([[point.value(x) for x in row] for row in rows], _inverse, lambda x: x % _PRIME, 0)
+    except (_NotRational, RecursionError):
+        floats = _FloatPoint(0, {})
+        return _pivots([[floats.value(x) for x in row] for row in rows], lambda x: 1 / x, lambda x: x, _TOLERANCE)
+
+
+def _pivots(
+    rows: list[list[Any]], inverse: Callable[[Any], Any], normal: Callable[[Any], Any], small: float
+) -> list[int]:
+    found: list[int] = []
+    for column in range(len(rows[0]) if rows else 0):
+        k = len(found)
+        best = max(range(k, len(rows)), key=lambda i: abs(rows[i][column]), default=None)
+        if best is None or abs(rows[best][column]) <= small:
+            continue
+        rows[k], rows[best] = rows[best], rows[k]
+        factor = inverse(rows[k][column])
+        for i in range(k + 1, len(rows)):
+            share = normal(rows[i][column] * factor)
+            rows[i] = [normal(x - share * y) for x, y in zip(rows[i], rows[k], strict=True)]
+        found.append(column)
+    return found
 
 
 def _needed(expression: Expression, replaced: Mapping[str, Expression]) -> dict[str, Expression]:

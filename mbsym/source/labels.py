@@ -28,6 +28,8 @@ BODY = {
     "gyrostatic moment": "gyrostatic moment",
     "generalized coordinates": "coordinates",
     "shape": "shapes",
+    "speeds": "speeds",
+    "orientation": "orientation",
 }
 
 #: Sections of ``name = value`` lines and the key of a bare first value (None: the value is one expression).

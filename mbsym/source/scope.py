@@ -44,6 +44,8 @@ _KINDS = {
     "table": "a table",
     "input": "an input",
     "output": "an output",
+    "speed": "a speed",
+    "unit vector": "a component of a unit vector",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -58,6 +60,8 @@ _PLURALS = {
     "table": "tables",
     "input": "inputs",
     "output": "outputs",
+    "speed": "speeds",
+    "unit vector": "components of unit vectors",
 }
 
 
@@ -134,6 +138,8 @@ class Scope:
         for suffix, kind in (("_dot", "velocity"), ("_ddot", "acceleration")):
             if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
                 return kind
+        if self.kinds.get(name.removesuffix("_dot")) in ("speed", "unit vector"):
+            return "acceleration"  # what the equations give
         return None
 
     def check(self, expression: Expression, allowed: Allowed) -> None:

@@ -10,10 +10,11 @@ from typing import Union
 
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.table import HOLD, LINEAR, Table
-from mbsym.expressions.tree import ZERO, Expression, Number, text
+from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
 from mbsym.model.inputs import Input
+from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import (
     Body,
     CoordinateDamper,
@@ -112,9 +113,20 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
         shape["gyrostatic moment"] = vector_shape(body.gyrostatic_moment)
     if body.coordinates != inferred:
         shape["coordinates"] = list(body.coordinates)
+    if body.speeds:
+        shape["speeds"] = {one.name: speed_text(one) for one in body.speeds}
+    if body.orientation:
+        shape["orientation"] = {one.name: str(one.axis) for one in body.orientation}
     if body.shapes:
         shape["shapes"] = [look_shape(one) for one in body.shapes]
     return shape
+
+
+def speed_text(speed: Speed) -> str:
+    """``omega[body][1]`` for a component of an angular velocity, ``omega1`` within a longer form."""
+    if speed.component is not None:
+        return f"omega[{speed.body}][{speed.component}]"
+    return text(substitute(speed.form, {name: Name(f"omega{k}") for k, name in enumerate(OMEGA, start=1)}))
 
 
 def look_shape(look: Look) -> dict[str, Shape]:

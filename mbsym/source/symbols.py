@@ -39,7 +39,7 @@ class _Wrong(Exception):
 def read_symbols(node: Node | None, reading: Reading) -> tuple[WrittenSymbol, ...]:
     """``name: symbol`` for names of the description; no two of the same look."""
     found: list[WrittenSymbol] = []
-    kinds = ("coordinate", "prescribed", "parameter", "notation", "abbreviation", "input")
+    kinds = ("coordinate", "speed", "unit vector", "prescribed", "parameter", "notation", "abbreviation", "input")
     allowed = Allowed("a name with a symbol", kinds)
     for entry in () if node is None else reading.entries(node, "'latex'"):
         known = reading.scope.check_name(entry.key.text, entry.key.span, allowed)

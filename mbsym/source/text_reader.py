@@ -284,6 +284,8 @@ class _TextReader:
             return self.body_reference(value)
         if key in ("name", "mass", "inertia about"):
             return value
+        if key in ("speeds", "orientation"):
+            return self.numbers(value)
         return self.items(value)
 
     def body_reference(self, value: Scalar) -> Scalar:

@@ -16,6 +16,7 @@ from mbsym.source.shape import (
     motion_shapes,
     parameter_shape,
     prescribed_shape,
+    speed_text,
     table_shape,
 )
 
@@ -130,6 +131,10 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
     if body.gyrostatic_moment is not None:
         lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
     lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
+    if body.speeds:
+        lines.append("  Speeds: " + "; ".join(f"{one.name} = {speed_text(one)}" for one in body.speeds))
+    if body.orientation:
+        lines.append("  Orientation: " + "; ".join(f"{one.name} = {one.axis}" for one in body.orientation))
     return [*lines, *(f"  Shape: {_look(one)}" for one in body.shapes)]
 
 

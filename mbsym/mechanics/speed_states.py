@@ -1,0 +1,78 @@
+"""The values of speeds and unit vectors at a state of the coordinates, from the placement of the bodies.
+
+An independent route to the variables of ``mechanics.speeds``: at numbers for q, q', q'' the oracle places all bodies in
+inertial axes as series in time; angular velocities, direction cosines and their rates are read off there, by
+
+    u = form(q, q', omega),      u' = du/dt,      e = columns of A_k^T A_j,
+
+and S = du/dq' from the spins that unit velocities give.  Neither Y nor any derivative of a closed formula is used.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mbsym.algebra.base import Lowering, Scalar
+from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, Series, State, TaylorSeries
+from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.system import velocity_name
+
+
+def completed(oracle: Oracle) -> State:
+    """The oracle's state with values for speeds, unit vectors and their derivatives."""
+    system, state = oracle.system, oracle.state
+    values = dict(state.values)
+    for body in system.bodies:
+        if not body.orientation:
+            continue
+        own, frame = oracle.moving.axes[body.name], oracle.moving.axes[body.attached_to]
+        for vector in body.orientation:
+            for i, name in enumerate(vector.components):
+                cosine = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
+                values |= {name: cosine.a, velocity_name(name): cosine.b}
+    for speed in system.speeds:
+        value = _speed(oracle, speed)
+        values |= {speed.name: value.a, velocity_name(speed.name): value.b}
+    return State(state.numbers, values)
+
+
+def _sum(items: Any) -> Any:
+    found = list(items)
+    return sum(found[1:], start=found[0])
+
+
+def _speed(oracle: Oracle, speed: Speed) -> Series:
+    """u and u' (the first two coefficients) of the form, along the motion."""
+    moving = oracle.moving
+    environment = dict(oracle.in_time)
+    if speed.turns:
+        zero = oracle.numbers.zero
+        omega, rate = moving.spin(speed.body)
+        world = [Series(a, b, zero) for a, b in zip(omega, rate, strict=True)]
+        own = moving.axes[speed.body]
+        environment |= {name: _sum(own[k][i] * world[k] for k in range(3)) for i, name in enumerate(OMEGA)}
+    return Lowering(TaylorSeries(oracle.numbers, environment), environment)(speed.form)
+
+
+def slopes(oracle: Oracle, speed: Speed) -> list[Scalar]:
+    """du/dq'_i for every coordinate."""
+    found = []
+    for name in oracle.system.coordinates:
+        displaced = oracle.displaced(name)
+        environment: dict[str, Any] = {
+            key: _dual(oracle, value, velocity_name(name) == key) for key, value in oracle.state.values.items()
+        }
+        if speed.turns:
+            spin = displaced.spin(speed.body)[0]
+            own = oracle.moving.axes[speed.body]
+            for i, key in enumerate(OMEGA):
+                along = _sum(own[k][i].a * spin[k] for k in range(3))
+                environment[key] = _dual(oracle, oracle.numbers.zero, True, along)
+        algebra = FirstOrder(oracle.numbers, environment)
+        found.append(Lowering(algebra, environment)(speed.form).b)
+    return found
+
+
+def _dual(oracle: Oracle, value: Scalar, moves: bool, rate: Scalar | None = None) -> Any:
+    one = oracle.numbers.one if rate is None else rate
+    return Dual(value, one if moves else oracle.numbers.zero)

@@ -1,0 +1,263 @@
+"""Speeds u instead of generalised velocities, and unit vectors instead of angles: the variables of such a system.
+
+    u = S(q, t) q' + s0(q, t),      q' = Y (u - s0),      Y = S^-1 = adj(S)/det(S)
+
+over the exact ring.  Where fewer speeds are declared than there are velocities, those that are left are speeds
+themselves.  A body whose place is told by unit vectors e of the frame j that it hangs on (in its own axes, the columns
+of its direction cosines) has its angular velocity among the speeds, and Poisson's equations
+
+    e' = e x (omega_k - R omega_j)
+
+take the place of  q' = Y (u - s0)  for its angles.  The state is (s, u): s the coordinates and components that there
+are.  Its derivatives are generators of the ring: u' and s' bear the names ``p_dot``, ``gamma1_dot``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+from mbsym.algebra.base import Algebra, Lowering, Scalar
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.vectors import Tensor, Vector, tensor_of
+from mbsym.mechanics.frames import direction_cosines
+from mbsym.mechanics.kinematics import Given, Scene
+from mbsym.mechanics.variables import ring_environment
+from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.system import Body, System, acceleration_name, velocity_name
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A speed or a position: its name, that of its derivative, and their generators."""
+
+    name: str
+    rate_name: str
+    index: int
+    rate_index: int
+
+
+class SpeedForm:
+    """What the state of a system with speeds is made of, over its ring.
+
+    ``speeds`` u in the order of the bodies, ``positions`` s; ``velocities`` are q' of the coordinates among them,
+    ``rates`` s', as polynomials in (s, u, t).
+    """
+
+    def __init__(self, system: System, ring: Ring) -> None:
+        self.system, self.ring = system, ring
+        self._plain = ring_environment(system, ring)
+        self.by_vectors = tuple(body for body in system.bodies if body.orientation)
+        #: The angles that unit vectors replace.
+        self.replaced = frozenset(name for body in self.by_vectors for name in body.coordinates)
+        self.coordinates = tuple(name for name in system.coordinates if name not in self.replaced)
+        self._solve()
+
+    # --- q' = Y (u - s0) ---------------------------------------------------------------------------------------------
+
+    def _solve(self) -> None:
+        ring, system = self.ring, self.system
+        scene = Scene(system, ring, self._plain, ring, given=self._given(ring, self._plain, only_vectors=True))
+        known = {speed.name for body in self.by_vectors for speed in system.speeds if _is_own(speed, body)}
+        named = [speed for speed in system.speeds if speed.name not in known]
+        forms = [self._form(scene, speed) for speed in named]
+        rows = [[ring.velocity_derivative(x, name) for name in self.coordinates] for x in forms]
+        still = {ring.index("velocity", name): ring.zero for name in self.coordinates}
+        drifts = [ring.substitute(x, still) for x in forms]
+        chosen = self._chosen(rows)
+        left = [k for k in range(len(self.coordinates)) if k not in chosen]
+        velocity = [ring.generator("velocity", name) for name in self.coordinates]
+        targets = []
+        for speed, row, drift in zip(named, rows, drifts, strict=True):
+            rest = ring.generator("coordinate", speed.name) - drift
+            targets.append(ring.reduce(rest - sum((ring.times(row[k], velocity[k]) for k in left), ring.zero)))
+        solved = _cramer(ring, [[row[k] for k in chosen] for row in rows], targets)
+        self.velocities: dict[str, Polynomial] = {self.coordinates[k]: velocity[k] for k in left}
+        self.velocities |= {self.coordinates[k]: x for k, x in zip(chosen, solved, strict=True)}
+        kept = {self.coordinates[k] for k in left}
+        self.speeds = tuple(self._speeds(kept))
+        self.positions = tuple(self._variable(name) for name in self._position_names())
+
+    def _form(self, scene: Scene, speed: Speed) -> Polynomial:
+        spin = scene.motions[speed.body].angular_velocity
+        environment = dict(self._plain) | dict(zip(OMEGA, spin, strict=True))
+        return Lowering(self.ring, environment)(speed.form)
+
+    def _chosen(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...]:
+        """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first."""
+        own = {name for body in self.system.bodies if body.speeds for name in body.coordinates}
+        order = sorted(range(len(self.coordinates)), key=lambda k: self.coordinates[k] not in own)
+        touched = [k for k in order if any(not self.ring.vanishes(row[k]) for row in rows)]
+        for chosen in combinations(touched, len(rows)):
+            if not self.ring.vanishes(determinant(self.ring, [[row[k] for k in chosen] for row in rows])):
+                return chosen
+        raise SingularPoint("the speeds do not determine the generalised velocities")
+
+    def _speeds(self, kept: set[str]) -> list[Variable]:
+        found = []
+        for body in self.system.bodies:
+            found += [self._variable(speed.name) for speed in body.speeds]
+            found += [self._velocity(name) for name in body.coordinates if name in kept]
+        return found
+
+    def _position_names(self) -> list[str]:
+        found: list[str] = []
+        for body in self.system.bodies:
+            vectors = [name for vector in body.orientation for name in vector.components]
+            found += vectors or [name for name in body.coordinates if name not in self.replaced]
+        return found
+
+    def _variable(self, name: str) -> Variable:
+        ring = self.ring
+        return Variable(name, velocity_name(name), ring.index("coordinate", name), ring.index("velocity", name))
+
+    def _velocity(self, name: str) -> Variable:
+        """A generalised velocity that is a speed itself."""
+        own, rate = self.ring.index("velocity", name), self.ring.index("acceleration", name)
+        return Variable(velocity_name(name), acceleration_name(name), own, rate)
+
+    # --- scenes ------------------------------------------------------------------------------------------------------
+
+    def _given(self, algebra: Algebra, values: Mapping[str, Scalar], only_vectors: bool) -> dict[str, Given]:
+        """What is a variable of its own: all of an angular velocity, and direction cosines."""
+        found = {}
+        for body in self.system.bodies:
+            own = {speed.component: speed.name for speed in self.system.speeds if speed.body == body.name}
+            if not {1, 2, 3} <= own.keys() or (only_vectors and not body.orientation):
+                continue
+            spin = Vector(algebra, (values[own[1]], values[own[2]], values[own[3]]), body.name)
+            a, b, c = (values[velocity_name(own[k])] for k in (1, 2, 3))
+            cosines = direction_cosines_of(algebra, body, values) if body.orientation else None
+            found[body.name] = Given(spin, Vector(algebra, (a, b, c), body.name), cosines)
+        return found
+
+    def scene(self, bodies: bool = True) -> Scene:
+        """The system over the ring with everything in (s, u, u'); without ``bodies`` formulas can be lowered only."""
+        return self.scene_over(self.ring, self._plain, bodies)
+
+    def scene_over(self, algebra: Algebra, values: Mapping[str, Scalar], bodies: bool = True) -> Scene:
+        """The same over any algebra: ``values`` for parameters, s, u and their derivatives, t and what is prescribed.
+
+        Names that unit vectors replace have no value there.
+        """
+        carry = Carrier(self.ring, algebra, values) if algebra is not self.ring else None
+        environment = {name: x for name, x in values.items() if name not in self._gone}
+        for name in self.coordinates:
+            own = (self.velocities[name], self.accelerations[name])
+            first, second = own if carry is None else (carry(own[0]), carry(own[1]))
+            environment |= {velocity_name(name): first, acceleration_name(name): second}
+        given = self._given(algebra, values, only_vectors=False)
+        return Scene(self.system, algebra, environment, self.ring, bodies=bodies, given=given)
+
+    @cached_property
+    def _gone(self) -> frozenset[str]:
+        made = (velocity_name, acceleration_name)
+        return self.replaced | {make(name) for name in self.replaced for make in made}
+
+    # --- derivatives -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def rates(self) -> dict[str, Polynomial]:
+        """s' by name."""
+        ring, found = self.ring, dict(self.velocities)
+        scene = Scene(self.system, ring, self._in_speeds, ring, given=self._given(ring, self._plain, False))
+        for body in self.by_vectors:
+            spin = scene.motions[body.name].relative_angular_velocity
+            for vector in body.orientation:
+                first, second, third = (self._plain[name] for name in vector.components)
+                e = Vector(ring, (first, second, third), body.name)
+                found |= dict(zip(vector.components, e.cross(spin), strict=True))
+        return found
+
+    @cached_property
+    def _in_speeds(self) -> dict[str, Polynomial]:
+        """The names with q' in terms of u; q'' is not used."""
+        return self._plain | {velocity_name(name): x for name, x in self.velocities.items()}
+
+    @cached_property
+    def accelerations(self) -> dict[str, Polynomial]:
+        """q'' = d(Y (u - s0))/dt, in (s, u, u', t)."""
+        return {name: self.rate(x) for name, x in self.velocities.items()}
+
+    def rate(self, x: Polynomial) -> Polynomial:
+        """dx/dt of a function of (s, u, t), with u' as generators."""
+        ring = self.ring
+        total = self.drift(x)
+        for u in self.speeds:
+            total = total + ring.times(ring.derivative(x, u.name), ring.context.gen(u.rate_index))
+        return ring.reduce(total)
+
+    def drift(self, x: Polynomial) -> Polynomial:
+        """dx/dt at u' = 0."""
+        ring = self.ring
+        total = ring.derivative(x, "t")
+        for name in ring.dependencies(x, [position.name for position in self.positions]):
+            total = total + ring.times(ring.derivative(x, name), self.rates[name])
+        lower = Lowering(ring, self._plain)
+        for item in self.system.prescribed:
+            total = total + ring.times(ring.derivative(x, item.name), lower(item.rate))
+        return ring.reduce(total)
+
+    # --- relations ---------------------------------------------------------------------------------------------------
+
+    def vanishes(self, x: Polynomial) -> bool | None:
+        """Whether x is zero wherever the unit vectors are orthonormal; None where the ring cannot decide.
+
+        Direction cosines made of angles reach all orientations, so that x is zero on them if and only if it is zero
+        with these in its place.
+        """
+        return self.ring.is_zero(self.in_angles(x))
+
+    def in_angles(self, x: Polynomial) -> Polynomial:
+        """x with the unit vectors in terms of the angles that they replace."""
+        return self.ring.substitute(x, self._cosines) if self._cosines else x
+
+    @cached_property
+    def _cosines(self) -> dict[int, Polynomial]:
+        ring = self.ring
+        scene = Scene(self.system, ring, self._plain, ring) if self.by_vectors else None
+        found = {}
+        for body in self.by_vectors:
+            assert scene is not None
+            rows = direction_cosines(ring, scene.motions[body.name].turns, body.attached_to, body.name)
+            for vector in body.orientation:
+                for row, name in enumerate(vector.components):
+                    found[ring.index("coordinate", name)] = rows[row][vector.axis - 1]
+        return found
+
+    def occurring(self, formulas: Sequence[Polynomial]) -> tuple[Variable, ...]:
+        """The positions on which formulas depend, and those on which their derivatives depend."""
+        ring, names = self.ring, [position.name for position in self.positions]
+        found: set[str] = set()
+        new = {name for x in formulas for name in ring.dependencies(x, names)}
+        while new:
+            found |= new
+            new = {name for one in new for name in ring.dependencies(self.rates[one], names)} - found
+        return tuple(position for position in self.positions if position.name in found)
+
+
+def _is_own(speed: Speed, body: Body) -> bool:
+    return speed.body == body.name and speed.component is not None
+
+
+def direction_cosines_of(algebra: Algebra, body: Body, values: Mapping[str, Scalar]) -> Tensor:
+    """R^jk, whose columns are the axes of the frame j in the axes of the body, from the unit vectors."""
+    columns = [[values[name] for name in vector.components] for vector in body.orientation]
+    return tensor_of(algebra, [[column[i] for column in columns] for i in range(3)], body.name, body.attached_to)
+
+
+def _cramer(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Polynomial]) -> list[Polynomial]:
+    """The solution of matrix x = right; the denominator is the determinant, and nothing that it does not need."""
+    if not right:
+        return []
+    inverse = ring.reciprocal(determinant(ring, matrix))
+    found = []
+    for column in range(len(right)):
+        replaced = [[*row[:column], r, *row[column + 1 :]] for row, r in zip(matrix, right, strict=True)]
+        found.append(ring.reduce(ring.times(determinant(ring, replaced), inverse)))
+    return found

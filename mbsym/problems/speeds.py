@@ -1,0 +1,124 @@
+"""Problems 2 and 3 where velocities are variables of their own: speeds u with q' = Y(q) u + y0(q, t).
+
+    T = 1/2 sum A_rs u_r u_s + sum A_r u_r + A_0,      U as ever
+    M u' = f                                            Kane's equations (equally Boltzmann-Hamel)
+    s' = g(s, u, t)                                     kinematic equations
+
+where s are the coordinates, and components of unit vectors that take the place of angles (e' = e x omega, Poisson).
+Each equation is also kept as it stands in textbooks: what the motion needs = what the loads supply, for a body about a
+fixed point
+
+    A p' + (C - B) q r = m g (z_0 gamma_2 - y_0 gamma_3).
+
+No speed is said to be cyclic: L need not contain a quasi-coordinate, there is none.
+
+Source: Kane & Levinson, Dynamics: Theory and Applications (1985); Lurie, Analytical Mechanics, ch. 8 (Euler-Poisson).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbsym.algebra.ring import Polynomial
+from mbsym.formulas.formula import Column, Formula, Matrix, column
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.kane import Kane
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import KINDS, force_function
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+
+
+@dataclass(frozen=True, repr=False)
+class SpeedEquations(Equations):
+    """M (n x n), f (n) of M u' = f; ``needed`` = ``supplied`` are the same equations before they are sorted.
+
+    ``speeds`` u and ``positions`` s by name, ``rates`` s' in their order.  ``vectors`` are the unit vectors that occur,
+    each with its components; ``aside`` the positions on which no equation depends, nor the rate of another one that
+    matters: they follow by integration.
+    """
+
+    speeds: tuple[str, ...]
+    speed_rates: tuple[str, ...]
+    positions: tuple[str, ...]
+    rates: Column
+    needed: Column
+    supplied: Column
+    vectors: tuple[tuple[str, tuple[str, str, str]], ...]
+    aside: tuple[str, ...]
+
+    @property
+    def in_speeds(self) -> bool:
+        return True
+
+    @property
+    def kinematic(self) -> list[tuple[str, Formula]]:
+        """(position, its rate) of those on which the equations depend."""
+        return [(name, x) for name, x in zip(self.positions, self.rates, strict=True) if name not in self.aside]
+
+    @property
+    def kinematic_aside(self) -> list[tuple[str, Formula]]:
+        """The same of the others."""
+        return [(name, x) for name, x in zip(self.positions, self.rates, strict=True) if name in self.aside]
+
+    @property
+    def relations(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        """Pairs of components whose products sum up: to 1 where a vector meets itself, to 0 where it meets another."""
+        found = []
+        for k, (_, first) in enumerate(self.vectors):
+            found += [tuple(zip(first, second, strict=True)) for _, second in self.vectors[k:]]
+        return tuple(found)
+
+
+def energy(form: SpeedForm, scene: Scene) -> Energy:
+    """T, split by powers of the speeds, and U."""
+    ring = form.ring
+    kinetic, potential = kinetic_energy(scene), force_function(scene)
+    at_rest = {u.index: ring.zero for u in form.speeds}
+    momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
+    return Energy(
+        kinetic_energy=Formula(ring, kinetic),
+        A2=Matrix.of(ring, [[ring.derivative(p, u.name) for u in form.speeds] for p in momenta]),
+        A1=column(ring, [ring.substitute(p, at_rest) for p in momenta]),
+        A0=Formula(ring, ring.substitute(kinetic, at_rest)),
+        force_function=Formula(ring, potential),
+        cyclic=(),
+    )
+
+
+def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
+    """Kane's equations as M u' = f, and the kinematic equations."""
+    ring, loads = form.ring, scene.system.loads
+    kane = Kane(form, scene)
+    needed, supplied = kane.inertia(), kane.active(loads)
+    others = kane.active([load for load in loads if KINDS[type(load)].force_function is None])
+    still = {u.rate_index: ring.zero for u in form.speeds}
+    forcing = [ring.reduce(b - ring.substitute(a, still)) for a, b in zip(needed, supplied, strict=True)]
+    mass = [[a.derivative(u.rate_index) for u in form.speeds] for a in needed]
+    names = tuple(s.name for s in form.positions)
+    occurring = {s.name for s in form.occurring([*needed, *supplied])}
+    return SpeedEquations(
+        mass_matrix=Matrix.of(ring, mass),
+        forcing=column(ring, forcing),
+        generalized_force=column(ring, others),
+        speeds=tuple(u.name for u in form.speeds),
+        speed_rates=tuple(u.rate_name for u in form.speeds),
+        positions=names,
+        rates=column(ring, [form.rates[name] for name in names]),
+        needed=column(ring, needed),
+        supplied=column(ring, supplied),
+        vectors=tuple(
+            (vector.name, vector.components)
+            for body in form.by_vectors
+            for vector in body.orientation
+            if set(vector.components) & occurring
+        ),
+        aside=tuple(name for name in names if name not in occurring),
+    )
+
+
+def residual(found: SpeedEquations, r: int) -> Polynomial:
+    """What the r-th equation says to be zero, in (s, u, u', t)."""
+    needed = found.needed[r]
+    return needed.ring.reduce(needed.polynomial - found.supplied[r].polynomial)

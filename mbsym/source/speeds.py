@@ -1,0 +1,255 @@
+"""Speeds and unit vectors of a body: their names, their forms, and whether the generalised velocities follow."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Span
+from mbsym.expressions.tree import (
+    ZERO,
+    Call,
+    Expression,
+    Name,
+    add,
+    differentiate,
+    multiply,
+    names,
+    negative,
+    substitute,
+)
+from mbsym.model.speeds import OMEGA, Speed, UnitVector
+from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
+from mbsym.source import placed
+from mbsym.source.bodies import Draft, read_body_name
+from mbsym.source.identity import independent, vanishes
+from mbsym.source.placed import Node
+from mbsym.source.reading import Reading
+from mbsym.source.scope import Allowed
+
+#: How a body's own angular velocity is written in the form of a speed.
+OWN = ("omega1", "omega2", "omega3")
+MAX_SPEEDS = 6
+
+ANGLES, COSINES = "angles", "direction cosines"
+
+_COMPONENT = re.compile(r"\s*omega\[(.*)\]\s*\[\s*([123])\s*\]\s*\Z", re.DOTALL)
+_FORM = Allowed("a speed", ("coordinate", "velocity", "prescribed", "parameter", "time"))
+_AXES = {"1": 1, "2": 2, "3": 3}
+
+
+def declare_speeds(draft: Draft, reading: Reading) -> None:
+    """The first pass: the names of speeds and of the components of unit vectors."""
+    draft.orientation = _orientation(draft.fields.get("orientation"), reading)
+    node = draft.fields.get("speeds")
+    if node is None:
+        return
+    entries = list(reading.entries(node, "'speeds'", "{p: omega1, q: omega2, r: omega3}"))
+    if len(entries) > MAX_SPEEDS:
+        reading.error("too-large", f"a body has at most {MAX_SPEEDS} speeds", node.span)
+        return
+    for entry in entries:
+        if reading.scope.declare(entry.key.text, "speed", entry.key.span):
+            draft.speeds.append((entry.key, entry.value))
+
+
+def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector, ...]:
+    if node is None:
+        return ()
+    errors = reading.errors
+    if not isinstance(node, placed.Mapping):
+        word = reading.word(node, "'orientation'", (ANGLES, COSINES))
+        if word != COSINES:
+            return ()
+        found = _unnamed([], node.span, reading)
+    else:
+        found = []
+        for entry in reading.entries(node, "'orientation'"):
+            axis = reading.word(entry.value, "the axis of a unit vector", _AXES)
+            if axis is not None:
+                found.append(UnitVector(entry.key.text, _AXES[axis], entry.key.span))
+        found += _unnamed(found, node.span, reading)
+    axes: set[int] = set()
+    sound = []
+    for vector in found:
+        assert vector.span is not None
+        if vector.axis in axes:
+            reading.error("repeated-key", f"a second unit vector along axis {vector.axis}", vector.span)
+            continue
+        axes.add(vector.axis)
+        declared = [reading.scope.declare(name, "unit vector", vector.span) for name in vector.components]
+        if all(declared):
+            sound.append(vector)
+    return tuple(sorted(sound, key=lambda vector: vector.axis)) if reading.errors == errors else ()
+
+
+def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading) -> list[UnitVector]:
+    """The unit vectors that nobody named: the place of a body is told by all three."""
+    found: list[UnitVector] = []
+    axes, words = {one.axis for one in named}, {one.name for one in named}
+    for axis, word in enumerate(("alpha", "beta", "gamma"), start=1):
+        tries = [word, *(f"{word}_{letter}" for letter in "abcdefgh")]
+        free = [name for name in tries if name not in words and not _taken(UnitVector(name, axis), reading)]
+        if axis not in axes and free:
+            found.append(UnitVector(free[0], axis, span))
+    return found
+
+
+def _taken(vector: UnitVector, reading: Reading) -> bool:
+    return any(name in reading.scope.kinds for name in vector.components)
+
+
+def read_speeds(draft: Draft, drafts: Sequence[Draft], reading: Reading) -> tuple[Speed, ...]:
+    """The second pass: the forms."""
+    found = []
+    for key, value in draft.speeds:
+        errors = reading.errors
+        body, form = _form(value, draft, drafts, reading)
+        if reading.errors == errors:
+            found.append(Speed(key.text, form, body, key.span))
+    return tuple(found)
+
+
+def _form(node: Node, draft: Draft, drafts: Sequence[Draft], reading: Reading) -> tuple[str, Expression]:
+    """The body whose angular velocity may stand in a form, and the form."""
+    scalar = reading.scalar(node, "a speed")
+    match = None if scalar is None else _COMPONENT.match(scalar.text)
+    if scalar is not None and match is not None:
+        name = scalar.part(*match.span(1))
+        body = read_body_name(name, "a speed", [other.name for other in drafts], reading)
+        if body == INERTIAL:
+            reading.error("unknown-body", "the inertial frame does not turn", name.span)
+        return body or draft.name, Name(OMEGA[int(match.group(2)) - 1], scalar.span)
+    kinds = reading.scope.kinds
+    added = [name for name in OWN if name not in kinds]
+    kinds.update(dict.fromkeys(added, "velocity"))
+    form = reading.expression(node, _FORM) if scalar is not None else ZERO
+    for own in added:
+        del kinds[own]
+    return draft.name, substitute(form, {own: Name(OMEGA[k]) for k, own in enumerate(OWN) if own in added})
+
+
+# --- what only the whole shows ---------------------------------------------------------------------------------------
+
+
+def check_speeds(system: System, drafts: Sequence[Draft], reading: Reading) -> None:
+    """Every speed is linear in the generalised velocities, and these follow from the speeds; unit vectors suffice.
+
+    The rank is that of random elements of a prime field: full, it is proved; a deficient one is by accident with a
+    probability of about 1e-30.
+    """
+    if not system.speeds and not any(body.orientation for body in system.bodies):
+        return
+    errors = reading.errors
+    rows: list[list[Expression]] = []
+    ordered = _ordered(system)
+    for speed in system.speeds:
+        assert speed.span is not None
+        row = _row(system, speed, ordered)
+        if row is None:
+            message = f"'{speed.name}' is not linear in the velocities"
+            reading.error("not-linear", message, speed.span, "a sum of velocities with coefficients in coordinates")
+            continue
+        if not any(vanishes(x) is not True for x in row):
+            hint = "write velocities such as x_dot, or omega1, omega2, omega3 of this body"
+            reading.error("no-velocity", f"'{speed.name}' contains no velocity", speed.span, hint)
+            continue
+        rows.append(row)
+        if reading.errors == errors and len(independent(rows)) < len(rows):
+            others = ", ".join(one.name for one in system.speeds[: len(rows) - 1])
+            message = f"'{speed.name}' follows from {others}: the generalised velocities cannot be found from them"
+            hint = f"there are {len(ordered)} generalised velocities; speeds are independent of each other"
+            reading.error("dependent-speeds", message, speed.span, hint)
+    for body, draft in zip(system.bodies, drafts, strict=True):
+        if body.orientation:
+            _check_orientation(system, body, draft, reading)
+
+
+def _ordered(system: System) -> list[str]:
+    """The coordinates, those of bodies with speeds first: their velocities are replaced before those of others."""
+    first = [name for body in system.bodies if body.speeds for name in body.coordinates]
+    return [*first, *(name for name in system.coordinates if name not in first)]
+
+
+def _row(system: System, speed: Speed, ordered: Sequence[str]) -> list[Expression] | None:
+    """The coefficients of the generalised velocities; None where the form is not linear in them."""
+    form = speed.form
+    if speed.turns:
+        spin = angular_velocity(system, speed.body)
+        form = substitute(form, dict(zip(OMEGA, spin, strict=True)))
+    row = [differentiate(form, velocity_name(name)) for name in ordered]
+    for slope in row:
+        for name in ordered:
+            curved = velocity_name(name) in names(slope) and differentiate(slope, velocity_name(name))
+            if curved and vanishes(curved) is not True:
+                return None
+    return row
+
+
+def angular_velocity(system: System, body: str) -> Vector:
+    """omega of a body in its own axes, as expressions:  w <- C_a(x) w + x' e_a  turn by turn."""
+    spin: list[Expression] = [ZERO, ZERO, ZERO]
+    for name in system.path(body)[1:]:
+        for axis, angle in system.body(name).rotation.turns():
+            i, j = axis % 3, (axis + 1) % 3
+            s, c = Call("sin", angle), Call("cos", angle)
+            old = (spin[i], spin[j])
+            spin[i] = add(multiply(c, old[0]), multiply(s, old[1]))
+            spin[j] = add(multiply(c, old[1]), negative(multiply(s, old[0])))
+            for coordinate in system.coordinates:
+                slope = differentiate(angle, coordinate)
+                spin[axis - 1] = add(spin[axis - 1], multiply(slope, Name(velocity_name(coordinate))))
+            for item in system.prescribed:
+                spin[axis - 1] = add(spin[axis - 1], multiply(differentiate(angle, item.name), item.rate))
+    return spin[0], spin[1], spin[2]
+
+
+def _check_orientation(system: System, body: Body, draft: Draft, reading: Reading) -> None:
+    """A body that is turned by three angles of its own, which stand nowhere else, and has all three components of its
+    angular velocity as speeds."""
+    span = draft.fields.key_span("orientation")
+    own = {name for _, angle in body.rotation.turns() for name in names(angle)} & {*body.coordinates}
+    if len(own) != 3:
+        message = "this joint has not three angles of its own: unit vectors would be more than it needs"
+        reading.error("orientation", message, span, "leave 'orientation' out")
+        return
+    components = {speed.component for speed in system.speeds if speed.body == body.name}
+    if not {1, 2, 3} <= components:
+        hint = "speeds: {p: omega1, q: omega2, r: omega3}"
+        reading.error("orientation", "unit vectors turn with the body: its angular velocity is wanted", span, hint)
+    used = {name: place for name, place in _uses(system, body) if name in own}
+    for name, place in used.items():
+        message = f"the angle '{name}' stands in {place}: unit vectors cannot take its place"
+        reading.error("orientation", message, span, "leave 'orientation' out, or write the load as a force or torque")
+
+
+def _uses(system: System, body: Body) -> list[tuple[str, str]]:
+    """Names in other places than the angles of a body's joint, with these places."""
+    found = [(name, "a load") for load in system.loads for name in _held(load)]
+    found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
+    for other in system.bodies:
+        if other is not body:
+            place = f"the joint of {ascii_safe(other.name)}"
+            expressions = (*other.rotation.angles, *other.connection_point)
+            found += [(name, place) for x in expressions for name in names(x)]
+        for speed in other.speeds:
+            held = {name.removesuffix("_dot") for name in names(speed.form)}
+            found += [(name, f"the speed '{speed.name}'") for name in held]
+    return found
+
+
+def _held(load: object) -> set[str]:
+    """The coordinates in a load, by name or in an expression, velocities among them."""
+    found: set[str] = set()
+    pending: list[object] = [load]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, str):
+            found.add(part.removesuffix("_dot"))
+        elif isinstance(part, tuple):
+            pending.extend(part)
+        elif is_dataclass(part):
+            pending.extend(getattr(part, one.name) for one in fields(part) if one.name != "span")
+    return found

@@ -1,0 +1,223 @@
+"""Velocities that are variables: equations as textbooks print them, and planted mistakes that the self-check finds."""
+
+import pytest
+
+import mbsym
+from mbsym.algebra.vectors import Tensor
+from mbsym.problems.checks import EXACT, FAILED
+
+#: A heavy gyrostat about a fixed point; what is put after its inertia says how it is told.
+GYROSTAT = """
+mbsym: 1
+name: Heavy gyrostat
+parameters: {{A: positive, B: positive, C: positive, m: positive, g: positive, x0: real, y0: real, z0: real, l1: real,
+  l2: real, l3: real}}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {{axes: [3, 1, 3], angles: [psi, theta, phi]}}
+    mass centre: [x0, y0, z0]
+    mass: m
+    inertia about: joint
+    inertia: [A, B, C]
+    gyrostatic moment: [l1, l2, l3]
+    {told}
+loads:
+  - uniform gravity: {{vector: [0, 0, -g]}}
+"""
+SPEEDS = "speeds: {p: omega1, q: omega2, r: omega3}"
+POISSON = SPEEDS + "\n    orientation: {gamma: 3}"
+
+#: Euler's equations of a gyrostat (Zhukovsky), gravity m g gamma downwards: gamma is the third axis of space.
+NEEDED = (
+    "A*p_dot + (C - B)*q*r + q*l3 - r*l2",
+    "B*q_dot + (A - C)*r*p + r*l1 - p*l3",
+    "C*r_dot + (B - A)*p*q + p*l2 - q*l1",
+)
+SUPPLIED = (
+    "m*g*(gamma2*z0 - gamma3*y0)",
+    "m*g*(gamma3*x0 - gamma1*z0)",
+    "m*g*(gamma1*y0 - gamma2*x0)",
+)
+CHECKED = ("kinematics", "energy", "equations of motion", "straight-line program")
+
+
+def load(tmp_path, text):
+    file = tmp_path / "system.yaml"
+    file.write_text(text)
+    return mbsym.load(file)
+
+
+def expected(analysis, texts):
+    from mbsym.expressions.parser import parse_expression
+    from mbsym.expressions.place import Complaints, Span
+    from mbsym.formulas.formula import Formula
+
+    lower = analysis.parameters_scene.lower
+    trees = [parse_expression(one, Complaints(), lambda a, b: Span(1, 1)) for one in texts]
+    return [Formula(analysis.ring, lower(tree)) for tree in trees]
+
+
+def test_euler_and_poisson_equations_as_a_textbook_prints_them(tmp_path):
+    found = load(tmp_path, GYROSTAT.format(told=POISSON))
+    equations = found.equations
+    assert equations.speeds == ("p", "q", "r")
+    assert list(equations.needed) == expected(found, NEEDED)
+    assert list(equations.supplied) == expected(found, SUPPLIED)
+    rates = dict(equations.kinematic)
+    poisson = expected(found, ["r*gamma2 - q*gamma3", "p*gamma3 - r*gamma1", "q*gamma1 - p*gamma2"])
+    assert [rates["gamma1"], rates["gamma2"], rates["gamma3"]] == poisson
+    assert equations.aside == ("alpha1", "alpha2", "alpha3", "beta1", "beta2", "beta3")
+    assert str(equations.needed[0]) == "A*p_dot + (C - B)*q*r + l3*q - l2*r"
+
+
+def test_euler_equations_with_angles(tmp_path):
+    found = load(tmp_path, GYROSTAT.format(told=SPEEDS))
+    assert [str(x) for x in found.kinematics.body("body").angular_velocity] == ["p", "q", "r"]
+    gamma = {"gamma1": "sin(theta)*sin(phi)", "gamma2": "sin(theta)*cos(phi)", "gamma3": "cos(theta)"}
+    supplied = []
+    for text in SUPPLIED:
+        for name, value in gamma.items():
+            text = text.replace(name, f"({value})")
+        supplied.append(text)
+    assert list(found.equations.supplied) == expected(found, supplied)
+    assert list(found.equations.needed) == expected(found, NEEDED)
+    rates = dict(zip(found.equations.positions, found.equations.rates, strict=True))
+    # Euler's kinematic equations, solved (Whittaker, Analytical Dynamics, section 16)
+    wanted = {
+        "psi": "(p*sin(phi) + q*cos(phi))/sin(theta)",
+        "theta": "p*cos(phi) - q*sin(phi)",
+        "phi": "r - cos(theta)/sin(theta)*(p*sin(phi) + q*cos(phi))",
+    }
+    assert [rates[name] for name in wanted] == expected(found, wanted.values())
+
+
+@pytest.mark.parametrize("told", [SPEEDS, POISSON])
+def test_the_second_routes_agree(tmp_path, told):
+    found = load(tmp_path, GYROSTAT.format(told=told))
+    for problem in (1, 2, 3):
+        assert found.stage(problem).failure is None
+    assert [found.check(name).outcome for name in CHECKED] == [EXACT] * 4
+
+
+PLATE = """
+mbsym: 1
+name: A plate on a plane, velocities along its own axes
+parameters: {m: positive, J: positive, X: real, Y: real}
+prescribed: {chi: {rate: X}}
+bodies:
+  - name: plate
+    attached to: 0
+    rotation: {axes: [3], angles: [phi]}
+    connection point: [x, y, 0]
+    coordinates: [x, y, phi]
+    mass: m
+    inertia about: mass centre
+    inertia: [0, 0, J]
+    speeds: {u: x_dot*cos(phi) + y_dot*sin(phi), v: y_dot*cos(phi) - x_dot*sin(phi)}
+loads:
+  - force: {body: plate, point: [0, 0, 0], components: [X, Y, 0], axes: plate}
+  - generalized force: {x: chi}
+"""
+
+
+def test_velocities_along_moving_axes(tmp_path):
+    """m (u' - v r) = X, m (v' + u r) = Y, J r' = 0 with r = phi' (any book on ships); a force along x projects."""
+    found = load(tmp_path, PLATE)
+    equations = found.equations
+    assert (equations.speeds, equations.speed_rates) == (("u", "v", "phi_dot"), ("u_dot", "v_dot", "phi_ddot"))
+    assert list(equations.needed) == expected(found, ["m*(u_dot - v*phi_dot)", "m*(v_dot + u*phi_dot)", "J*phi_ddot"])
+    assert list(equations.supplied) == expected(found, ["X + chi*cos(phi)", "Y - chi*sin(phi)", "0"])
+    rates = dict(zip(equations.positions, equations.rates, strict=True))
+    assert [rates["x"], rates["y"]] == expected(found, ["u*cos(phi) - v*sin(phi)", "u*sin(phi) + v*cos(phi)"])
+    assert [found.check(name).outcome for name in CHECKED] == [EXACT] * 4
+
+
+CARRIED = """
+mbsym: 1
+name: A rotor on a body that is told by unit vectors, on a carrier that turns as prescribed
+parameters: {A: positive, B: positive, C: positive, J: positive, I: positive, m: positive, d: real, W: real,
+  g: positive}
+prescribed: {chi: {rate: W}}
+bodies:
+  - {name: carrier, attached to: 0, rotation: {axes: [2], angles: [chi]}, connection point: [s, 0, 0],
+     coordinates: [s], mass: m, speeds: {w: s_dot + W*s}}
+  - name: body
+    attached to: carrier
+    rotation: {axes: [1, 2, 3], angles: [a, b, c]}
+    mass: m
+    mass centre: [0, 0, d]
+    inertia about: joint
+    inertia: [A, B, C]
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: direction cosines
+  - name: rotor
+    attached to: body
+    rotation: {axes: [1], angles: [phi]}
+    connection point: [d, 0, 0]
+    mass: m
+    inertia about: mass centre
+    inertia: [J, I, I]
+    speeds: {n: omega1}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - damper: {coordinate: phi, coefficient: d**2}
+"""
+
+
+def test_bodies_on_bodies_and_prescribed_motion(tmp_path):
+    """Nothing here is in any book: d'Alembert's principle is the judge."""
+    found = load(tmp_path, CARRIED)
+    assert found.equations.speeds == ("w", "p", "q", "r", "n")
+    assert str(dict(zip(found.equations.positions, found.equations.rates, strict=True))["phi"]) == "n - p"
+    assert [found.check(name).outcome for name in CHECKED] == [EXACT] * 4
+
+
+def broken(monkeypatch, target, change):
+    module, _, name = target.rpartition(".")
+    from importlib import import_module
+
+    parts = module.split(":")
+    owner = import_module(f"mbsym.{parts[0]}")
+    for part in parts[1:]:
+        owner = getattr(owner, part)
+    monkeypatch.setattr(owner, name, change(getattr(owner, name)))
+
+
+def transposed(cosines):
+    """R^T, as if it led where R leads."""
+    return Tensor(cosines.algebra, cosines.T.rows, cosines.frame, cosines.source)
+
+
+MISTAKES = {
+    "the loads count twice": (
+        "mechanics.kane:Kane.of",
+        lambda old: lambda self, actions: [2 * x for x in old(self, actions)],
+    ),
+    "Y' is forgotten": ("mechanics.speeds:SpeedForm.drift", lambda old: lambda self, x: self.ring.zero),
+    "Poisson's equations turn the wrong way": (
+        "mechanics.speeds:SpeedForm.rates",
+        lambda old: property(lambda self: {k: -x if k[-1] in "123" else x for k, x in old.func(self).items()}),
+    ),
+    "the direction cosines are transposed": (
+        "mechanics.speeds.direction_cosines_of",
+        lambda old: lambda *given: transposed(old(*given)),
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_planted_mistakes_are_found(tmp_path, monkeypatch, mistake):
+    broken(monkeypatch, *MISTAKES[mistake])
+    text = PLATE if "Y'" in mistake else CARRIED
+    found = load(tmp_path, text)
+    for problem in (1, 2, 3):
+        found.stage(problem)
+    outcomes = [found.check(name).outcome for name in ("kinematics", "equations of motion") if found.check(name)]
+    assert FAILED in outcomes
+
+
+def test_what_does_not_know_speeds_says_so(tmp_path):
+    found = load(tmp_path, GYROSTAT.format(told=SPEEDS) + "motion: {psi: 0}\n")
+    for problem in (4, 5, 6):
+        assert found.stage(problem).failure.code == "speeds"
