@@ -179,10 +179,15 @@ class _Truth:
 def _judged(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dynamics] | None:
     """A model with its error; None where there is no program for it, or it saves nothing."""
     try:
-        dynamics = modelled(scene.scenario, model)
-        operations = dynamics.right_hand_side.operations
+        return _held_against(scene, model, truth)
     except Failure:
         return None
+
+
+def _held_against(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dynamics] | None:
+    """A model with its error; None where it saves nothing.  Raises Failure where it has no program."""
+    dynamics = modelled(scene.scenario, model)
+    operations = dynamics.right_hand_side.operations
     if operations >= SAVES * scene.rich.right_hand_side.operations:
         return None
     naive = _naive(scene, dynamics)
@@ -259,14 +264,29 @@ def _without(scene: Scene, base: Model, truth: _Truth, watch: Callable[[str], No
     """The model without every parameter that may be taken as zero; None where there is none."""
     ranked = _felt(scene, base)
     names = [name for name, ratio in ranked if 0 < ratio <= HOPELESS * PART]
+    looked_at = False
     while names:
         model = replace(base, without=tuple(names))
         watch(model.label)
-        found = _judged(scene, model, truth)
+        try:
+            found = _held_against(scene, model, truth)
+        except Failure:  # a mass that nothing else replaces, a divisor: it stays, and the others are looked at
+            able = names if looked_at else [name for name in names if _has_program(scene, base, name)]
+            looked_at = True
+            names = able if able != names else names[:-1]
+            continue
         if found is None or found[0].ratio <= PART:
             return found
         names.pop()
     return None
+
+
+def _has_program(scene: Scene, base: Model, name: str) -> bool:
+    """Whether the equations can be solved for accelerations without a parameter."""
+    try:
+        return bool(modelled(scene.scenario, replace(base, without=(name,))).right_hand_side.outputs)
+    except Failure:
+        return False
 
 
 def _felt(scene: Scene, base: Model) -> Sequence[tuple[str, float]]:

@@ -30,6 +30,9 @@ PARTS = 2_000
 #: The longest step falls, too: two runs whose steps it rules would else be one and the same.
 SHORTER = 0.7
 
+#: A run with fewer steps than so many times the least number is ruled by the longest step.
+MOSTLY = 1.2
+
 #: Rounding in extended arithmetic beside that in float64.
 MORE_DIGITS = 2.0**-11
 
@@ -62,6 +65,8 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
     Raises Breakdown where a run does not come to the end.
     """
     longest = float(bench.times[-1]) / PARTS
+    if bench.longest is not None:  # a longer one would be cut to it in every run, and two of them be one run
+        longest = min(longest, bench.longest)
     scalar, last, gain, rounding = FLOAT64, inf, USUAL_GAIN, 0.0
     before = bench.run(method, scalar, Setting(tolerance, longest=longest))
     best = _taken(before, inf, tolerance)
@@ -79,7 +84,8 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
         now = bench.run(method, scalar, Setting(tolerance, longest=longest))
         apart, _ = bench.compared(before.states, now.states)
         gain = apart / last if 0 < last < inf else USUAL_GAIN
-        known = max(apart * (min(gain, USUAL_GAIN) if gain <= LEAST_GAIN else 1.0), rounding)
+        less = max(min(gain, USUAL_GAIN), _ruled(now, longest, bench)) if gain <= LEAST_GAIN else 1.0
+        known = max(apart * less, rounding)
         known = max(known, _roundings(scalar) / bench.finest_target)
         if known <= best.known:
             factor = (AIM * goal / apart) ** (1 / USUAL_SLOPE) if apart > 0 else 1.0
@@ -87,6 +93,17 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
         if known <= KNOWN * goal:
             return best
         before, last = now, apart
+
+
+def _ruled(trial: Trial, longest: float, bench: Bench) -> float:
+    """What is left of the last difference where the longest step rules a run, not its tolerance; else 0.
+
+    With steps h and s h, s = ``SHORTER``, and errors C h^p: the finer one has s^p/(1 - s^p) of the difference.
+    """
+    order = trial.method.traits.order or 1
+    if trial.work.steps * longest < MOSTLY * float(bench.times[-1]):
+        return float(SHORTER**order / (1 - SHORTER**order))
+    return 0.0
 
 
 def _taken(trial: Trial, known: float, start: float) -> Yardstick:

@@ -308,6 +308,62 @@ def test_a_run_is_never_judged_by_itself() -> None:
     assert again.ratio >= stick.known > 0
 
 
+OSCILLATOR = """
+mbsym: 1
+name: oscillator
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+initial: {x: {position: 1, velocity: 0}}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+@pytest.mark.parametrize("parts", [2500, 5000])
+def test_a_longest_step_that_was_asked_for_does_not_make_the_reference_its_own_judge(
+    parts: int, tolerance: float
+) -> None:
+    """x = cos t: with steps that the limit rules, not the tolerance, two runs by one limit would differ by nothing."""
+    end = 200.0
+    times = np.linspace(0, end, 2001)
+    given, targets = described(OSCILLATOR), np.array([1e-3, 1e-3, inf])
+    bench = pilot.Bench(
+        planning.Dynamics(given), times, times, targets, lambda method: method, np.ones(3), longest=end / parts
+    )
+    stick = planning.yardstick(bench, METHODS["rk45"], tolerance, 0.4)
+    assert stick.setting.longest is not None
+    assert stick.setting.longest < end / parts
+    true = float(np.max(np.abs(stick.quantities[0] - np.cos(times)))) / 1e-3
+    assert true / 1.5 <= stick.known <= 10 * true
+
+
+TWO_BOBS = """
+mbsym: 1
+name: two bobs at nearly one place, either of which may go
+parameters: {m1: positive, m2: positive, g: positive, d: positive, c: nonnegative}
+bodies:
+  - {name: one, attached to: 0, rotation: {axes: [3], angles: [theta]}, mass centre: [0, -1, 0], mass: m1}
+  - {name: two, attached to: one, mass centre: [0, -1 - d, 0], mass: m2}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - damper: {coordinate: theta, coefficient: c}
+values: {m1: 1, m2: 1, g: 1, d: 1e-7, c: 1e-9}
+initial: {theta: 1}
+"""
+
+
+def test_one_mass_that_must_stay_does_not_keep_all_else() -> None:
+    """Without both masses there are no equations; without one of them the pendulum has the length 1, or 1 + d."""
+    times = np.linspace(0, 10, 1001)
+    plan = planned(described(TWO_BOBS), Accuracy(1e-3), times)
+    assert len({"m1", "m2"} & set(plan.model.without)) == 1
+    assert "c" in plan.model.without
+    true = pendulum_angle(times, 1.0)
+    states = run_of(described(TWO_BOBS), plan, times)
+    assert np.max(np.abs(states[0] - true)) <= plan.bound.total
+
+
 # --- laws of the types ---
 
 
