@@ -77,14 +77,21 @@ def _read(
 
 
 def given_numbers(
-    file: Path, system: System, settings: Sequence[str], options: Options
+    file: Path,
+    system: System,
+    settings: Sequence[str],
+    options: Options,
+    laws: Mapping[str, Expression] | None = None,
 ) -> tuple[Scenario | None, Mapping[str, Expression]]:
-    """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``."""
+    """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``.
+
+    ``laws`` are those of its inputs.
+    """
     from mbsym.numerics.scenario import Incomplete, scenario
 
     assigned = assignments(settings, system, options)
     try:
-        return scenario(system, assigned.values), assigned.values
+        return scenario(system, assigned.values, laws=laws), assigned.values
     except Incomplete as error:
         contradictions(file, error.lack, assigned, options)
         unread = _unread(system, assigned)

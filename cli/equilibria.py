@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.assignments import assignments, contradictions
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, status
 from mbsym_cli.lacking import missing
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_inputs import read_held
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -46,7 +47,7 @@ def command(file: Path, settings: tuple[str, ...], within: str, as_json: bool) -
       mbsym equilibria systems/gravity-gradient.yaml
       mbsym equilibria systems/double-pendulum.yaml --set m2=3/2 --json
     """
-    system = read_description(file, "equilibria")
+    system = read_held(file, "equilibria")
     asked = Options()
     values = {} if system is None else _values(file, system, settings, asked)
     reach = asked.number("--within", within, most=1e6)

@@ -9,10 +9,11 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain
 from mbsym_cli.extremes_run import measure, rank
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_inputs import read_held
 
 
 @click.command("extremes")
@@ -53,7 +54,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
     """Reads everything, complains about everything, then measures."""
     from mbsym.algebra.failures import Failure
 
-    system = read_description(file, "extremes")
+    system = read_held(file, "extremes")
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     seconds = asked.number("--budget", budget)

@@ -8,9 +8,10 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, status
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.telling import told
 
 
@@ -43,7 +44,7 @@ def command(file: Path, settings: tuple[str, ...], out: Path | None, quiet: bool
 
 def _command(file: Path, folder: Path, settings: tuple[str, ...], quiet: bool) -> int:
     """Reads everything, complains about everything, then judges."""
-    system = read_description(file, "floquet")
+    system = read_held(file, "floquet")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     if asked.refused(None if system is None else file) or given is None:

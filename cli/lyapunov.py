@@ -8,10 +8,11 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, OutPath, complain, read_description
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, OutPath, complain
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
+from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.telling import told
 
 
@@ -63,7 +64,7 @@ def _command(
     quiet: bool,
 ) -> int:
     """Reads everything, complains about everything, then measures."""
-    system = read_description(file, "lyapunov")
+    system = read_held(file, "lyapunov")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     time = asked.time(end)

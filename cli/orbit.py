@@ -8,9 +8,10 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, status
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.telling import told
 
 #: What may be kept while the orbit is sought.
@@ -66,7 +67,7 @@ def _command(
     quiet: bool,
 ) -> int:
     """Reads everything, complains about everything, then searches."""
-    system = read_description(file, "orbit")
+    system = read_held(file, "orbit")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     if period is None:

@@ -14,6 +14,7 @@ from mbsym_cli.simulation_choice import choice_options
 from mbsym_cli.simulation_command import simulated
 from mbsym_cli.simulation_continue import continue_options
 from mbsym_cli.simulation_events import watch_options
+from mbsym_cli.simulation_inputs import input_options
 from mbsym_cli.simulation_many import Many, many_options
 from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags
@@ -22,6 +23,7 @@ from mbsym_cli.simulation_request import Flags
 @click.command("simulate")
 @click.argument("file", type=click.Path(path_type=Path))
 @span_options
+@input_options
 @way_options
 @choice_options
 @many_options
@@ -57,6 +59,9 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
     "falling" keep one direction of =, "mod 2*pi" takes an angle modulo a turn (never done unasked).  events.csv has
     every time of an --event that dense output shows; --stop ends the run; a --section is a table and a picture.
 
+    --input says what an input of the description is: a number, or a formula in t, coordinates, velocities, parameters
+    and tables.  Without it an input is held at its value on the unperturbed motion (0 unless motion: gives another).
+
     --accuracy 1e-6 chooses order of gravity, linear or nonlinear, parameters to drop, method, tolerance, arithmetic;
     prints one bound, and the command that repeats the run.  --method, --tolerance, --gravity, ... settle a part of it.
 
@@ -79,6 +84,7 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
       mbsym simulate systems/double-pendulum.yaml --time 10 --vary "theta1=normal(1, 0.01)" --members 1000
       mbsym simulate systems/double-pendulum.yaml --time 10 --sensitivity theta1,m1
       mbsym simulate systems/double-pendulum.yaml --time 5 --certify 1e-12
+      mbsym simulate systems/cart-pole.yaml --time 5 --set p=0 --input "F=20*sin(3*t)"
       mbsym simulate systems/satellite.yaml --time 20 --accuracy 1e-6 --plan
       mbsym simulate systems/double-pendulum.yaml --time 120 --continue reports/double-pendulum/simulation.json
     """

@@ -15,6 +15,7 @@ from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_choice import with_goal
 from mbsym_cli.simulation_continue import going_on
+from mbsym_cli.simulation_inputs import read_laws
 from mbsym_cli.simulation_many import Many, read_many
 from mbsym_cli.simulation_options import Group
 from mbsym_cli.simulation_request import Flags, check_held, read_request
@@ -38,7 +39,9 @@ def simulated(
     typed = typed_options(context)
     complain_of_pairs(typed, asked)
     complain_of_names(settings, {"--vary": many.vary, "--without": context.params["without"]}, asked)
-    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
+    laws = read_laws(further["driven"], system, asked)
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws)
+    system = system if given is None else given.system
     wanted = read_request(system, texts, flags, asked)
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, system, asked))

@@ -46,7 +46,14 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     from mbsym.report.certificate import certificate_lines
     from mbsym.report.events_words import events_lines
     from mbsym.report.plan_words import plan_lines
-    from mbsym.report.simulation_words import change_lines, conservation_line, error_lines, invariant_line, warnings
+    from mbsym.report.simulation_words import (
+        change_lines,
+        conservation_line,
+        error_lines,
+        inputs_line,
+        invariant_line,
+        warnings,
+    )
 
     found, chosen, request = run.trajectory, run.chosen, run.request
     if run.plan is not None:
@@ -66,6 +73,8 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     if request.earlier is not None:
         begin = with_unit(f"{request.earlier.time:.9g}", unit)
         yield "continued", f"from t = {begin}; {counted(len(request.earlier.times), 'row', 'rows')} before it"
+    if run.scenario.inputs:
+        yield "inputs", inputs_line(run.scenario)
     if chosen.resting is not None:
         yield "resting", _rest_line(chosen.resting)
     if chosen.parts:

@@ -20,7 +20,7 @@ from mbsym_cli.options import Options
 COMMANDLINE = ParameterSource.COMMANDLINE
 
 #: What a plan hands on to the command that runs it.
-CARRIED = ("formats", "bodies", "animate", "out", "estimate")
+CARRIED = ("laws", "formats", "bodies", "animate", "out", "estimate")
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,9 @@ def carried(context: click.Context) -> tuple[str, ...]:
         if parameter.name not in CARRIED or context.get_parameter_source(parameter.name) is not COMMANDLINE:
             continue
         value, name = context.params.get(parameter.name), max(parameter.opts, key=len)
-        if isinstance(value, bool):
+        if isinstance(value, tuple):
+            found += [word for one in value for word in (name, str(one))]
+        elif isinstance(value, bool):
             found.append(name if value else parameter.secondary_opts[0])
         else:
             found += [name, str(value)]

@@ -11,9 +11,10 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.tradeoff_run import Request, run
 
 #: Accuracy is asked for between these.
@@ -84,7 +85,7 @@ def _command(
     """Reads everything, complains about everything, then measures."""
     from mbsym.numerics.methods.table import METHODS
 
-    system = read_description(file, "tradeoff")
+    system = read_held(file, "tradeoff")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     end = asked.time(texts["--time"])

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -96,6 +96,7 @@ def simulate(
     section: str | None = None,
     axes: str = "",
     accuracy: float | Mapping[str, float] | None = None,
+    inputs: Mapping[str, Fraction | float | str] | None = None,
 ) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
@@ -121,19 +122,22 @@ def simulate(
     model, method, tolerance and arithmetic are chosen for it (what is given by hand is kept); ``run.plan`` says how,
     and ``run.plan.bound.total`` what the error is at most.
 
+    ``inputs`` gives inputs of the description by name: numbers, or formulas in t, coordinates, velocities, parameters
+    and tables such as ``"20*sin(3*t)"``; those left out are held at their values on the unperturbed motion.
+
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
     from mbsym import simulation
     from mbsym.numerics.scenario import scenario
 
-    system = _system(source)
+    system = _analysis_of(source).system
     request = simulation.Request(
         *(time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify),
         events=simulation.read_watch(system, _several(events), _several(stop), section, axes),
         longest=max_step,
     )
-    given = scenario(system, simulation.read_values(system, values or {}))
+    given = scenario(system, simulation.read_values(system, values or {}), laws=_laws(system, inputs))
     if accuracy is None:
         return simulation.simulate(given, request)
     from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately
@@ -389,8 +393,23 @@ def _several(texts: str | Iterable[str]) -> tuple[str, ...]:
     return (texts,) if isinstance(texts, str) else tuple(texts)
 
 
+def _analysis_of(source: str | Path | Analysis) -> Analysis:
+    return load(source, ()) if isinstance(source, (str, Path)) else source
+
+
+def _laws(system: System, inputs: Mapping[str, Fraction | float | str] | None) -> dict[str, Any]:
+    if not inputs:
+        return {}
+    from mbsym.source.laws import read_laws
+
+    return read_laws(system, inputs)
+
+
 def _system(source: str | Path | Analysis) -> System:
-    return (load(source, ()) if isinstance(source, (str, Path)) else source).system
+    """The system; its inputs, where it has any, at the values of the unperturbed motion."""
+    from mbsym.model.driven import held
+
+    return held(_analysis_of(source).system)
 
 
 def _analysis(system, complaints, text, name, problems) -> Analysis:  # type: ignore[no-untyped-def]

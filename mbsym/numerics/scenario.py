@@ -20,6 +20,7 @@ from mbsym.expressions.tree import Expression, names
 from mbsym.expressions.tree import text as spelled
 from mbsym.model.assumptions import broken
 from mbsym.model.comparison import has_sign
+from mbsym.model.driven import driven
 from mbsym.model.system import InitialValue, System, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -62,11 +63,20 @@ class Incomplete(Exception):
 
 
 @dataclass(frozen=True)
+class Driven:
+    """What an input is in a scenario; ``asked``: somebody said so, else it is held as on the unperturbed motion."""
+
+    name: str
+    law: Expression
+    asked: bool
+
+
+@dataclass(frozen=True)
 class Scenario:
     """A system with numbers: ``positions`` and ``velocities`` in the order of ``system.coordinates`` at t = 0.
 
     ``prescribed`` gives (initial, rate) of every prescribed quantity; ``typed`` keeps the initial positions as they
-    were written (pi/2 is exact there).
+    were written (pi/2 is exact there).  The system has no inputs any more: ``inputs`` are what they have become.
     """
 
     system: System
@@ -75,6 +85,7 @@ class Scenario:
     velocities: tuple[Fraction, ...]
     prescribed: Mapping[str, tuple[Fraction, Fraction]]
     typed: Mapping[str, Expression] = field(default_factory=dict)
+    inputs: tuple[Driven, ...] = ()
 
     @property
     def state(self) -> tuple[Fraction, ...]:
@@ -83,16 +94,23 @@ class Scenario:
 
 
 def scenario(
-    system: System, overrides: Mapping[str, Expression] | None = None, state: bool = True, assumed: bool = True
+    system: System,
+    overrides: Mapping[str, Expression] | None = None,
+    state: bool = True,
+    assumed: bool = True,
+    laws: Mapping[str, Expression] | None = None,
 ) -> Scenario:
     """The numbers of a description, some of them replaced.
 
     ``overrides`` maps names of parameters, coordinates (initial position) and ``<name>_dot`` (initial velocity) to
     expressions without coordinates.  Parameters without a value take it from ``relations``.  With ``state`` false the
     initial state may be missing (it is then zero).  With ``assumed`` false values may break assumptions, on which no
-    number depends.  Raises Incomplete, naming everything that is missing.
+    number depends.  ``laws`` gives inputs their expressions; the others keep their values on the unperturbed motion.
+    Raises Incomplete, naming everything that is missing.
     """
     overrides = dict(overrides or {})
+    given_laws, inputs = laws or {}, system.inputs
+    system = driven(system, given_laws)
     numbers = _Numbers()
     _parameters(system, overrides, numbers, assumed)
     parameters = numbers.known
@@ -112,7 +130,8 @@ def scenario(
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     typed = {name: entry.position for name, entry in given.items() if entry.position is not None}
-    return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed)
+    became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
+    return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became)
 
 
 def changed(found: Scenario, **parameters: Fraction) -> Scenario:

@@ -18,6 +18,7 @@ from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.variation import Grid, Variation
 from mbsym.report.schemas import version
+from mbsym.report.simulation_words import laws_json
 from mbsym.report.trajectory_csv import written
 from mbsym.source.meaning import meaning
 
@@ -87,6 +88,7 @@ def ensemble_json(
         "system": scenario.system.name,
         "description_sha256": meaning(scenario.system),
         "status": "partial" if found.interrupted else "whole",
+        **({"inputs": laws_json(scenario)} if scenario.inputs else {}),
         "members": found.count,
         "varied": [_variation(one) for one in variations],
         "seed": None if isinstance(variations[0], Grid) else seed,

@@ -22,7 +22,7 @@ from mbsym.report.between_steps import between_steps_json
 from mbsym.report.certificate import certificate_json
 from mbsym.report.events_json import events_json
 from mbsym.report.plan_words import model_json, plan_json
-from mbsym.report.simulation_words import conservation_json, error_json
+from mbsym.report.simulation_words import conservation_json, error_json, laws_json
 from mbsym.simulation import Simulation
 from mbsym.simulation.choosing import may_change
 from mbsym.source.meaning import meaning
@@ -60,6 +60,7 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         "between_steps": between_steps_json(found.passed),
         "step_limit": found.setting.step_limit,
         "parameters": {name: float(value) for name, value in scenario.parameters.items()},
+        **({"inputs": laws_json(scenario)} if scenario.inputs else {}),
         "initial": dict(zip([*system.coordinates, *system.velocities], state, strict=True)),
         "work": {name: getattr(found.work, name) for name in COUNTS},
         "files": list(files),

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.tree import text
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
 from mbsym.numerics.methods.interface import Change
+
+if TYPE_CHECKING:
+    from mbsym.numerics.scenario import Scenario
 
 
 def standing_words(found: Conservation) -> str:
@@ -153,3 +157,14 @@ def error_json(found: ErrorEstimate | NoEstimate) -> dict[str, Any]:
             for q in found.quantities
         },
     }
+
+
+def inputs_line(given: Scenario) -> str:
+    """``F = sin(3*t); w = 0 (held, as on the unperturbed motion)``: what every input is in a run."""
+    left = "" if all(one.asked for one in given.inputs) else " (held, as on the unperturbed motion)"
+    return "; ".join(f"{one.name} = {text(one.law)}{'' if one.asked else left}" for one in given.inputs)
+
+
+def laws_json(given: Scenario) -> dict[str, str]:
+    """What every input is in a run, as formulas."""
+    return {one.name: text(one.law) for one in given.inputs}

@@ -34,6 +34,7 @@ mbsym: 1
 name: dumbbell with a wheel
 parameters: {R: positive, omega0: positive, nu: positive, m: positive, l: positive, J: positive, c: positive}
 prescribed: {chi: omega0}
+inputs: {u: torque of the wheel}
 bodies:
   - {name: frame, attached to: 0, rotation: {axes: [3], angles: [-chi]},
      connection point: [R*sin(chi), R*cos(chi), 0], mass: 0}
@@ -44,6 +45,7 @@ bodies:
 loads:
   - newtonian gravity: {constant: nu, centre: 0, about: frame, order: 2}
   - potential: c*alpha**4
+  - generalized force: {psi: u}
 relations: {nu: omega0**2*R**3}
 motion: {alpha: 0, beta: 0, psi: 0}
 values: {R: 50, omega0: 1, m: 1, l: 1, J: 1/10, c: 1/100}
@@ -221,6 +223,7 @@ def estimated(asked: bool) -> Callable[[Done], bool]:
 
 ITEMS: dict[str, Item] = {
     "set": Item(("--set", "l=3/2"), value),
+    "input": Item(("--input", "u=0"), recorded("inputs", {"u": "0"}, "--input", "u=0")),
     "samples": Item(("--samples", "41"), samples),
     "every": Item(("--every", "0.04"), every),
     **{f"method {name}": method(name) for name in METHODS},

@@ -23,6 +23,7 @@ from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import constants
 from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.driven import held
 from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
 from mbsym.numerics.scenario import Incomplete, Scenario, scenario
@@ -71,7 +72,7 @@ class Work:
     def __init__(self, analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> None:
         self.analysis = analysis
         self.wanted = wanted
-        self.system = analysis.system
+        self.system = held(analysis.system)
         self._end = time.perf_counter() + seconds
 
     # --- numbers ---

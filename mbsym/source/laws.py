@@ -1,0 +1,60 @@
+"""Laws of inputs that are given outside of the description: ``u = sin(3*t)``, in its names and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from mbsym.expressions.parser import names_apart, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.tree import KINKED, Expression, number
+from mbsym.source.scope import Allowed, Scope
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+
+LAW = Allowed("the law of an input", ("coordinate", "velocity", "prescribed", "parameter", "time"), KINKED)
+
+
+def read_law(text: str, system: System, complaints: Complaints, place: Callable[[int, int], Span]) -> Expression | None:
+    """A formula in t, coordinates, velocities, parameters and tables of the description; None after a complaint."""
+    scope = _scope(system, complaints)
+    before = len(complaints.items)
+    tree = parse_expression(text, complaints, place, True, tables=scope.tables)
+    for one in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
+        scope.check(one, LAW)
+    return tree if len(complaints.items) == before else None
+
+
+def read_laws(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+    """Laws of inputs by name as expressions in t, coordinates, velocities, parameters and tables of the description.
+
+    Raises ValueError with everything that is wrong.
+    """
+    found: dict[str, Expression] = {}
+    wrong = [f"there is no input called {name}" for name in given if name not in system.input_names]
+    for name, value in given.items():
+        complaints = Complaints()
+        if isinstance(value, str):
+            law = read_law(value, system, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+            wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
+            if law is not None:
+                found[name] = law
+        elif not isinstance(value, (int, float, Fraction)):
+            found[name] = value
+        elif isfinite(value):
+            found[name] = number(Fraction(value))
+        else:
+            wrong.append(f"{name} = {value} is no number")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    return found
+
+
+def _scope(system: System, complaints: Complaints) -> Scope:
+    kinds = dict.fromkeys(system.parameter_names, "parameter") | dict.fromkeys(system.coordinates, "coordinate")
+    kinds |= {item.name: "prescribed" for item in system.prescribed}
+    kinds |= {item.name: "notation" for item in system.notation} | dict.fromkeys(system.input_names, "input")
+    return Scope(complaints, kinds, tables={table.name: table for table in system.tables})
