@@ -26,6 +26,9 @@ NARROW, BESIDE = 1 / 6, 8.0
 #: steps in which u rises by WALL.
 SMALL, WALL = 36.0, 4.0
 
+#: A dip of 1/u within a step goes to less than this part of |u| at its ends.
+SHALLOW = 0.3
+
 #: A piece is halved so often to resolve a u.
 DEPTH = 4
 
@@ -69,7 +72,10 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
     """(time, width) of what a function of u does narrowly, u given at Chebyshev's points from start to end."""
     if not np.all(np.isfinite(values)):
         return []
-    polynomial = np.polynomial.chebyshev.Chebyshev(series(values))
+    coefficients = series(values)
+    if _is_far(kind, float(coefficients[0]), float(np.sum(np.abs(coefficients[1:])))):
+        return []
+    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients)
     per = 2.0 / (end - start)  # ds/dt
     slope, bend = polynomial.deriv(), polynomial.deriv(2)
     if kind == TURN:
@@ -86,7 +92,7 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
         time = start + 0.5 * (float(s) + 1) * (end - start)
         if kind == PEAK and curvature < 0 and u > -SMALL and u - max(_others(values, s)) > 1:
             found.append((time, (2.0 / -curvature) ** 0.5))
-        if kind == DIP and u * curvature > 0 and abs(u) < 0.3 * min(map(abs, _others(values, s))):
+        if kind == DIP and u * curvature > 0 and abs(u) < SHALLOW * min(map(abs, _others(values, s))):
             found.append((time, (2.0 * u / curvature) ** 0.5))
     if kind == PEAK and not found and values[0] < -SMALL:  # a wall
         passed, _, _ = passages(series(values + SMALL), Sign(), 1e-14)
@@ -95,6 +101,17 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
                 width = WALL / max(abs(float(slope(one.place))) * per, 1e-300)
                 found.append((start + 0.5 * (one.place + 1) * (end - start) + BESIDE * width, width))
     return [(float(time), float(width)) for time, width in found]
+
+
+def _is_far(kind: str, middle: float, most: float) -> bool:
+    """Whether a series c_0 + ..., the rest of which is at most ``most``, cannot do what ``_places`` looks for.
+
+    Nearly every step is of that kind, and a bound costs a hundredth of the roots of a polynomial.
+    """
+    most *= 1 + 1e-9  # rounding
+    if kind == PEAK:
+        return middle + most < -SMALL
+    return abs(middle) > most if kind == TURN else abs(middle) - most > SHALLOW * (abs(middle) + most)
 
 
 def _others(values: Any, s: float) -> list[float]:
