@@ -148,6 +148,7 @@ def _rest_line(found: Reduced) -> str:
 def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path]) -> str:
     """What happened, when, and in which state."""
     from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK, UNDEFINED
+    from mbsym.numerics.methods.sides import OUTSIDE, SWITCHING
 
     names = [*found.system.coordinates, *found.system.velocities]
     system, time = found.system, pretty(time_unit(found.system))
@@ -168,6 +169,8 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         ),
         STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
         UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",
+        OUTSIDE: "choose a shorter --time, give more points, or say how the table goes on, as 'outside: hold'",
+        SWITCHING: "a force that jumps leads back to its jump from both sides: a smooth one, as tanh, goes through it",
         STUCK: "a larger --tolerance may pass; look for a singularity of forces at this state",
     }
     samples, where = counted(found.samples, "sample", "samples"), printable(paths[0].parent)

@@ -162,6 +162,23 @@ def written_out(table: Table, x: Expression, whole: bool = True) -> Expression:
     return total
 
 
+def slope_written_out(curve: Curve, x: Expression) -> Expression:
+    """A derivative by its pieces, each times a pulse that is 1 on it: at a knot the mean of both."""
+    knots = [_exact(knot) for knot in curve.knots]
+    pulses = [
+        subtract(ONE, Call("step", subtract(x, knots[0]))),
+        *(Call("pulse", x, more=pair) for pair in pairwise(knots)),
+        Call("step", subtract(x, knots[-1])),
+    ]
+    total: Expression = ZERO
+    for pulse, base, polynomial in zip(pulses, curve.bases, curve.polynomials, strict=True):
+        own: Expression = ZERO
+        for coefficient in reversed(polynomial):
+            own = add(_exact(coefficient), multiply(subtract(x, _exact(base)), own))
+        total = add(total, multiply(own, pulse))
+    return total
+
+
 def without_tables(expression: Expression, chosen: Callable[[Call], bool]) -> Expression:
     """The expression with the chosen calls of tables written out."""
     match expression:

@@ -8,26 +8,22 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.table import Tabulated
-from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, differentiate, written_out
+from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, slope_written_out, written_out
 
 
 class WithoutTables(Program):
     """A program in which f(x) of a table is a sum over its knots; see ``written_out``."""
 
     def function(self, name: str, x: Node) -> Node:
-        """Raises NoClosedForm for a table of many points, and for slopes that jump twice."""
+        """Raises NoClosedForm for a table of many points."""
         if not isinstance(name, Tabulated) or name.curve.constant is not None:
             return super().function(name, x)
         table, count = name.table, len(name.table.points)
         if count > MOST_WRITTEN_OUT:
             reason = f"the table {table.name} has {count} points: there it is written out by moduli, up to"
             raise NoClosedForm(f"{reason} {MOST_WRITTEN_OUT}")
-        expression = written_out(table, Name("x"), whole=False)
-        try:
-            for _ in range(name.curve.order):
-                expression = differentiate(expression, "x")
-        except ValueError:
-            raise NoClosedForm(f"a second derivative of the table {table.name}, which jumps") from None
+        at = Name("x")
+        expression = slope_written_out(name.curve, at) if name.curve.order else written_out(table, at, whole=False)
         return Lowering(self, {"x": x})(expression)
 
 

@@ -11,11 +11,10 @@ two models can be parts of one program.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect
@@ -26,7 +25,9 @@ from mbsym.numerics.scenario import exact
 from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value
 from mbsym.report.identifiers import prefix_of
+from mbsym.report.lookups import c_definition, identifier
 from mbsym.report.model_code import solved
+from mbsym.report.numbers import number
 from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
@@ -62,22 +63,10 @@ DECLARED = """
 FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian")
 
 
-def number(value: Fraction) -> str:
-    """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short.
-
-    Raises NoClosedForm beyond the range of double.
-    """
-    try:
-        shown = repr(float(value))
-    except OverflowError:
-        raise NoClosedForm("a number in it is beyond 1.8e308, where double ends", limit=Limit.DIGITS) from None
-    if Fraction(shown) == value or max(abs(value.numerator), value.denominator) > 10**6:
-        return shown
-    return f"{value.numerator}.0/{value.denominator}.0"
-
-
 def call(function: str, argument: str) -> str:
-    """A function of C's library, or what stands for it."""
+    """A function of C's library, or what stands for it; a table's own."""
+    if isinstance(function, Tabulated):
+        return f"{identifier(function)}({argument})"
     if function == "sign":
         return f"(({argument}) > 0.0 ? 1.0 : ({argument}) < 0.0 ? -1.0 : 0.0)"
     return f"{'fabs' if function == 'abs' else function}({argument})"
@@ -88,6 +77,7 @@ DIALECT = Dialect(
     local=lambda count: f"s{count}",
     number=number,
     angle=lambda function, name: f"{function}_{name}",
+    tables=True,
 )
 
 
@@ -151,6 +141,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         functions=functions,
         upper=upper,
         entries=entries,
+        lookups=[c_definition(table) for table in writer.tables],
     )
 
 

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Node, Program
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import Prescribed, System
+from mbsym.report.lookups import identifiers
 
 
 @dataclass(frozen=True)
@@ -52,12 +54,19 @@ class Functions:
         self, system: System, dialect: Dialect, reserved: Collection[str], propose: Callable[[str], str], pi: str
     ) -> None:
         self.system, self.dialect, self.reserved = system, dialect, frozenset(reserved) | words_of_inputs(system)
+        if dialect.tables:
+            self.reserved |= identifiers(system)
+        self.tables: dict[Tabulated, None] = {}  # that are called
         names = [*system.coordinates, *system.velocities, *system.parameter_names]
         names += [*(item.name for item in system.prescribed), *system.input_names]
         self.names = injective(names, propose, taken=self.reserved) | {"t": "t", "pi": pi}
 
     def function(self, program: Program, outputs: Iterable[Node]) -> Function:
         """A body for the outputs, prescribed quantities computed from the time first."""
+        outputs = list(outputs)
+        if self.dialect.tables:
+            called = (program.instructions[number].operation for number in program.live(outputs))
+            self.tables |= {name: None for name in called if isinstance(name, Tabulated)}
         body = listing(program, outputs, self.names, self.dialect, self.reserved)
         driven = self._prescribed(set(body.inputs), {name for name, _ in body.assignments})
         used = {*body.inputs, *driven.inputs}

@@ -11,8 +11,8 @@ from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.model.quantities import marked
 from mbsym.model.system import System
 from mbsym.numerics.scenario import exact
-from mbsym.report.c_source import number
 from mbsym.report.functions import Functions
+from mbsym.report.numbers import number
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.program import Program
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.mechanics.programs import Programs, generalized_energy
@@ -27,6 +28,7 @@ from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.identifiers import prefix_of
+from mbsym.report.lookups import identifier, python_definition
 from mbsym.report.model_code import Solved, first_integrals, solved
 from mbsym.report.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.programs import programs_of
@@ -45,10 +47,17 @@ RESERVED = {
 
 _NUMPY = {"atan": "arctan"}
 _WORD = re.compile("[a-z]+")
+
+
+def _called(function: str) -> str:
+    return identifier(function) if isinstance(function, Tabulated) else f"np.{_NUMPY.get(function, function)}"
+
+
 DIALECT = Dialect(
-    call=lambda function, argument: f"np.{_NUMPY.get(function, function)}({argument})",
+    call=lambda function, argument: f"{_called(function)}({argument})",
     local=lambda count: f"s{count}",
     angle=lambda function, name: f"{function}_{name}",
+    tables=True,
 )
 
 
@@ -101,6 +110,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         gains=gains,
         held=writer.held(),
         input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
+        lookups=[python_definition(table, "np", typed=True) for table in writer.tables],
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
 

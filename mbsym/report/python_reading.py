@@ -166,6 +166,8 @@ def _constant(node: ast.expr) -> object:
             return [_constant(item) for item in values]
         case ast.Attribute(value=ast.Name(id="np"), attr="pi"):
             return math.pi
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="np"), attr="array"), args=[items], keywords=[]):
+            return _constant(items)
     return _number(node)
 
 

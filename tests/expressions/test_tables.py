@@ -17,8 +17,8 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Program
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.table import CUBIC, HOLD, LINEAR, OUTSIDE_ZERO, Table, pieces
-from mbsym.expressions.tree import Call, Name, differentiate, substitute, text
+from mbsym.expressions.table import CUBIC, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO, Table, pieces
+from mbsym.expressions.tree import Call, Name, differentiate, slope_written_out, substitute, text, written_out
 from mbsym.numerics.kernels import arrays, llvm
 from mbsym.numerics.kernels.interface import Code
 
@@ -124,3 +124,25 @@ def test_a_table_that_is_not_there_is_no_function() -> None:
         parse_expression("torke(t)", complaints, place, tables={"torque": Table("torque", ((F(0), F(0)),) * 2)}) is None
     )
     assert [item.hint for item in complaints] == ["did you mean 'torque'?"]
+
+
+@given(
+    table=st.builds(
+        lambda own, between, outside: Table("f", tuple(own), between, outside),
+        points, st.sampled_from((LINEAR, CUBIC)), st.sampled_from((HOLD, EXTRAPOLATE)),
+    ),
+    x=numbers,
+    exactly=st.integers(0, 11),
+    order=st.integers(0, 3),
+)  # fmt: skip
+@some
+def test_tables_written_out_are_the_same(table: Table, x: Fraction, exactly: int, order: int) -> None:
+    """Moduli for the values, pulses for derivatives: exactly what the search for the piece gives, knots included."""
+    curve = table.curve
+    for _ in range(order):
+        curve = curve.derivative
+    for at in (x, table.points[exactly % len(table.points)][0]):
+        written = slope_written_out(curve, Name("x")) if order else written_out(table, Name("x"))
+        found = Lowering(Rationals({}, {}), {"x": fmpq(at.numerator, at.denominator)})(written)
+        wanted = curve(at)
+        assert found == fmpq(wanted.numerator, wanted.denominator)

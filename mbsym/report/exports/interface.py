@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import text
 from mbsym.formulas.straight_line import Dialect
 from mbsym.model.quantities import told_units
@@ -77,6 +78,7 @@ class Export:
     integrals: tuple[NamedIntegral, ...]
     lacking: tuple[str, ...]
     names: dict[str, str] = field(compare=False)
+    tables: tuple[Tabulated, ...] = ()
 
     @property
     def type_name(self) -> str:
@@ -141,6 +143,7 @@ def export(
         integrals=first_integrals(analysis, problems).named,
         lacking=lacking,
         names=writer.names,
+        tables=tuple(writer.tables),
     )
 
 

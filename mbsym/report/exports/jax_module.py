@@ -10,7 +10,7 @@ from mbsym.report.exports import python_functions
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
-LANGUAGE = python_functions.language("jnp", lambda function: {"atan": "arctan"}.get(function, function))
+LANGUAGE = python_functions.language("jnp", lambda function: {"atan": "arctan"}.get(function, function), tables=True)
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:

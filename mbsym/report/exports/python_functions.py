@@ -7,10 +7,12 @@ import keyword
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.table import Tabulated
 from mbsym.formulas.straight_line import Dialect
-from mbsym.report.c_source import number
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
+from mbsym.report.lookups import identifier, python_definition
+from mbsym.report.numbers import number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -21,20 +23,25 @@ RESERVED = COMMON | {
 }  # fmt: skip
 
 
-def language(module: str, called: Callable[[str], str]) -> Language:
-    """Python with the functions of ``module``, there ``called`` differently than here."""
+def language(module: str, called: Callable[[str], str], tables: bool = False) -> Language:
+    """Python with the functions of ``module``, there ``called`` differently than here; ``tables``: it can search."""
     dialect = Dialect(
-        call=lambda function, argument: f"{module}.{called(function)}({argument})",
+        call=lambda function, argument: (
+            f"{identifier(function) if isinstance(function, Tabulated) else f'{module}.{called(function)}'}({argument})"
+        ),
         local=lambda count: f"s{count}",
         number=number,
         angle=lambda function, name: f"{function}_{name}",
+        tables=tables,
     )
     return Language(dialect, RESERVED, lambda name: name + "_" if name in RESERVED else name)
 
 
 def render(template: str, spoken: Language, analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
-    return rendered(template, {"plain": plain}, model=export(analysis, problems, spoken))
+    model = export(analysis, problems, spoken)
+    lookups = [python_definition(table, "jnp", typed=False) for table in model.tables]
+    return rendered(template, {"plain": plain}, model=model, lookups=lookups)
 
 
 def plain(words: str) -> str:
