@@ -238,5 +238,15 @@ class Jets(Algebra):
         return self._series(x, values[0], values[1], ring.times(half, values[2]))
 
 
+class FirstOrderJets(Jets):
+    """Jets whose second-order parts are dropped: f(a + u) = f(a) + f'(a) u."""
+
+    def times(self, a: Jet, b: Jet) -> Jet:
+        first: First = {}
+        _accumulate(self.ring, first, a.first, b.value)
+        _accumulate(self.ring, first, b.first, a.value)
+        return Jet(self.ring.times(a.value, b.value), first)
+
+
 def _small(x: Jet) -> Jet:
     return Jet(x.value * 0, x.first, x.second)

@@ -9,6 +9,8 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.tree import Call, Expression, Name, children
+from mbsym.formulas.formula import Column, column
+from mbsym.mechanics import newton_euler
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import turning
 from mbsym.mechanics.rotation_orders import rotation_orders
@@ -19,6 +21,7 @@ from mbsym.problems.linearisation import Linearisation
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.formulas.formula import Matrix
+    from mbsym.problems.reduction import Reduced
 
 
 #: A hint lists so many coordinates; of more it shows one.
@@ -27,6 +30,32 @@ MOST_LISTED = 12
 
 def expanded(analysis: Analysis) -> Scene:
     """The system over second-order jets about the unperturbed motion.  Raises Unavailable where none is given."""
+    _demand_motion(analysis)
+    return linearisation.quadratised(analysis.parameters_scene, analysis.system)
+
+
+def reduced(analysis: Analysis) -> Reduced:
+    """A constrained system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
+    from mbsym.mechanics.constraints.expansion import expansion
+    from mbsym.mechanics.constraints.perturbed import projected
+    from mbsym.problems.reduction import Reduced, reduction
+
+    _demand_motion(analysis)
+    scene = analysis.parameters_scene
+    found = expansion(scene, analysis.signs, analysis.system)
+    equations = projected(scene, found)
+    return Reduced(found, equations, reduction(scene, found, equations))
+
+
+def residuals(analysis: Analysis) -> Column:
+    """-f of every equation of motion on the unperturbed motion, and what constraints demand of it before these."""
+    ring = analysis.ring
+    if analysis.system.constraints:
+        return column(ring, analysis.reduced.residuals)
+    return column(ring, [-x.value for x in newton_euler.residuals(analysis.expanded).values()])
+
+
+def _demand_motion(analysis: Analysis) -> None:
     if not analysis.system.motion:
         names = analysis.system.coordinates
         listed = names if len(names) <= MOST_LISTED else names[:1]
@@ -35,7 +64,6 @@ def expanded(analysis: Analysis) -> Scene:
             hint += "; what is left out is 0 at rest"
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
-    return linearisation.quadratised(analysis.parameters_scene, analysis.system)
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:
@@ -52,6 +80,10 @@ def first_approximation(analysis: Analysis) -> Linearisation:
         reason = f"on the given motion the equations still vary with {varying}"
         hint = steady_order(analysis) or "it is no steady motion in these coordinates"
         raise Unavailable("motion", NoResult(reason, hint, "not steady", "not-steady"))
+    if analysis.system.constraints:
+        from mbsym.problems.reduction import by_projection
+
+        return by_projection(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
     return linearisation.by_quadratisation(analysis.parameters_scene, analysis.expanded, analysis.equilibrium)
 
 

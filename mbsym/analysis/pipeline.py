@@ -19,10 +19,9 @@ from mbsym.algebra.signs import Signs
 from mbsym.analysis import approximation, conserved, judging, second_routes
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
-from mbsym.formulas.formula import Column, column
+from mbsym.formulas.formula import Column
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.states import Oracles
@@ -56,6 +55,7 @@ from mbsym.problems.telling import ToldSystem, told_system
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.equilibria import Equilibria
+    from mbsym.problems.reduction import Reduced
 
 T = TypeVar("T")
 
@@ -65,7 +65,10 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 
 
 #: The stages that know constraints, or hold whether there are any or not.
-KNOW_CONSTRAINTS = frozenset(("scene", "parameters_scene", "signs", "kinematics", "claims", "checks"))
+KNOW_CONSTRAINTS = frozenset(
+    ("scene", "parameters_scene", "signs", "kinematics", "claims", "checks", "reduced", "residuals", "equilibrium")
+    + ("first_approximation", "linearisation")
+)
 
 #: The stages that know speeds, or hold whether there are any or not.
 KNOW_SPEEDS = frozenset(
@@ -216,14 +219,15 @@ class Analysis(Stages):
         lambda a: a._equations(),
         ("equations of motion",),
     )
-    residuals = Derived["Analysis", Column](
-        lambda a: column(a.ring, [-x.value for x in residuals(a.expanded).values()])
-    )
+    reduced = Derived["Analysis", "Reduced"](approximation.reduced)
+    residuals = Derived["Analysis", Column](approximation.residuals)
     equilibrium = Problem[Equilibrium](
         4,
         "equilibrium conditions",
         equilibrium,
-        lambda a: equilibrium.equilibrium(a.parameters_scene, [x.polynomial for x in a.residuals], a.signs),
+        lambda a: equilibrium.equilibrium(
+            a.parameters_scene, [x.polynomial for x in a.residuals], a.signs, on_motion=bool(a.system.constraints)
+        ),
         ("equilibrium",),
         says=True,
     )

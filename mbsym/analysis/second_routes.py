@@ -110,6 +110,11 @@ def _equilibrium(analysis: Analysis) -> Check | None:
         return None
     if closed is not None:
         return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
+    if analysis.system.constraints:
+        from mbsym.problems.reduction_check import check_reduced_motion
+
+        about = analysis.reduced.about
+        return check_reduced_motion(analysis.system, analysis.ring, found.residuals, about, dependent(analysis))
     return perturbation.check_motion(analysis.system, analysis.ring, found.residuals, dependent(analysis))
 
 
@@ -124,6 +129,10 @@ def _perturbed(analysis: Analysis) -> Check | None:
     linear = analysis.optional("linearisation")
     if linear is None:
         return None
+    if linear.constrained is not None:
+        from mbsym.problems.reduction_check import check_reduced_perturbation
+
+        return check_reduced_perturbation(analysis.system, analysis.ring, linear, dependent(analysis))
     return perturbation.check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis))
 
 

@@ -56,13 +56,16 @@ class Equilibrium(Shown):
         return determined(scene, ((name, value.polynomial) for name, value in self.solved))
 
 
-def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs) -> Equilibrium:
+def equilibrium(
+    scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_motion: bool = False
+) -> Equilibrium:
     """Conditions for the motion, from the residuals f_i at q'' = 0 (scene over the ring).
 
-    ``residuals`` may be the forcing of the nonlinear equations or values already on the motion.
+    ``residuals`` may be the forcing of the nonlinear equations or values already on the motion; with ``on_motion`` they
+    are such values, and what they hold of coordinates still moves there.
     """
     ring = scene.ring
-    at = unperturbed_with(scene, relations(scene))
+    at = relations(scene) if on_motion else unperturbed_with(scene, relations(scene))
     values = [ring.substitute(x, at) for x in residuals]
     varying = tuple(dict.fromkeys(name for x in values for name in unsteady(scene, x)))
     pending = [condition for x in values if (condition := essential(scene, x, signs)) is not None]

@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.elimination import Definition, combination
 from mbsym.algebra.jet import Jet, Jets
@@ -48,6 +49,9 @@ from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
+
+if TYPE_CHECKING:
+    from mbsym.problems.reduction import Reduction
 
 Rows = list[list[Polynomial]]
 
@@ -94,7 +98,8 @@ class Linearisation(Shown):
     the coefficients that are not constant: with any of them the first approximation is time-dependent, and no theorem
     about constant coefficients (Lagrange, Kelvin-Chetaev, eigenvalues) says anything about it.
 
-    ``B`` (n x m, in physical time) belongs to the m ``inputs``; None where there are none.
+    ``B`` (n x m, in physical time) belongs to the m ``inputs``; None where there are none.  Of a constrained system the
+    ``coordinates`` are the independent ones, and ``constrained`` says what became of the others.
     """
 
     coordinates: tuple[str, ...]
@@ -109,6 +114,7 @@ class Linearisation(Shown):
     varying: tuple[Varying, ...] = ()
     inputs: tuple[str, ...] = ()
     B: Matrix | None = None
+    constrained: Reduction | None = None
 
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
@@ -158,7 +164,7 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
             position[i][j] = position[i][j] - force.first.get(j, ring.zero)
             velocity[i][j] = velocity[i][j] - force.first.get(n + j, ring.zero)
     parts = (mass, velocity, position, gains)
-    return _assemble(scene, equilibrium, parts, "quadratised Lagrangian", inputs)
+    return assemble(scene, equilibrium, parts, "quadratised Lagrangian", inputs)
 
 
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
@@ -174,7 +180,7 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     position = [[-ring.substitute(ring.derivative(f, name), at) for name in names] for f in forcing]
     inputs = scene.system.input_names
     gains = [[ring.substitute(ring.derivative(f, name), at) for name in inputs] for f in forcing]
-    return _assemble(scene, equilibrium, (mass, velocity, position, gains), "linearised equations", inputs)
+    return assemble(scene, equilibrium, (mass, velocity, position, gains), "linearised equations", inputs)
 
 
 def quadratised(scene: Scene, whole: System | None = None) -> Scene:
@@ -209,10 +215,18 @@ def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
     return value * 2 if i == j else value
 
 
-def _assemble(
-    scene: Scene, equilibrium: Equilibrium | None, whole: Sequence[Rows], route: str, inputs: tuple[str, ...]
+def assemble(
+    scene: Scene,
+    equilibrium: Equilibrium | None,
+    whole: Sequence[Rows],
+    route: str,
+    inputs: tuple[str, ...],
+    coordinates: tuple[str, ...] | None = None,
 ) -> Linearisation:
-    """Relations and conditions of existence used, then the split into symmetric and skew parts."""
+    """The matrices of  M x'' + C x' + S x = B u  made a result: ``whole`` is M, C, S, B, by ``coordinates``.
+
+    Relations and conditions of existence are used, then C and S are split into symmetric and skew parts.
+    """
     ring = scene.ring
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
     parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in whole]
@@ -220,7 +234,7 @@ def _assemble(
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
     result = Linearisation(
-        coordinates=scene.system.coordinates,
+        coordinates=coordinates or scene.system.coordinates,
         M=Matrix.of(ring, parts[0]),
         D=Matrix.of(ring, symmetric_part(ring, parts[1])),
         G=Matrix.of(ring, skew_part(ring, parts[1])),

@@ -50,7 +50,7 @@ class Dependent:
 def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
     """Problem 5 against the disturbed derivation, at random parameter values."""
     routes = ("matrices of the first approximation", f"{D_ALEMBERT}, disturbed")
-    exact = _has_rational_states(system, ring, dependent)
+    exact = has_rational_states(system, ring, dependent)
     return decide("perturbed motion", routes, exact, lambda balls: _pairs(system, ring, linear, dependent, balls))
 
 
@@ -60,10 +60,10 @@ def check_motion(system: System, ring: Ring, residuals: Sequence[Formula], depen
     ``residuals`` are the forcing f_i there; d'Alembert's principle gives M q'' - f with q'' = 0.
     """
     routes = ("Newton-Euler recursion on the motion", D_ALEMBERT)
-    exact = _has_rational_states(system, ring, dependent)
+    exact = has_rational_states(system, ring, dependent)
 
     def pairs(balls: bool) -> list[Pair]:
-        state = _unperturbed_state(system, ring, dependent, balls)
+        state = unperturbed_state(system, ring, dependent, balls)
         carry = Carrier(ring, state.numbers, state.values)
         needed = Oracle(system, state).residuals
         names = system.coordinates
@@ -75,23 +75,36 @@ def check_motion(system: System, ring: Ring, residuals: Sequence[Formula], depen
 
 
 def _pairs(system: System, ring: Ring, linear: Linearisation, dependent: Dependent, balls: bool) -> list[Pair]:
-    state = _unperturbed_state(system, ring, dependent, balls)
+    state = unperturbed_state(system, ring, dependent, balls)
+    disturbed, direction, pushes = _disturbed(system, state)
+    residuals = {name: x.b for name, x in Oracle(system, disturbed).residuals.items()}
+    return matrix_pairs(ring, linear, dependent, state, direction, pushes, residuals)
+
+
+def matrix_pairs(
+    ring: Ring,
+    linear: Linearisation,
+    dependent: Dependent,
+    state: State,
+    direction: Sequence[Sequence[Scalar]],
+    pushes: Sequence[Scalar],
+    residuals: Mapping[str, Scalar],
+) -> list[Pair]:
+    """The matrices times a disturbance against the ``residuals`` that it causes, symmetries, and the subsystems."""
     carry = Carrier(ring, state.numbers, state.values)
     matrices = [[[carry(x) for x in row] for row in m.polynomials] for m in linear.matrices]
-    disturbed, direction, pushes = _disturbed(system, state)
     gains = [] if linear.B is None else [[carry(x) for x in row] for row in linear.B.polynomials]
-    residuals = Oracle(system, disturbed).residuals
     found: list[Pair] = []
     mass, damping, gyroscopic, stiffness, circulatory = matrices
-    n = len(system.coordinates)
-    for i, name in enumerate(system.coordinates):
+    n = len(linear.coordinates)
+    for i, name in enumerate(linear.coordinates):
         total = state.numbers.zero
         for j, (shift, speed, push) in enumerate(direction):
             total = total + mass[i][j] * push + (damping[i][j] + gyroscopic[i][j]) * speed
             total = total + (stiffness[i][j] + circulatory[i][j]) * shift
         for k, push in enumerate(pushes):
             total = total - gains[i][k] * push
-        found.append((f"equation {name}", total, residuals[name].b))
+        found.append((f"equation {name}", total, residuals[name]))
     for symbol, matrix in zip("MDGKN", matrices, strict=True):
         for i in range(n):
             for j in range(i + 1):
@@ -125,7 +138,7 @@ def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
     return motion | {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
 
 
-def _has_rational_states(system: System, ring: Ring, dependent: Dependent) -> bool:
+def has_rational_states(system: System, ring: Ring, dependent: Dependent) -> bool:
     """Whether all sines can be rational: no coordinate rests elsewhere, no angle is determined by others."""
     at_zero = all(value == ZERO for value, _ in _given_motion(system).values())
     at_zero = at_zero and not any(one.name in ring.angles for one in system.inputs)
@@ -141,7 +154,10 @@ def _at_rest(
     return [name for name, (_, rate) in motion.items() if ring.substitute(lower(rate), images).is_zero()]
 
 
-def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool) -> State:
+def unperturbed_state(
+    system: System, ring: Ring, dependent: Dependent, balls: bool, turning: Sequence[str] = ()
+) -> State:
+    """The motion at random values of the parameters; ``turning`` coordinates turn although none says how fast."""
     source = random.Random(SEED)
     kind: Any = arb if balls else fmpq
     values: dict[str, Scalar] = {
@@ -151,7 +167,7 @@ def _unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: 
     values["pi"] = arb.pi() if balls else fmpq(355, 113)
     motion = _given_motion(system)
     tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
-    at_rest = _at_rest(system, ring, motion, dependent)
+    at_rest = [name for name in _at_rest(system, ring, motion, dependent) if name not in turning]
     numbers: Algebra
     if balls:
         numbers = Balls(values)  # reads the values below as they are filled in

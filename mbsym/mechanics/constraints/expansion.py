@@ -1,0 +1,270 @@
+"""A constrained system near its unperturbed motion, to first order; the dependent quantities are not solved for.
+
+With the rows f(q, t) = 0 and J q' + j = 0 and deviations x, nu, alpha of q, q', q'' from the motion (n each),
+
+    0 = f + f_x x,      0 = g + g_x x + J nu,      0 = h + h_x x + h_nu nu + J alpha,
+
+where h = d(J q' + j)/dt and J = J_0 + J_x x.  Each line is brought to echelon form on the motion: it gives the
+dependent deviations as linear functions of the independent ones, x = P y, and the basis of the null space of J,
+
+    Y = Y_0 + Y_x x,    Y_0 = (1, W),    J_0 Y_x + J_x Y_0 = 0,
+
+although no equation of the constraints is ever solved (the pitch of a bicycle is a root of a quartic, its expansion
+is 0 + 0 roll + 0 steer + ...).  Velocities of the motion that the description leaves out follow from the constraints
+where they are dependent (the wheel at the front turns, and the place on the ground changes, as the one at the rear
+rolls), and so do accelerations.
+
+Which quantities are dependent: those that the description names (``dependent``), else those whose motion it leaves
+out, else the later ones; always such that no pivot of the elimination can vanish, if there is such a choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.jet import FirstOrderJets, Jet
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import Signs
+from mbsym.mechanics.constraints.elimination import Column, Row, echelon
+from mbsym.mechanics.constraints.rows import constraint_rows
+from mbsym.mechanics.constraints.rows import Row as ConstraintRow
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import motion_values, relations
+from mbsym.model.system import System, acceleration_name, velocity_name
+
+#: A linear form in deviations: polynomials by the number of the deviation.
+Form = dict[int, Polynomial]
+
+#: How often the rates of a motion are completed before it is given up: each time one more coordinate turns.
+MOST_ROUNDS = 64
+
+
+@dataclass(frozen=True)
+class Base:
+    """The unperturbed motion: where coordinates rest, who turns, and all rates and accelerations (n each)."""
+
+    values: tuple[Polynomial, ...]
+    turning: frozenset[str]
+    rates: tuple[Polynomial, ...]
+    accelerations: tuple[Polynomial, ...]
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """``scene`` is the system over jets; deviations x_i, nu_i, alpha_i are numbered i, n + i, 2n + i.
+
+    ``coordinates`` and ``speeds`` are the places of the independent ones.  ``positions[i]`` is x_i in the independent
+    x; ``velocities[i]`` nu_i and ``accelerations[i]`` alpha_i in the independent x, nu and alpha; ``null_space[i][k]``
+    is entry (i, k) of Y_0 and ``slopes[i][k]`` of Y_x, a form in the independent x.  ``conditions`` have to vanish if
+    there is to be such a motion; ``assumed`` are polynomials that must not vanish; ``lost`` says whether J has a lower
+    rank on the motion than nearby, where nothing of this means anything.
+    """
+
+    scene: Scene
+    base: Base
+    coordinates: tuple[int, ...]
+    speeds: tuple[int, ...]
+    positions: tuple[Form, ...]
+    velocities: tuple[Form, ...]
+    accelerations: tuple[Form, ...]
+    null_space: tuple[tuple[Polynomial, ...], ...]
+    slopes: tuple[tuple[Form, ...], ...]
+    conditions: tuple[Polynomial, ...]
+    assumed: tuple[Polynomial, ...]
+    lost: bool
+
+
+def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expansion:
+    """The expansion about the motion that the description gives (``scene`` over the ring, bodies not needed).
+
+    With ``whole``, the system whose inputs ``scene`` holds at their values, these deviate, too.  Raises NoClosedForm or
+    SingularPoint.
+    """
+    base = _completed(scene, signs)
+    jets = over_jets(scene, base, whole)
+    rows = constraint_rows(jets)
+    n = len(scene.system.coordinates)
+    ring = scene.ring
+    held = echelon(ring, signs, _positions(scene, rows), _preferred(scene))
+    moved = echelon(ring, signs, _velocities(scene, rows), [*held.pivots, *_preferred(scene)])
+    coordinates = tuple(i for i in range(n) if i not in held.pivots)
+    speeds = tuple(i for i in range(n) if i not in moved.pivots)
+
+    positions: list[Form] = [{i: ring.one} for i in range(n)]
+    for pivot, row in held.pivots.items():
+        assert isinstance(pivot, int)
+        positions[pivot] = {i: -x for i in coordinates if (x := row.get(i)) is not None}
+    velocities: list[Form] = [{n + i: ring.one} for i in range(n)]
+    for pivot, row in moved.pivots.items():
+        own = {n + k: -x for k in speeds if (x := row.get(k)) is not None}
+        velocities[pivot] = _sum(scene, own, _negative(_substituted(scene, row, "g", range(n), positions)))
+    accelerations: list[Form] = [{2 * n + i: ring.one} for i in range(n)]
+    for pivot, row in moved.pivots.items():
+        own = {2 * n + k: -x for k in speeds if (x := row.get(k)) is not None}
+        by_place = _substituted(scene, row, "h", range(n), positions)
+        by_speed = _substituted(scene, row, "h", range(n, 2 * n), [*([{}] * n), *velocities])
+        accelerations[pivot] = _sum(scene, own, _negative(_sum(scene, by_place, by_speed)))
+
+    null_space = [[ring.one if i == k else ring.zero for k in speeds] for i in range(n)]
+    for pivot, row in moved.pivots.items():
+        null_space[pivot] = [-row.get(k, ring.zero) for k in speeds]
+    slopes: list[tuple[Form, ...]] = [tuple({} for _ in speeds) for _ in range(n)]
+    for pivot, row in moved.pivots.items():
+        slopes[pivot] = tuple(_negative(_bent(scene, row, k, null_space, positions)) for k in range(len(speeds)))
+    lost = any(_bent(scene, row, k, null_space, positions) for row in moved.rest for k in range(len(speeds)))
+
+    conditions = [row["f"] for row in (*held.pivots.values(), *held.rest) if "f" in row]
+    conditions += [row[key] for row in (*moved.pivots.values(), *moved.rest) for key in ("g", "h") if key in row]
+    return Expansion(
+        scene=jets,
+        base=base,
+        coordinates=coordinates,
+        speeds=speeds,
+        positions=tuple(positions),
+        velocities=tuple(velocities),
+        accelerations=tuple(accelerations),
+        null_space=tuple(map(tuple, null_space)),
+        slopes=tuple(slopes),
+        conditions=tuple(conditions),
+        assumed=(*held.assumed, *moved.assumed),
+        lost=lost,
+    )
+
+
+def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
+    """The system over first-order jets about a motion; deviations x_i, nu_i, alpha_i are i, n + i, 2n + i.
+
+    That of input k of the ``whole`` is 3n + k.
+    """
+    ring, system = scene.ring, whole or scene.system
+    names, values = system.coordinates, motion_values(system)
+    n = len(names)
+    at_rest = {name: values[name][0] for name in names if name not in base.turning}
+    held = {one.name: scene.lower(one.held) for one in system.inputs}
+    lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()} | held
+    numbers = {name: i for i, name in enumerate(names)} | {name: 3 * n + k for k, name in enumerate(held)}
+    jets = FirstOrderJets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered)
+    environment = {name: Jet(value) for name, value in scene.environment.items()}
+    for i, name in enumerate(names):
+        environment[name] = jets.deviation(i, base.values[i])
+        environment[velocity_name(name)] = jets.deviation(n + i, base.rates[i])
+        environment[acceleration_name(name)] = jets.deviation(2 * n + i, base.accelerations[i])
+    for name, value in held.items():
+        environment[name] = jets.deviation(numbers[name], value)
+    return Scene(system, jets, environment, ring)
+
+
+def _completed(scene: Scene, signs: Signs) -> Base:
+    """The motion with the rates and accelerations that follow from the constraints where none are given."""
+    system, ring = scene.system, scene.ring
+    names, values = system.coordinates, motion_values(system)
+    given = {entry.coordinate for entry in system.motion}
+    open_ones = [i for i, name in enumerate(names) if name not in given]
+    rates = [scene.lower(values[name][1]) for name in names]
+    images = relations(scene)
+    turning = {name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()}
+    for _ in range(MOST_ROUNDS):
+        places = tuple(
+            scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names
+        )
+        still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names))
+        moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
+        found = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
+        if found <= turning:
+            return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))
+        turning |= found
+    raise NoClosedForm("the rates of the motion do not follow from the constraints")
+
+
+def _followed(
+    scene: Scene, signs: Signs, base: Base, values: Sequence[Polynomial], open_ones: Sequence[int], key: str
+) -> tuple[Polynomial, ...]:
+    """Rates ("g") or accelerations ("h") with the ``open_ones`` changed so that the rows hold, as far as they can."""
+    rows = constraint_rows(over_jets(scene, base))
+    reduced = echelon(scene.ring, signs, _velocities(scene, rows), _preferred(scene))
+    found = list(values)
+    for i in open_ones:
+        if i in reduced.pivots and key in reduced.pivots[i]:
+            found[i] = scene.ring.reduce(found[i] - reduced.pivots[i][key])
+    return tuple(found)
+
+
+def _preferred(scene: Scene) -> list[Column]:
+    """The places of the coordinates in the order in which they would rather be dependent."""
+    system = scene.system
+    given = {entry.coordinate for entry in system.motion}
+    names = list(system.coordinates)
+    order = [*system.dependent, *(name for name in names if name not in given), *reversed(names)]
+    return [names.index(name) for name in dict.fromkeys(order)]
+
+
+def _positions(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
+    """f and f_x of the holonomic rows; the columns are "f" and the places of the coordinates."""
+    n = len(scene.system.coordinates)
+    found: list[Row] = []
+    for row in rows:
+        if row.position is not None:
+            found.append(_related(scene, {"f": row.position.value} | _first(row.position, range(n))))
+    return found
+
+
+def _velocities(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
+    """J under the places of the coordinates; "g", "h" on the motion, ("g", i), ("h", i) by deviations, ("J", i, m)."""
+    n = len(scene.system.coordinates)
+    found: list[Row] = []
+    for row in rows:
+        line: Row = {"g": row.velocity.value, "h": row.acceleration.value}
+        line |= {("g", i): x for i, x in _first(row.velocity, range(n)).items()}
+        line |= {("h", i): x for i, x in _first(row.acceleration, range(2 * n)).items()}
+        for i, partial in enumerate(row.partials):
+            line[i] = partial.value
+            line |= {("J", i, m): x for m, x in _first(partial, range(n)).items()}
+        found.append(_related(scene, line))
+    return found
+
+
+def _first(x: Jet, places: range) -> dict[int, Polynomial]:
+    return {i: value for i, value in x.first.items() if i in places}
+
+
+def _related(scene: Scene, row: Row) -> Row:
+    """The row with the relations between parameters used."""
+    images = relations(scene)
+    return {key: scene.ring.substitute(x, images) for key, x in row.items()} if images else row
+
+
+def _substituted(scene: Scene, row: Row, key: str, places: range, forms: Sequence[Form]) -> Form:
+    """sum of row[key, i] times forms[i]."""
+    return combined(scene, ((row[key, i], forms[i]) for i in places if (key, i) in row))
+
+
+def _bent(
+    scene: Scene, row: Row, k: int, null_space: Sequence[Sequence[Polynomial]], positions: Sequence[Form]
+) -> Form:
+    """Entry k of (J_x Y_0) in one row."""
+    ring = scene.ring
+    by_place: Form = {}
+    for key, x in row.items():
+        if isinstance(key, tuple) and key[0] == "J" and not null_space[key[1]][k].is_zero():
+            by_place[key[2]] = by_place.get(key[2], ring.zero) + ring.times(x, null_space[key[1]][k])
+    return combined(scene, ((x, positions[m]) for m, x in by_place.items()))
+
+
+def combined(scene: Scene, terms: Iterable[tuple[Polynomial, Form]]) -> Form:
+    """The sum of factor times form, zeros left out."""
+    ring = scene.ring
+    total: Form = {}
+    for factor, form in terms:
+        for i, x in form.items():
+            total[i] = total.get(i, ring.zero) + ring.times(factor, x)
+    return {i: r for i, x in total.items() if not (r := ring.reduce(x)).is_zero()}
+
+
+def _sum(scene: Scene, first: Form, second: Form) -> Form:
+    return combined(scene, ((scene.ring.one, first), (scene.ring.one, second)))
+
+
+def _negative(form: Form) -> Form:
+    return {i: -x for i, x in form.items()}

@@ -1,0 +1,135 @@
+"""Problems 4 and 5 of constrained systems: the motion, and what remains of the coordinates in the first approximation.
+
+The motion exists where the constraints hold on it and the forces that they do not carry vanish,
+
+    f(q, t) = 0,    J q' + j = 0,    J q'' + (J' q' + j') = 0,    Y^T (M q'' - f) = 0    (J Y = 0),
+
+and its first approximation is that of the independent quantities (``mbsym.mechanics.constraints.perturbed``): dependent
+ones are expanded, not solved for.  Coordinates that no equation of the speeds feels drop out.
+
+Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapters III and V; A. V. Karapetyan,
+"On the problem of steady motions of nonholonomic systems", J. Appl. Math. Mech. 44 (1980).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from mbsym.algebra.failures import Constrained, SingularPoint
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import names as names_of
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.expansion import Expansion
+from mbsym.mechanics.constraints.perturbed import Projected, felt
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.variables import expressions
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.linearisation import Linearisation, assemble
+
+
+@dataclass(frozen=True, repr=False)
+class Reduction(Shown):
+    """Which quantities the first approximation of a constrained system is about.
+
+    ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
+    others; ``idle`` are independent coordinates that no equation of the speeds depends on.  ``rates`` are velocities of
+    the motion that follow from the constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every
+    constraint is one between coordinates, as it is given.  ``family``: the derivatives of each speed's coordinate and of
+    the speed itself by the parameters that stand in the motion only: by these the description gives a family of motions.
+    """
+
+    coordinates: tuple[str, ...]
+    speeds: tuple[str, ...]
+    dependent_coordinates: tuple[str, ...]
+    dependent_speeds: tuple[str, ...]
+    idle: tuple[str, ...]
+    rates: tuple[tuple[str, Formula], ...]
+    assumed: tuple[Formula, ...]
+    holonomic: bool
+    family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """The expansion about the motion, the equations projected there, and what is left of the coordinates."""
+
+    expansion: Expansion
+    equations: Projected
+    about: Reduction
+
+    @property
+    def residuals(self) -> list[Polynomial]:
+        """What has to vanish if the motion is to exist: constraints first, then the projected equations, as -f."""
+        return [*self.expansion.conditions, *(-x for x in self.equations.constant)]
+
+
+def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction:
+    """The independent quantities by name.  Raises SingularPoint where the constraints lose their rank on the motion."""
+    if found.lost:
+        raise SingularPoint("the constraints are not independent on this motion although they are near it")
+    names, ring = scene.system.coordinates, scene.ring
+    given = {entry.coordinate for entry in scene.system.motion}
+    independent, speeds = set(found.coordinates), set(found.speeds)
+    needed = {found.coordinates[j] for j in felt(found, equations)}
+    parameters = _of_the_motion_alone(scene)
+    return Reduction(
+        coordinates=tuple(names[i] for i in found.coordinates),
+        speeds=tuple(names[i] for i in found.speeds),
+        dependent_coordinates=tuple(name for i, name in enumerate(names) if i not in independent),
+        dependent_speeds=tuple(name for i, name in enumerate(names) if i not in speeds),
+        idle=tuple(names[i] for i in found.coordinates if i not in needed),
+        rates=tuple(
+            (name, Formula(ring, rate))
+            for name, rate in zip(names, found.base.rates, strict=True)
+            if name not in given and not rate.is_zero()
+        ),
+        assumed=tuple(Formula(ring, x) for x in found.assumed),
+        holonomic=len(found.coordinates) == len(found.speeds),
+        family=tuple(
+            (
+                tuple(_by(ring, found.base.values[i], index) for index in parameters),
+                tuple(_by(ring, found.base.rates[i], index) for index in parameters),
+            )
+            for i in found.speeds
+        ),
+    )
+
+
+def _by(ring: Ring, x: Polynomial, index: int) -> Formula:
+    return Formula(ring, x.derivative(index))
+
+
+def _of_the_motion_alone(scene: Scene) -> list[int]:
+    """The generators of parameters that occur in the motion and nowhere else, and there in no root or reciprocal."""
+    ring, system = scene.ring, scene.system
+    bare = replace(system, motion=(), notation=(), assumptions=(), initial=(), time_scale=None, parameters=())
+    elsewhere = {name for expression in expressions(bare) for name in names_of(expression)}
+    in_motion = {name for entry in system.motion for x in (entry.value, entry.rate) for name in names_of(x)}
+    inner = {index for g in ring.generators if g.argument is not None for index in occurring([g.argument])}
+    found = [ring.index("parameter", name) for name in system.parameter_names if name in in_motion - elsewhere]
+    return [index for index in found if index not in inner]
+
+
+def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> Linearisation:
+    """Problem 5 of a constrained system.
+
+    Raises Constrained where a coordinate that is felt has a dependent speed, so that there is no form of second order;
+    SingularPoint, NoClosedForm.
+    """
+    names, ring = scene.system.coordinates, scene.ring
+    found, equations, about = reduced.expansion, reduced.equations, reduced.about
+    needed = {found.coordinates[j] for j in felt(found, equations)}
+    following = [names[i] for i in sorted(needed) if i not in found.speeds]
+    if following:
+        raise Constrained(
+            f"no first approximation of second order: {', '.join(following)} matter, and their velocities are dependent",
+            remedy="name other coordinates as 'dependent', such that these have independent velocities",
+        )
+    place = {i: j for j, i in enumerate(found.coordinates)}
+    position = [[row[place[i]] if i in place else ring.zero for i in found.speeds] for row in equations.C]
+    parts = [list(map(list, equations.A)), list(map(list, equations.B)), position, list(map(list, equations.gains))]
+    inputs = found.scene.system.input_names
+    whole = assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about.speeds)
+    return replace(whole, constrained=about)

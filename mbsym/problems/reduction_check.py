@@ -1,0 +1,220 @@
+"""Self-check of problems 4 and 5 of constrained systems: multipliers at a disturbed state, no null space, no expansion.
+
+At random parameter values the unperturbed state is disturbed within the constraints, the dependent parts of the
+disturbance found by solving the rows f, J q' + j and their rates as they come out at the state.  There d'Alembert's
+principle in inertial axes gives the residuals r = M q'' - f of the open tree; multipliers are determined by the
+dependent equations, J_D^T lambda = r_D, all carried to first order, and
+
+    r_I - J_I^T lambda  =  (-f_I) + (A eta' + B eta + C x)
+
+must be what problems 4 and 5 say, part by part.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flint import arb
+
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.constraints.rows import Row, constraint_rows
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
+from mbsym.mechanics.states import SEED
+from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.problems.checks import D_ALEMBERT, Check, Pair, decide
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.perturbation import Dependent, has_rational_states, matrix_pairs, unperturbed_state
+from mbsym.problems.reduction import Reduction
+
+ROUTE = f"{D_ALEMBERT}, with multipliers"
+
+
+def check_reduced_motion(
+    system: System, ring: Ring, residuals: Sequence[Formula], about: Reduction, dependent: Dependent
+) -> Check:
+    """Problem 4: ``residuals`` are those of the constraints and, last, of the equations of the independent speeds."""
+
+    def pairs(balls: bool) -> list[Pair]:
+        place = _Disturbed(system, ring, about, dependent, balls)
+        own = residuals[len(residuals) - len(about.speeds) :]
+        carry = Carrier(ring, place.state.numbers, place.state.values)
+        free = place.free_residuals()
+        found = [(f"equation {name}", -carry(x.polynomial), free[name].a) for name, x in zip(about.speeds, own, strict=True)]
+        satisfied = all(x.is_zero for x in residuals[: len(residuals) - len(about.speeds)])
+        zero = place.state.numbers.zero
+        return found + [(f"{label} on the motion", x.a, zero) for label, x in place.left_over if satisfied]
+
+    exact = has_rational_states(system, ring, dependent)
+    return decide("equilibrium", ("equations projected on the motion", ROUTE), exact, pairs)
+
+
+def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
+    """Problem 5."""
+    about = linear.constrained
+    assert about is not None
+
+    def pairs(balls: bool) -> list[Pair]:
+        place = _Disturbed(system, ring, about, dependent, balls)
+        free = place.free_residuals()
+        rows = {name: free[name].b for name in about.speeds}
+        direction = [place.direction[name] for name in about.speeds]
+        return matrix_pairs(ring, linear, dependent, place.state, direction, place.pushes, rows)
+
+    exact = has_rational_states(system, ring, dependent)
+    return decide("perturbed motion", ("matrices of the first approximation", f"{ROUTE}, disturbed"), exact, pairs)
+
+
+class _Disturbed:
+    """The unperturbed ``state``, ``direction`` (dx, dx', dx'') of the disturbance of every coordinate, and what the
+    constraints leave over: rows that are redundant there, with their values.
+    """
+
+    def __init__(self, system: System, ring: Ring, about: Reduction, dependent: Dependent, balls: bool) -> None:
+        self.system, self.ring, self.about = system, ring, about
+        turning = [name for name, _ in about.rates]
+        self.state = unperturbed_state(system, ring, dependent, balls, turning)
+        numbers = self.state.numbers
+        carry = Carrier(ring, numbers, self.state.values)
+        values = dict(self.state.values)
+        values |= {velocity_name(name): carry(rate.polynomial) for name, rate in about.rates}
+        source = random.Random(SEED + 1)
+        number = numbers.number
+        parts = {name: [number(source.randint(1, 9)) for _ in range(3)] for name in system.coordinates}
+        for name in about.dependent_coordinates:
+            parts[name][0] = numbers.zero
+        for name in about.dependent_speeds:
+            parts[name][1] = parts[name][2] = numbers.zero
+        self.pushes = [number(source.randint(1, 9)) for _ in system.inputs]
+        self.state = State(numbers, values)
+        self.direction: Mapping[str, Any] = parts
+        self._follow(values, parts)
+        self.rows = self._rows()
+        found, rest = _eliminated(self.rows, self._places(about.dependent_speeds), [row.velocity.a for row in self.rows])
+        self.left_over = [(self.rows[k].name.label, Dual(x, x)) for k, x in rest]
+        del found
+
+    def _follow(self, values: dict[str, Scalar], parts: dict[str, list[Any]]) -> None:
+        """The dependent parts, from the rows, one order of derivatives after another."""
+        about, zero = self.about, self.state.numbers.zero
+        at, moving = self._places(about.dependent_coordinates), self._places(about.dependent_speeds)
+        rows = [row for row in self._rows() if row.position is not None]
+        for i, x in _eliminated(rows, at, [row.position.b for row in rows])[0].items():
+            parts[self.system.coordinates[i]][0] = -x
+        rows = list(self._rows())
+        for i, x in _eliminated(rows, moving, [row.velocity.b for row in rows])[0].items():
+            parts[self.system.coordinates[i]][1] = -x
+        rows = list(self._rows())
+        unmoved = _eliminated(rows, moving, [row.acceleration.a for row in rows])[0]
+        for i, x in unmoved.items():
+            key = acceleration_name(self.system.coordinates[i])
+            values[key] = values.get(key, zero) - x
+        rows = list(self._rows())
+        for i, x in _eliminated(rows, moving, [row.acceleration.b for row in rows])[0].items():
+            parts[self.system.coordinates[i]][2] = -x
+
+    def _places(self, names: Sequence[str]) -> list[int]:
+        return [self.system.coordinates.index(name) for name in names]
+
+    @property
+    def _disturbed(self) -> State:
+        zero = self.state.numbers.zero
+        values = {name: Dual(value, zero) for name, value in self.state.values.items()}
+        for name, (shift, speed, push) in self.direction.items():
+            for key, part in ((name, shift), (velocity_name(name), speed), (acceleration_name(name), push)):
+                values[key] = Dual(self.state.values[key], part)
+        for name, push in zip(self.system.input_names, self.pushes, strict=True):
+            values[name] = Dual(self.state.values[name], push)
+        return State(FirstOrder(self.state.numbers, values), values)
+
+    def _rows(self) -> tuple[Row, ...]:
+        state = self._disturbed
+        return constraint_rows(Scene(self.system, state.numbers, dict(state.values), self.ring))
+
+    def free_residuals(self) -> dict[str, Dual]:
+        """r_I - J_I^T lambda to first order, by the names of the independent speeds."""
+        names, about = self.system.coordinates, self.about
+        needed = Oracle(self.system, self._disturbed).residuals
+        columns = self._places(about.dependent_speeds)
+        pivots = _pivot_rows(self.rows, columns)
+        rows = [self.rows[k] for k in pivots]
+        transposed = [[row.partials[i] for row in rows] for i in columns]
+        # J_D^T lambda = r_D in two orders: the constant part, then what the slopes of J leave of the first-order one.
+        constant = [[x.a for x in line] for line in transposed]
+        first = _solved(constant, [needed[names[i]].a for i in columns])
+        rest = []
+        for line, i in zip(transposed, columns, strict=True):
+            value = needed[names[i]].b
+            for x, force in zip(line, first, strict=True):
+                value = value - x.b * force
+            rest.append(value)
+        second = _solved(constant, rest)
+        found = {}
+        for name in about.speeds:
+            i = names.index(name)
+            a, b = needed[name].a, needed[name].b
+            for row, force, change in zip(rows, first, second, strict=True):
+                a = a - row.partials[i].a * force
+                b = b - row.partials[i].b * force - row.partials[i].a * change
+            found[name] = Dual(a, b)
+        return found
+
+
+def _eliminated(
+    rows: Sequence[Row], columns: Sequence[int], values: Sequence[Scalar]
+) -> tuple[dict[int, Scalar], list[tuple[int, Scalar]]]:
+    """y with J_columns y = values by chosen rows, by columns; and what the other rows leave over, by their numbers."""
+    pivots = _pivot_rows(rows, columns)
+    matrix = [[rows[k].partials[i].a for i in columns] for k in pivots]
+    solved = _solved(matrix, [values[k] for k in pivots])
+    rest = []
+    for k, row in enumerate(rows):
+        if k not in pivots:
+            value = values[k]
+            for i, y in zip(columns, solved, strict=True):
+                value = value - row.partials[i].a * y
+            rest.append((k, value))
+    return dict(zip(columns, solved, strict=True)), rest
+
+
+def _pivot_rows(rows: Sequence[Row], columns: Sequence[int]) -> list[int]:
+    """As many rows as columns that are independent there, the largest pivots preferred.  Raises SingularPoint."""
+    lines = {k: [row.partials[i].a for i in columns] for k, row in enumerate(rows)}
+    chosen = []
+    for c in range(len(columns)):
+        best = max(lines, key=lambda k: _size(lines[k][c]), default=None)
+        if best is None or _size(lines[best][c]) == 0:
+            raise SingularPoint("the constraints do not determine the dependent quantities")
+        pivot = lines.pop(best)
+        chosen.append(best)
+        for k, line in lines.items():
+            factor = line[c] / pivot[c]
+            lines[k] = [x - factor * y for x, y in zip(line, pivot, strict=True)]
+    return chosen
+
+
+def _size(x: Any) -> float:
+    """How far from zero a number certainly is."""
+    return float(x.abs_lower()) if isinstance(x, arb) else abs(float(x.p) / float(x.q))
+
+
+def _solved(matrix: Sequence[Sequence[Scalar]], values: Sequence[Scalar]) -> list[Scalar]:
+    """y with matrix y = values, by elimination with the largest pivots."""
+    work = [[*row, value] for row, value in zip(matrix, values, strict=True)]
+    size = len(work)
+    for c in range(size):
+        best = max(range(c, size), key=lambda k: _size(work[k][c]))
+        if _size(work[best][c]) == 0:
+            raise SingularPoint("the constraints do not determine the dependent quantities")
+        work[c], work[best] = work[best], work[c]
+        for k in range(size):
+            if k != c:
+                factor = work[k][c] / work[c][c]
+                work[k] = [x - factor * y for x, y in zip(work[k], work[c], strict=True)]
+    return [work[c][size] / work[c][c] for c in range(size)]
