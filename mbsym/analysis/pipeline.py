@@ -66,8 +66,10 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 
 #: The stages that know constraints, or hold whether there are any or not.
 KNOW_CONSTRAINTS = frozenset(
-    ("scene", "parameters_scene", "signs", "kinematics", "claims", "checks", "reduced", "residuals", "equilibrium")
-    + ("first_approximation", "linearisation")
+    (
+        *("scene", "parameters_scene", "signs", "kinematics", "claims", "checks"),
+        *("reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
+    )
 )
 
 #: The stages that know speeds, or hold whether there are any or not.
@@ -219,7 +221,7 @@ class Analysis(Stages):
         lambda a: a._equations(),
         ("equations of motion",),
     )
-    reduced = Derived["Analysis", "Reduced"](approximation.reduced)
+    reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
     residuals = Derived["Analysis", Column](approximation.residuals)
     equilibrium = Problem[Equilibrium](
         4,

@@ -56,9 +56,7 @@ class Equilibrium(Shown):
         return determined(scene, ((name, value.polynomial) for name, value in self.solved))
 
 
-def equilibrium(
-    scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_motion: bool = False
-) -> Equilibrium:
+def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_motion: bool = False) -> Equilibrium:
     """Conditions for the motion, from the residuals f_i at q'' = 0 (scene over the ring).
 
     ``residuals`` may be the forcing of the nonlinear equations or values already on the motion; with ``on_motion`` they

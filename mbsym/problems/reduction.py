@@ -36,8 +36,8 @@ class Reduction(Shown):
     ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
     others; ``idle`` are independent coordinates that no equation of the speeds depends on.  ``rates`` are velocities of
     the motion that follow from the constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every
-    constraint is one between coordinates, as it is given.  ``family``: the derivatives of each speed's coordinate and of
-    the speed itself by the parameters that stand in the motion only: by these the description gives a family of motions.
+    constraint is one between coordinates, as it is given.  ``family``: the derivatives of each speed's coordinate and
+    of the speed by the parameters that stand in the motion only: by these the description gives a family of motions.
     """
 
     coordinates: tuple[str, ...]
@@ -124,7 +124,7 @@ def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> L
     following = [names[i] for i in sorted(needed) if i not in found.speeds]
     if following:
         raise Constrained(
-            f"no first approximation of second order: {', '.join(following)} matter, and their velocities are dependent",
+            f"no first approximation of second order: the velocities of {', '.join(following)} are dependent",
             remedy="name other coordinates as 'dependent', such that these have independent velocities",
         )
     place = {i: j for j, i in enumerate(found.coordinates)}

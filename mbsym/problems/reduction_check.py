@@ -21,7 +21,7 @@ from flint import arb
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
-from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import Row, constraint_rows
 from mbsym.mechanics.kinematics import Scene
@@ -46,10 +46,11 @@ def check_reduced_motion(
         own = residuals[len(residuals) - len(about.speeds) :]
         carry = Carrier(ring, place.state.numbers, place.state.values)
         free = place.free_residuals()
-        found = [(f"equation {name}", -carry(x.polynomial), free[name].a) for name, x in zip(about.speeds, own, strict=True)]
+        named = zip(about.speeds, own, strict=True)
+        found = [(f"equation {name}", -carry(x.polynomial), free[name].a) for name, x in named]
         satisfied = all(x.is_zero for x in residuals[: len(residuals) - len(about.speeds)])
         zero = place.state.numbers.zero
-        return found + [(f"{label} on the motion", x.a, zero) for label, x in place.left_over if satisfied]
+        return found + [(f"{label} on the motion", x, zero) for label, x in place.left_over if satisfied]
 
     exact = has_rational_states(system, ring, dependent)
     return decide("equilibrium", ("equations projected on the motion", ROUTE), exact, pairs)
@@ -72,9 +73,7 @@ def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation
 
 
 class _Disturbed:
-    """The unperturbed ``state``, ``direction`` (dx, dx', dx'') of the disturbance of every coordinate, and what the
-    constraints leave over: rows that are redundant there, with their values.
-    """
+    """The unperturbed ``state``, and the disturbance: ``direction`` (dx, dx', dx'') of every coordinate, ``pushes``."""
 
     def __init__(self, system: System, ring: Ring, about: Reduction, dependent: Dependent, balls: bool) -> None:
         self.system, self.ring, self.about = system, ring, about
@@ -96,16 +95,20 @@ class _Disturbed:
         self.direction: Mapping[str, Any] = parts
         self._follow(values, parts)
         self.rows = self._rows()
-        found, rest = _eliminated(self.rows, self._places(about.dependent_speeds), [row.velocity.a for row in self.rows])
-        self.left_over = [(self.rows[k].name.label, Dual(x, x)) for k, x in rest]
-        del found
+        moving, speeds = self._places(about.dependent_speeds), [row.velocity.a for row in self.rows]
+        missing, rest = _eliminated(self.rows, moving, speeds)
+        #: What the velocities of the motion leave of each constraint: by how much a dependent one is wrong, and the
+        #: rows that determine none.
+        self.left_over = [(f"velocity of {system.coordinates[i]}", x) for i, x in missing.items()]
+        self.left_over += [(self.rows[k].name.label, x) for k, x in rest]
 
     def _follow(self, values: dict[str, Scalar], parts: dict[str, list[Any]]) -> None:
         """The dependent parts, from the rows, one order of derivatives after another."""
         about, zero = self.about, self.state.numbers.zero
         at, moving = self._places(about.dependent_coordinates), self._places(about.dependent_speeds)
         rows = [row for row in self._rows() if row.position is not None]
-        for i, x in _eliminated(rows, at, [row.position.b for row in rows])[0].items():
+        places = [row.position.b for row in rows if row.position is not None]
+        for i, x in _eliminated(rows, at, places)[0].items():
             parts[self.system.coordinates[i]][0] = -x
         rows = list(self._rows())
         for i, x in _eliminated(rows, moving, [row.velocity.b for row in rows])[0].items():

@@ -764,7 +764,7 @@ BLIND = [
     ),
     Mistake(
         "symmetric and skew parts exchanged in both routes",
-        "problems.linearisation:_assemble",
+        "problems.linearisation:assemble",
         "symmetric_part(ring, parts[1])),\n        G=Matrix.of(ring, skew_part(ring, parts[1]))",
         "skew_part(ring, parts[1])),\n        G=Matrix.of(ring, symmetric_part(ring, parts[1]))",
         "spinning",
@@ -772,7 +772,7 @@ BLIND = [
     ),
     Mistake(
         "G and N exchanged in both routes",
-        "problems.linearisation:_assemble",
+        "problems.linearisation:assemble",
         "for rows in whole]",
         "for rows in (whole[0], whole[2], whole[1], whole[3])]",
         "spinning",

@@ -24,12 +24,12 @@ class Echelon:
     what is found holds where none of them does.
     """
 
-    pivots: Mapping[Column, Row]
+    pivots: Mapping[int, Row]
     rest: tuple[Row, ...]
     assumed: tuple[Polynomial, ...]
 
 
-def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]], columns: Sequence[Column]) -> Echelon:
+def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]], columns: Sequence[int]) -> Echelon:
     """Reduced echelon form with pivots in ``columns``, the first ones preferred.
 
     In the first column that has an entry left, an entry that is a number is taken, else one that cannot vanish, else
@@ -37,7 +37,7 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
     NoClosedForm.
     """
     pending = [{key: r for key, x in row.items() if not (r := ring.reduce(x)).is_zero()} for row in rows]
-    found: dict[Column, Row] = {}
+    found: dict[int, Row] = {}
     assumed: list[Polynomial] = []
     while True:
         best = _best(signs, pending, columns)
@@ -57,7 +57,7 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
 _NUMBER, _SURE, _OPEN = range(3)
 
 
-def _best(signs: Signs, rows: Sequence[Row], columns: Sequence[Column]) -> tuple[int, Column, int] | None:
+def _best(signs: Signs, rows: Sequence[Row], columns: Sequence[int]) -> tuple[int, int, int] | None:
     """(how sure, column, number of the row) of the next pivot."""
     open_one = None
     for column in columns:

@@ -27,9 +27,9 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import FirstOrderJets, Jet
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
-from mbsym.mechanics.constraints.elimination import Column, Row, echelon
-from mbsym.mechanics.constraints.rows import constraint_rows
+from mbsym.mechanics.constraints.elimination import Row, echelon
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
+from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values, relations
 from mbsym.model.system import System, acceleration_name, velocity_name
@@ -94,7 +94,6 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
 
     positions: list[Form] = [{i: ring.one} for i in range(n)]
     for pivot, row in held.pivots.items():
-        assert isinstance(pivot, int)
         positions[pivot] = {i: -x for i in coordinates if (x := row.get(i)) is not None}
     velocities: list[Form] = [{n + i: ring.one} for i in range(n)]
     for pivot, row in moved.pivots.items():
@@ -109,7 +108,8 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
 
     null_space = [[ring.one if i == k else ring.zero for k in speeds] for i in range(n)]
     for pivot, row in moved.pivots.items():
-        null_space[pivot] = [-row.get(k, ring.zero) for k in speeds]
+        entries: list[Polynomial] = [row.get(k, ring.zero) for k in speeds]
+        null_space[pivot] = [-x for x in entries]
     slopes: list[tuple[Form, ...]] = [tuple({} for _ in speeds) for _ in range(n)]
     for pivot, row in moved.pivots.items():
         slopes[pivot] = tuple(_negative(_bent(scene, row, k, null_space, positions)) for k in range(len(speeds)))
@@ -166,9 +166,7 @@ def _completed(scene: Scene, signs: Signs) -> Base:
     images = relations(scene)
     turning = {name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()}
     for _ in range(MOST_ROUNDS):
-        places = tuple(
-            scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names
-        )
+        places = tuple(scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names)
         still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names))
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
         found = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
@@ -191,7 +189,7 @@ def _followed(
     return tuple(found)
 
 
-def _preferred(scene: Scene) -> list[Column]:
+def _preferred(scene: Scene) -> list[int]:
     """The places of the coordinates in the order in which they would rather be dependent."""
     system = scene.system
     given = {entry.coordinate for entry in system.motion}
@@ -206,7 +204,9 @@ def _positions(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
     found: list[Row] = []
     for row in rows:
         if row.position is not None:
-            found.append(_related(scene, {"f": row.position.value} | _first(row.position, range(n))))
+            line: Row = {"f": row.position.value}
+            line.update(_first(row.position, range(n)))
+            found.append(_related(scene, line))
     return found
 
 
@@ -225,7 +225,7 @@ def _velocities(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
     return found
 
 
-def _first(x: Jet, places: range) -> dict[int, Polynomial]:
+def _first(x: Jet, places: range) -> Row:
     return {i: value for i, value in x.first.items() if i in places}
 
 
