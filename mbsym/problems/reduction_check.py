@@ -115,9 +115,11 @@ class _Disturbed:
             parts[self.system.coordinates[i]][1] = -x
         rows = list(self._rows())
         unmoved = _eliminated(rows, moving, [row.acceleration.a for row in rows])[0]
+        given = {entry.coordinate for entry in self.system.motion}
         for i, x in unmoved.items():
-            key = acceleration_name(self.system.coordinates[i])
-            values[key] = values.get(key, zero) - x
+            if self.system.coordinates[i] not in given:
+                key = acceleration_name(self.system.coordinates[i])
+                values[key] = values.get(key, zero) - x
         rows = list(self._rows())
         for i, x in _eliminated(rows, moving, [row.acceleration.b for row in rows])[0].items():
             parts[self.system.coordinates[i]][2] = -x

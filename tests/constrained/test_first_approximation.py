@@ -1,0 +1,169 @@
+"""First approximations of constrained systems against published matrices and formulas derived by hand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from flint import acb_mat, arb, ctx, fmpq
+
+import mbsym
+from mbsym.analysis.pipeline import Analysis
+from mbsym.formulas.formula import Matrix
+from mbsym.problems.checks import EXACT
+from mbsym.source import read
+
+HERE = Path(__file__).parent
+REFERENCES = HERE.parent / "references"
+
+
+@pytest.fixture(scope="module")
+def bicycle() -> Analysis:
+    return mbsym.load(HERE / "bicycle.yaml")
+
+
+def described(text: str) -> Analysis:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    return Analysis(system)
+
+
+def numbers(analysis: Analysis, **given: Any) -> dict[str, Any]:
+    """Values of all names: those of the paper's Table 1, exact decimals; pi/10."""
+    parameters = json.loads((REFERENCES / "bicycle_whipple.json").read_text())["parameters"]
+    values = dict.fromkeys(analysis.ring.names(), arb(0))
+    for name, text in parameters.items():
+        values[name] = arb.pi() / 10 if "pi" in text else arb(fmpq(*_fraction(text)))
+    return values | {"pi": arb.pi()} | given
+
+
+def _fraction(text: str) -> tuple[int, int]:
+    whole, _, decimals = text.partition(".")
+    return int(whole + decimals), 10 ** len(decimals)
+
+
+def evaluated(analysis: Analysis, matrix: Matrix, values: dict[str, Any], names: list[str]) -> list[list[Any]]:
+    at = [analysis.linearisation.coordinates.index(name) for name in names]
+    return [[analysis.ring.evaluate(matrix[i, j].polynomial, values) for j in at] for i in at]
+
+
+def velocity_matrix(analysis: Analysis, values: dict[str, Any]) -> tuple[Any, Any, Any]:
+    """M, D + G, K + N of roll and steer."""
+    found = analysis.linearisation
+    m, d, g, k, n = (evaluated(analysis, x, values, ["roll", "steer"]) for x in found.matrices)
+    both = range(2)
+    return m, [[d[i][j] + g[i][j] for j in both] for i in both], [[k[i][j] + n[i][j] for j in both] for i in both]
+
+
+def close(found: Any, published: str) -> bool:
+    return abs(float((found - arb(published)).mid())) < 1e-13
+
+
+def test_the_bicycle_has_the_published_matrices(bicycle: Analysis) -> None:
+    """M, C1, K0, K2 of Meijaard et al. 2007: M q'' + v C1 q' + (g K0 + v^2 K2) q."""
+    with ctx.workprec(120):
+        reference = json.loads((REFERENCES / "bicycle_whipple.json").read_text())["reference"]
+        gravity = arb(fmpq(981, 100))
+        m, c, still = velocity_matrix(bicycle, numbers(bicycle, v=arb(1), g=arb(0)))
+        _, _, held = velocity_matrix(bicycle, numbers(bicycle, v=arb(0), g=gravity))
+        for i in range(2):
+            for j in range(2):
+                assert close(m[i][j], reference["M"][i][j])
+                assert close(c[i][j], reference["C1"][i][j])
+                assert close(still[i][j], reference["K2"][i][j])
+                assert close(held[i][j] / gravity, reference["K0"][i][j])
+
+
+@pytest.mark.parametrize("speed", range(11))
+def test_the_bicycle_has_the_published_roots(bicycle: Analysis, speed: int) -> None:
+    with ctx.workprec(120):
+        reference = json.loads((REFERENCES / "bicycle_whipple.json").read_text())["reference"]
+        wanted = []
+        for text in reference["eigenvalues_recomputed_50_digits"][str(speed)]:
+            real, _, imaginary = text.partition("±")
+            wanted += (
+                [complex(float(real), sign * float(imaginary[:-1])) for sign in (1, -1)] if imaginary else [float(real)]
+            )
+        m, c, k = velocity_matrix(bicycle, numbers(bicycle, v=arb(speed), g=arb(fmpq(981, 100))))
+        mass = acb_mat(2, 2, [x for row in m for x in row])
+        velocity, position = (mass.solve(acb_mat(2, 2, [x for row in rows for x in row])) for rows in (c, k))
+        first = acb_mat(4, 4)
+        for i in range(2):
+            first[i, 2 + i] = 1
+            for j in range(2):
+                first[2 + i, j], first[2 + i, 2 + j] = -position[i, j], -velocity[i, j]
+        found = [complex(x) for x in first.eig()]
+    for root in wanted:
+        assert min(abs(root - x) for x in found) < 1e-11
+
+
+def test_the_bicycle_is_told_by_what_remains(bicycle: Analysis) -> None:
+    about = bicycle.linearisation.constrained
+    assert about is not None
+    assert not about.holonomic
+    assert about.speeds == ("roll", "rear", "steer")
+    assert set(about.dependent_speeds) == {"x", "y", "yaw", "pitch", "front"}
+    assert {"x", "y", "yaw", "rear", "front"} == set(about.idle)
+    assert {name: str(rate) for name, rate in about.rates} == {"x": "v", "front": "-v/rF"}
+    assert bicycle.equilibrium.satisfied
+
+
+@pytest.mark.parametrize("name", ["bicycle", "disc"])
+def test_multipliers_agree_exactly(name: str) -> None:
+    analysis = mbsym.load(HERE / f"{name}.yaml")
+    for check in ("equilibrium", "perturbed motion"):
+        found = analysis.check(check)
+        assert found is not None and found.outcome == EXACT, found
+
+
+def test_the_upright_disc() -> None:
+    """lean: 5 phi''/4 = (g/r) phi + (3/2) w psi', psi'' = -2 w phi' (sympy_rolling_disc.json)."""
+    found = mbsym.load(HERE / "disc.yaml").linearisation
+    assert found.coordinates == ("yaw", "lean", "spin")
+    total = [[found.D[i, j] + found.G[i, j] for j in range(3)] for i in range(3)]
+    assert str(found.M[1, 1]) == "5*m*r**2/4"
+    assert str(found.M[0, 0]) == "m*r**2/4"
+    assert str(total[1][0]) == "-3*m*r**2*w/2"
+    assert str(total[0][1]) == "m*r**2*w/2"
+    assert str(found.K[1, 1]) == "-m*r*g"
+    assert all(x.is_zero for x in (found.N[0, 1], found.K[0, 0], found.K[2, 2]))
+
+
+PARALLELOGRAM = """
+mbsym: 1
+name: Parallelogram
+parameters: {m: positive, l: positive, g: positive, d: positive, k: positive}
+bodies:
+  - {name: left, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: 0}
+  - {name: coupler, attached to: left, connection point: [0, -l, 0], rotation: {axes: [3], angles: [b]}, mass: m,
+     mass centre: [d/2, 0, 0], inertia about: mass centre, inertia: [0, 0, m*d**2/12]}
+  - {name: right, attached to: 0, connection point: [d, 0, 0], rotation: {axes: [3], angles: [c]}, mass: 0}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - spring: {coordinate: a, stiffness: k}
+constraints:
+  - coincide: [{body: coupler, point: [d, 0, 0]}, {body: right, point: [0, -l, 0]}]
+dependent: [b, c]
+motion: {a: 0, b: 0, c: 0}
+"""
+
+
+def test_a_parallelogram_swings_as_a_pendulum() -> None:
+    """The coupler keeps its direction and moves on a circle: m l^2 a'' + (m g l + k) a = 0."""
+    analysis = described(PARALLELOGRAM)
+    found = analysis.linearisation
+    assert found.coordinates == ("a",)
+    assert [str(x[0, 0]) for x in (found.M, found.K)] == ["m*l**2", "m*l*g + k"]
+    assert all(x.is_zero for x in (found.D[0, 0], found.G[0, 0], found.N[0, 0]))
+    assert found.constrained is not None
+    assert found.constrained.holonomic
+    check = analysis.check("perturbed motion")
+    assert check is not None
+    assert check.outcome == EXACT
+
+
+def test_a_motion_that_breaks_a_constraint_does_not_exist() -> None:
+    analysis = described(PARALLELOGRAM.replace("motion: {a: 0, b: 0, c: 0}", "motion: {a: 0, b: 0, c: {rate: g}}"))
+    assert not analysis.equilibrium.satisfied
