@@ -142,14 +142,13 @@ def _accuracy(system: System | None, text: str | None, asked: Options) -> Accura
 
 def _model(system: System | None, choosing: Choosing, asked: Options) -> Model | None:
     """The model that was settled by hand; None where nothing was said."""
-    from mbsym.model.system import NewtonianGravity
     from mbsym.numerics.models import Model
 
     order: int | str | None = None
     if choosing.gravity is not None:
         word = asked.word("--gravity", choosing.gravity, ORDERS, "order")
         order = int(word) if word is not None and word.isdigit() else word
-        if system is not None and not any(isinstance(load, NewtonianGravity) for load in system.loads):
+        if system is not None and not system.newtonian_fields:
             asked.complain("--gravity", "unsuitable-option", "there is no Newtonian gravity in this description")
     if choosing.linear and system is not None and not system.motion:
         hint = "the description says with 'motion:' what the equations are linearised about"

@@ -20,8 +20,8 @@ from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, zero_tensor
 from mbsym.mechanics.articulation import Articulation, Frame
 from mbsym.mechanics.falling import falling_scene, overrides
-from mbsym.mechanics.loads.kinds import KINDS
-from mbsym.model.system import INERTIAL, NewtonianGravity, UniformGravity
+from mbsym.mechanics.loads.kinds import actions_beyond_fields, base_acceleration
+from mbsym.model.system import INERTIAL
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ def bias_forces(system: Articulation) -> BiasForces:
     algebra = system.algebra
     zero, still = system.scene.zero(INERTIAL), zero_tensor(algebra, INERTIAL)
     motions: list[_Motion] = []
-    base = _Motion(zero, zero, _gravity(system), still, still)
+    base = _Motion(zero, zero, base_acceleration(system.scene), still, still)
     felt = {system.frame_of[name]: w for name, w in overrides(system.scene, base.origin).items()}
     forces: list[Vector] = []
     moments: list[Vector] = []
@@ -68,11 +68,7 @@ def bias_forces(system: Articulation) -> BiasForces:
             moments[k] = moments[k] + motions[k].spin.cross(moment)
     generalized = dict.fromkeys(system.coordinates, algebra.zero)
     falling = falling_scene(system.scene) if felt else system.scene
-    for load in system.scene.system.loads:
-        if isinstance(load, UniformGravity):
-            continue
-        seen_from = falling if isinstance(load, NewtonianGravity) else system.scene
-        action = KINDS[type(load)].action(load, seen_from)
+    for action in actions_beyond_fields(system.scene, falling):
         for name, value in action.generalized.items():
             generalized[name] = generalized[name] + value
         for wrench in action.wrenches:
@@ -111,15 +107,6 @@ def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:
             forces[frame.parent] = forces[frame.parent] + force
             moments[frame.parent] = moments[frame.parent] + moment
     return tuple(algebra.reduce(totals[name]) for name in system.coordinates)
-
-
-def _gravity(system: Articulation) -> Vector:
-    """The acceleration of a base that stands for all uniform gravity."""
-    base = system.scene.zero(INERTIAL)
-    for load in system.scene.system.loads:
-        if isinstance(load, UniformGravity):
-            base = base - system.scene.vector(load.acceleration, INERTIAL)
-    return base
 
 
 def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:

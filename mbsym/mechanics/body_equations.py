@@ -35,21 +35,9 @@ from mbsym.mechanics.articulation import MassProperties, mass_properties, shifte
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.falling import falling_frames, overrides
 from mbsym.mechanics.intermediates import Meaning, NamedScene, Notes, Quantity
-from mbsym.mechanics.loads.kinds import KINDS, force_function
-from mbsym.mechanics.loads.orbit import Orbit, radius_vectors
-from mbsym.mechanics.loads.springs import between
+from mbsym.mechanics.loads.kinds import KINDS, actions_beyond_fields, base_acceleration, force_function
 from mbsym.mechanics.variables import program_environment
-from mbsym.model.system import (
-    EXACT,
-    INERTIAL,
-    IsotropicDamper,
-    NewtonianGravity,
-    PointDamper,
-    PointSpring,
-    System,
-    UniformGravity,
-    acceleration_name,
-)
+from mbsym.model.system import INERTIAL, System, acceleration_name
 
 
 @dataclass(frozen=True)
@@ -102,18 +90,12 @@ def _note_loads(scene: NamedScene) -> None:
     """The vectors on which loads depend."""
     notes = scene.notes
     for number, load in enumerate(scene.system.loads, 1):
-        if isinstance(load, NewtonianGravity):
-            if load.order == EXACT:
-                for motion, r in radius_vectors(load, scene):
-                    notes.vector(r, Quantity.RADIUS, motion.body.name, load=number)
-                continue
-            for motion, e, c in Orbit(load, scene).bodies():
-                notes.vector(e, Quantity.OUTWARD, motion.body.name, load=number)
-                notes.vector(c, Quantity.PLACE, motion.body.name, load=number)
-                along = e.dot(c)
-                notes.scalar(along, Meaning(Quantity.ALONG, motion.body.name, load=number))
-        elif isinstance(load, PointSpring | PointDamper | IsotropicDamper):
-            notes.vector(between(load.first, load.second, scene), Quantity.SPAN, "", load=number)
+        kind = KINDS[type(load)]
+        for quantity, body, value in kind.notes(load, scene) if kind.notes is not None else ():
+            if isinstance(value, Vector):
+                notes.vector(value, quantity, body, load=number)
+            else:
+                notes.scalar(value, Meaning(quantity, body, load=number))
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,10 +204,7 @@ def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Nod
     force, moment = _needed(scene)
     totals: dict[str, Scalar] = dict.fromkeys(system.coordinates, algebra.zero)
     falling = _falling(scene) if falling_frames(system) else scene
-    for load in system.loads:
-        if isinstance(load, UniformGravity):
-            continue
-        action = KINDS[type(load)].action(load, falling if isinstance(load, NewtonianGravity) else scene)
+    for action in actions_beyond_fields(scene, falling):
         for name, value in action.generalized.items():
             totals[name] = totals[name] + value
         for wrench in action.wrenches:
@@ -249,11 +228,8 @@ def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Nod
 
 def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """F and H of each body's own mass at q'' = 0, the loads other than gravity left out."""
-    algebra, notes, system = scene.algebra, scene.notes, scene.system
-    zero = base = scene.zero(INERTIAL)
-    for load in system.loads:
-        if isinstance(load, UniformGravity):
-            base = base - scene.vector(load.acceleration, INERTIAL)
+    algebra, notes = scene.algebra, scene.notes
+    zero, base = scene.zero(INERTIAL), base_acceleration(scene)
     felt = overrides(scene, base)
     angular, origin = {INERTIAL: zero}, {INERTIAL: base}
     force: dict[str, Vector] = {}

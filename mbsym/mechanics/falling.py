@@ -33,14 +33,15 @@ from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.loads.orbit import outward
 from mbsym.mechanics.newton_euler import origin_acceleration
 from mbsym.mechanics.variables import expressions, ring_environment
-from mbsym.model.system import INERTIAL, NewtonianGravity, System, acceleration_name, velocity_name
+from mbsym.model.loads import NewtonianGravity
+from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_name
 
 
 def falling_frames(system: System) -> dict[str, tuple[NewtonianGravity, ...]]:
     """The frames O1 whose motion, and that of the centres, no coordinate changes, with the fields about them."""
     found: dict[str, tuple[NewtonianGravity, ...]] = {}
-    for load in system.loads:
-        if isinstance(load, NewtonianGravity) and load.about != load.centre:
+    for load in system.newtonian_fields:
+        if load.about != load.centre:
             found[load.about] = (*found.get(load.about, ()), load)
     return {
         about: loads

@@ -11,7 +11,7 @@ from functools import partial
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS, actions
-from mbsym.model.system import Load
+from mbsym.model.loads import Load
 
 
 def generalized_forces(scene: Scene, loads: Sequence[Load] | None = None) -> dict[str, Polynomial]:

@@ -22,6 +22,7 @@ from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import names
+from mbsym.model import loads
 from mbsym.model import system as model
 from mbsym.model.system import INERTIAL, System, velocity_name
 
@@ -482,7 +483,7 @@ class Oracle:
 # the generalised force.  The others give the generalised force itself.
 
 
-def _uniform(load: model.UniformGravity, place: Placement) -> Series:
+def _uniform(load: loads.UniformGravity, place: Placement) -> Series:
     field = place.lower.vector(load.acceleration)
     total = place.algebra.zero
     for body in place.system.bodies:
@@ -490,13 +491,13 @@ def _uniform(load: model.UniformGravity, place: Placement) -> Series:
     return total
 
 
-def _newtonian(load: model.NewtonianGravity, place: Placement) -> Series:
-    if load.order == model.EXACT:
+def _newtonian(load: loads.NewtonianGravity, place: Placement) -> Series:
+    if load.order == loads.EXACT:
         return _newtonian_exact(load, place)
     return _newtonian_quadratic(load, place) if load.order == 2 else _newtonian_in_size(load, place, int(load.order))
 
 
-def _attracted(load: model.NewtonianGravity, place: Placement) -> list[model.Body]:
+def _attracted(load: loads.NewtonianGravity, place: Placement) -> list[model.Body]:
     """The bodies that the frame ``about`` carries; the centre does not attract itself."""
     return [x for x in place.system.bodies if load.about in place.system.path(x.name) and x.name != load.centre]
 
@@ -514,7 +515,7 @@ def _central_second_moments(body: model.Body, place: Placement) -> list[Triple] 
     return [[half_trace - tensor[i][j] if i == j else -tensor[i][j] for j in range(3)] for i in range(3)]
 
 
-def _newtonian_exact(load: model.NewtonianGravity, place: Placement) -> Series:
+def _newtonian_exact(load: loads.NewtonianGravity, place: Placement) -> Series:
     """U = nu sum of m/|r| + (1/2) P : grad grad 1/|r|, with P the second moments about the mass centre."""
     algebra = place.algebra
     total = algebra.zero
@@ -534,7 +535,7 @@ def _newtonian_exact(load: model.NewtonianGravity, place: Placement) -> Series:
     return place.lower(load.constant) * total
 
 
-def _newtonian_in_size(load: model.NewtonianGravity, place: Placement, order: int) -> Series:
+def _newtonian_in_size(load: loads.NewtonianGravity, place: Placement, order: int) -> Series:
     """The exact field of bodies s times as large, r = p + s x, P s^2: Taylor polynomial in s to the order, at s = 1.
 
     |r|^-1 is the binomial series in u = |r|^2/|p|^2 - 1; everything else is products of polynomials in s.
@@ -577,7 +578,7 @@ def _newtonian_in_size(load: model.NewtonianGravity, place: Placement, order: in
     return place.lower(load.constant) * total
 
 
-def _newtonian_quadratic(load: model.NewtonianGravity, place: Placement) -> Series:
+def _newtonian_quadratic(load: loads.NewtonianGravity, place: Placement) -> Series:
     """U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
     algebra = place.algebra
     outward = [a - b for a, b in zip(place.origin[load.about], place.origin[load.centre], strict=True)]
@@ -604,12 +605,12 @@ def _newtonian_quadratic(load: model.NewtonianGravity, place: Placement) -> Seri
     return place.lower(load.constant) * total
 
 
-def _coordinate_spring(load: model.CoordinateSpring, place: Placement) -> Series:
+def _coordinate_spring(load: loads.CoordinateSpring, place: Placement) -> Series:
     stretch = place.lower.environment[load.coordinate] - place.lower(load.rest)
     return place.algebra.number(Fraction(-1, 2)) * place.lower(load.stiffness) * stretch * stretch
 
 
-def _point_spring(load: model.PointSpring, place: Placement) -> Series:
+def _point_spring(load: loads.PointSpring, place: Placement) -> Series:
     algebra = place.algebra
     ends = [place.point(end.body, place.lower.vector(end.position)) for end in (load.first, load.second)]
     span = [a - b for a, b in zip(*ends, strict=True)]
@@ -620,41 +621,41 @@ def _point_spring(load: model.PointSpring, place: Placement) -> Series:
     return algebra.number(Fraction(-1, 2)) * place.lower(load.stiffness) * energy
 
 
-def _force_function(load: model.ForceFunction, place: Placement) -> Series:
+def _force_function(load: loads.ForceFunction, place: Placement) -> Series:
     value = place.lower(load.expression)
     return -value if load.spelled == "potential" else value
 
 
 _FORCE_FUNCTIONS: dict[type, Any] = {
-    model.UniformGravity: _uniform,
-    model.NewtonianGravity: _newtonian,
-    model.CoordinateSpring: _coordinate_spring,
-    model.PointSpring: _point_spring,
-    model.ForceFunction: _force_function,
+    loads.UniformGravity: _uniform,
+    loads.NewtonianGravity: _newtonian,
+    loads.CoordinateSpring: _coordinate_spring,
+    loads.PointSpring: _point_spring,
+    loads.ForceFunction: _force_function,
 }
 
 
-def _coordinate_damper(oracle: Oracle, load: model.CoordinateDamper, name: str) -> Scalar:
+def _coordinate_damper(oracle: Oracle, load: loads.CoordinateDamper, name: str) -> Scalar:
     if name != load.coordinate:
         return oracle.numbers.zero
     return -(oracle.moving.lower(load.coefficient).a * oracle.state.values[name + "_dot"])
 
 
-def _point_damper(oracle: Oracle, load: model.PointDamper, name: str) -> Scalar:
+def _point_damper(oracle: Oracle, load: loads.PointDamper, name: str) -> Scalar:
     """-c d' dd'/dq', where the rate of the distance d' = (r . r')/d has dd'/dq' = dd/dq = (r . dr/dq)/d."""
     apart, closing, shift = _ends_apart(oracle, load, name)
     square = oracle.numbers.reciprocal(_dot(apart, apart))
     return -(oracle.moving.lower(load.coefficient).a * _dot(apart, closing) * _dot(apart, shift) * square)
 
 
-def _isotropic_damper(oracle: Oracle, load: model.IsotropicDamper, name: str) -> Scalar:
+def _isotropic_damper(oracle: Oracle, load: loads.IsotropicDamper, name: str) -> Scalar:
     """-c r' . dr/dq with r the vector between the points."""
     _, closing, shift = _ends_apart(oracle, load, name)
     return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
 
 
 def _ends_apart(
-    oracle: Oracle, load: model.PointDamper | model.IsotropicDamper, name: str
+    oracle: Oracle, load: loads.PointDamper | loads.IsotropicDamper, name: str
 ) -> tuple[list[Scalar], list[Scalar], list[Scalar]]:
     """r = r_first - r_second, its rate, and its derivative by a coordinate, in inertial axes."""
     places, velocities, shifts = [], [], []
@@ -670,14 +671,14 @@ def _ends_apart(
     return apart, closing, shift
 
 
-def _rayleigh(oracle: Oracle, load: model.Rayleigh, name: str) -> Scalar:
+def _rayleigh(oracle: Oracle, load: loads.Rayleigh, name: str) -> Scalar:
     environment = oracle._constants()
     zero, one = oracle.numbers.zero, oracle.numbers.one
     environment[velocity_name(name)] = Series(oracle.state.values[name + "_dot"], one, zero)
     return -Lowering(TaylorSeries(oracle.numbers, environment), environment)(load.expression).b
 
 
-def _generalized(oracle: Oracle, load: model.GeneralizedForce, name: str) -> Scalar:
+def _generalized(oracle: Oracle, load: loads.GeneralizedForce, name: str) -> Scalar:
     total = oracle.numbers.zero
     for coordinate, value in load.components:
         if coordinate == name:
@@ -685,12 +686,12 @@ def _generalized(oracle: Oracle, load: model.GeneralizedForce, name: str) -> Sca
     return total
 
 
-def _point_force(oracle: Oracle, load: model.PointForce, name: str) -> Scalar:
+def _point_force(oracle: Oracle, load: loads.PointForce, name: str) -> Scalar:
     force = oracle.in_inertial_axes(load.axes, load.components)
     return _dot(force, oracle.along(name, load.point.body, oracle.numbers_of(load.point.position)))
 
 
-def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
+def _torque(oracle: Oracle, load: loads.Torque, name: str) -> Scalar:
     torque = oracle.in_inertial_axes(load.axes, load.components)
     place = oracle.displaced(name)
     turned = place.spin(load.body)[0] if load.body != INERTIAL else [oracle.numbers.zero] * 3
@@ -700,11 +701,11 @@ def _torque(oracle: Oracle, load: model.Torque, name: str) -> Scalar:
 
 
 _GENERALIZED_FORCES: dict[type, Any] = {
-    model.CoordinateDamper: _coordinate_damper,
-    model.PointDamper: _point_damper,
-    model.IsotropicDamper: _isotropic_damper,
-    model.Rayleigh: _rayleigh,
-    model.GeneralizedForce: _generalized,
-    model.PointForce: _point_force,
-    model.Torque: _torque,
+    loads.CoordinateDamper: _coordinate_damper,
+    loads.PointDamper: _point_damper,
+    loads.IsotropicDamper: _isotropic_damper,
+    loads.Rayleigh: _rayleigh,
+    loads.GeneralizedForce: _generalized,
+    loads.PointForce: _point_force,
+    loads.Torque: _torque,
 }

@@ -24,7 +24,7 @@ from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.driven import held
 from mbsym.model.substitution import put
-from mbsym.model.system import Load, PointForce, System, Torque, acceleration_name, rational, velocity_name
+from mbsym.model.system import System, acceleration_name, rational, velocity_name
 
 
 def given_values(system: System, overrides: Mapping[str, Fraction]) -> dict[str, Fraction]:
@@ -68,12 +68,7 @@ def at_numbers(system: System, values: Mapping[str, Fraction]) -> System:
     turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
     bare = replace(held(system), parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
     found: System = put(replace(bare, time_scale=None), numbers)
-    return replace(found, loads=tuple(load for load in found.loads if not _is_nothing(load)))
-
-
-def _is_nothing(load: Load) -> bool:
-    """A force or torque that is zero: left in, it would only cast doubt on the energy integral."""
-    return isinstance(load, (PointForce, Torque)) and all(rational(x) == 0 for x in load.components)
+    return replace(found, loads=tuple(load for x in found.loads if (load := x.simplified()) is not None))
 
 
 def _folded(expression: Expression) -> Expression:

@@ -15,23 +15,10 @@ from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import (
-    INERTIAL,
-    Body,
-    CoordinateDamper,
-    CoordinateSpring,
-    ForceFunction,
-    GeneralizedForce,
-    IsotropicDamper,
+from mbsym.model.loads import (
     Load,
-    PointDamper,
-    PointForce,
-    PointSpring,
-    Rayleigh,
-    System,
-    Torque,
-    velocity_name,
 )
+from mbsym.model.system import INERTIAL, Body, System, velocity_name
 
 
 @dataclass(frozen=True)
@@ -92,17 +79,5 @@ def _same_in_every_direction(system: System, root: Body, angles: Sequence[str]) 
 
 
 def _is_internal(load: Load, hidden: set[str]) -> bool:
-    match load:
-        case CoordinateSpring(coordinate) | CoordinateDamper(coordinate):
-            return coordinate not in hidden
-        case PointSpring(first, second) | PointDamper(first, second) | IsotropicDamper(first, second):
-            return INERTIAL not in (first.body, second.body)
-        case ForceFunction() | Rayleigh():
-            return True
-        case GeneralizedForce(components):
-            return not any(name in hidden for name, _ in components)
-        case PointForce(point, _, axes):
-            return INERTIAL not in (point.body, axes)
-        case Torque(body, _, axes):
-            return INERTIAL not in (body, axes)
-    return False
+    """Whether it knows no direction in space, and none of the hidden names."""
+    return load.bodies is not None and INERTIAL not in load.bodies and not hidden & {*load.coordinates}

@@ -28,7 +28,8 @@ from mbsym.expressions.tree import (
     sticks,
     walk,
 )
-from mbsym.model.system import EXACT, NewtonianGravity, System, acceleration_name, velocity_name
+from mbsym.model.loads import EXACT
+from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: The sines and cosines of so many constant angles have places in the ring.
 MOST_CONSTANT_ANGLES = 256
@@ -171,7 +172,7 @@ def ring_of(
     """
     adjunctions = 12 + 4 * len(system.loads)
     # Every mass centre has a distance of its own in the exact field, and on the unperturbed motion another one.
-    exact = sum(isinstance(load, NewtonianGravity) and load.order == EXACT for load in system.loads)
+    exact = sum(field.order == EXACT for field in system.newtonian_fields)
     adjunctions += 4 * exact * sum(body.mass != ZERO or body.inertia is not None for body in system.bodies)
     for expression in (*expressions(system), *expressions(system.claims), *expressions(system.abbreviations)):
         for node in walk(expression):

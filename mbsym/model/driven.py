@@ -8,7 +8,7 @@ from dataclasses import replace
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.inputs import Input
 from mbsym.model.substitution import folded, put
-from mbsym.model.system import GeneralizedForce, Load, PointForce, System, Torque, rational
+from mbsym.model.system import System
 
 
 def driven(system: System, laws: Mapping[str, Expression]) -> System:
@@ -20,7 +20,7 @@ def driven(system: System, laws: Mapping[str, Expression]) -> System:
         return replace(system, outputs=()) if system.outputs else system
     images = {one.name: laws.get(one.name, one.held) for one in system.inputs}
     loads = (put(load, images, folded) for load in system.loads)
-    kept = tuple(load for one in loads if (load := _simplified(one)) is not None)
+    kept = tuple(load for one in loads if (load := one.simplified()) is not None)
     return replace(system, loads=kept, inputs=(), outputs=())
 
 
@@ -32,13 +32,3 @@ def held(system: System) -> System:
 def with_held(inputs: tuple[Input, ...], values: Mapping[str, Expression]) -> tuple[Input, ...]:
     """The inputs with their constant values on the unperturbed motion, where these are given."""
     return tuple(replace(one, held=values.get(one.name, ZERO)) for one in inputs)
-
-
-def _simplified(load: Load) -> Load | None:
-    """Without components that are zero at sight; None where nothing is left."""
-    if isinstance(load, PointForce | Torque):
-        return None if all(rational(x) == 0 for x in load.components) else load
-    if isinstance(load, GeneralizedForce):
-        components = tuple((name, x) for name, x in load.components if rational(x) != 0)
-        return None if not components else replace(load, components=components)
-    return load

@@ -8,15 +8,7 @@ from typing import Any
 
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.substitution import put
-from mbsym.model.system import (
-    CoordinateDamper,
-    CoordinateSpring,
-    GeneralizedForce,
-    Load,
-    System,
-    acceleration_name,
-    velocity_name,
-)
+from mbsym.model.system import System, acceleration_name, velocity_name
 
 
 def held(system: System, values: Mapping[str, Expression]) -> System:
@@ -32,7 +24,7 @@ def held(system: System, values: Mapping[str, Expression]) -> System:
     for body in system.bodies:
         kept = tuple(name for name in body.coordinates if name not in values)
         bodies.append(replace(put(body, images), coordinates=kept))
-    loads = [put(left, images) for load in system.loads if (left := _left(load, values)) is not None]
+    loads = [put(left, images) for load in system.loads if (left := load.without(values)) is not None]
     changes: dict[str, Any] = {
         "bodies": tuple(bodies),
         "loads": tuple(loads),
@@ -41,13 +33,3 @@ def held(system: System, values: Mapping[str, Expression]) -> System:
         "claims": (),
     }
     return replace(system, **changes)
-
-
-def _left(load: Load, values: Mapping[str, Expression]) -> Load | None:
-    """A load without its parts on coordinates that are held."""
-    if isinstance(load, CoordinateSpring | CoordinateDamper):
-        return None if load.coordinate in values else load
-    if isinstance(load, GeneralizedForce):
-        components = tuple((name, force) for name, force in load.components if name not in values)
-        return replace(load, components=components) if components else None
-    return load

@@ -20,33 +20,26 @@ Spans point back into the description; they take no part in equality, so two spe
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
-from fractions import Fraction
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.angles import linear_form
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
+from mbsym.model.basics import INERTIAL, Vector, _span
+from mbsym.model.basics import Point as Point
+from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
+from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.speeds import Speed, UnitVector
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
     from mbsym.model.constraints import Constraint
 
-Vector = tuple[Expression, Expression, Expression]
 Tensor = tuple[Vector, Vector, Vector]
-
-#: The name of the inertial frame.
-INERTIAL = "0"
-
-#: The order of a Newtonian field that is not expanded, and all orders there are.
-EXACT = "exact"
-GRAVITY_ORDERS: tuple[int | str, ...] = (2, 3, 4, EXACT)
-
 
 #: The languages of reports: English, Russian, Spanish.
 LANGUAGES = ("en", "ru", "es")
@@ -59,10 +52,6 @@ def velocity_name(coordinate: str) -> str:
 
 def acceleration_name(coordinate: str) -> str:
     return coordinate + "_ddot"
-
-
-def _span() -> Span | None:
-    return field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,159 +157,6 @@ class Body:
     speeds: tuple[Speed, ...] = ()
     orientation: tuple[UnitVector, ...] = ()
     span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class Point:
-    """A point of a body, in the axes of that body; body "0" is the inertial frame."""
-
-    body: str
-    position: Vector
-
-
-@dataclass(frozen=True, slots=True)
-class NewtonianGravity:
-    """Newtonian field of a centre, acting on the bodies that the frame ``about`` carries.
-
-    ``constant`` is nu = G M; ``centre`` the frame whose origin attracts (mostly the inertial one).  With ``order`` 2, 3
-    or 4 the field is expanded about the origin O1 of ``about`` in (size)/R up to that degree; with ``EXACT`` every mass
-    centre has its exact distance (``mbsym.mechanics.loads.newtonian_orders`` defines both), and ``about`` may be the
-    centre itself.
-    """
-
-    constant: Expression
-    centre: str
-    about: str
-    order: int | str = 2
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class UniformGravity:
-    """``acceleration`` is the vector g in inertial axes, for example (0, -g, 0)."""
-
-    acceleration: Vector
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class CoordinateSpring:
-    """Linear or torsional: potential stiffness (coordinate - rest)^2 / 2."""
-
-    coordinate: str
-    stiffness: Expression
-    rest: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class PointSpring:
-    """Between two points: potential stiffness (distance - length)^2 / 2."""
-
-    first: Point
-    second: Point
-    stiffness: Expression
-    length: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class CoordinateDamper:
-    """Rayleigh function coefficient coordinate'^2 / 2."""
-
-    coordinate: str
-    coefficient: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class PointDamper:
-    """Along the line between two points: Rayleigh function coefficient (d distance/dt)^2 / 2."""
-
-    first: Point
-    second: Point
-    coefficient: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class IsotropicDamper:
-    """Against all relative motion of two points: Rayleigh function coefficient |V_first - V_second|^2 / 2.
-
-    Its two forces are opposite but not along the line, so that together they are a couple: it does not conserve
-    angular momentum, as no pair of points alone can do it (it stands for a joint, a bath, a medium).
-    """
-
-    first: Point
-    second: Point
-    coefficient: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class ForceFunction:
-    """A free force function U(q, t), added to L; a ``potential`` in the description is stored as U = -potential.
-
-    ``spelled`` remembers which of the two the description used ("force function" or "potential") and is only for
-    writing it back; ``expression`` is what stands in the file.
-    """
-
-    expression: Expression
-    spelled: str = "force function"
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class Rayleigh:
-    """A free dissipation function R(q, q'); its generalised forces are -dR/dq'."""
-
-    expression: Expression
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class GeneralizedForce:
-    """Q for some coordinates, as expressions in coordinates, velocities, parameters and t."""
-
-    components: tuple[tuple[str, Expression], ...]
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class PointForce:
-    """A force on a point of a body, with components in the axes of ``axes`` (the body itself: a follower force)."""
-
-    point: Point
-    components: Vector
-    axes: str
-    span: Span | None = _span()
-
-
-@dataclass(frozen=True, slots=True)
-class Torque:
-    """A torque on a body, with components in the axes of ``axes``; ``reaction_on`` feels the opposite one."""
-
-    body: str
-    components: Vector
-    axes: str
-    reaction_on: str | None = None
-    span: Span | None = _span()
-
-
-Load = (
-    NewtonianGravity
-    | UniformGravity
-    | CoordinateSpring
-    | PointSpring
-    | CoordinateDamper
-    | PointDamper
-    | IsotropicDamper
-    | ForceFunction
-    | Rayleigh
-    | GeneralizedForce
-    | PointForce
-    | Torque
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -447,6 +283,19 @@ class System(GuessesNames):
     def input_names(self) -> tuple[str, ...]:
         return tuple(one.name for one in self.inputs)
 
+    @property
+    def newtonian_fields(self) -> tuple[NewtonianGravity, ...]:
+        return tuple(load for load in self.loads if isinstance(load, NewtonianGravity))
+
+    @property
+    def uniform_fields(self) -> tuple[UniformGravity, ...]:
+        return tuple(load for load in self.loads if isinstance(load, UniformGravity))
+
+    def with_field_order(self, order: int | str) -> System:
+        """The same with its Newtonian fields expanded to an order, or exact."""
+        loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in self.loads)
+        return replace(self, loads=loads)
+
     def body(self, name: str) -> Body:
         """The body of that name.  Raises KeyError where there is none."""
         for body in self.bodies:
@@ -460,9 +309,3 @@ class System(GuessesNames):
         while path[-1] != INERTIAL:
             path.append(self.body(path[-1]).attached_to)
         return tuple(reversed(path))
-
-
-def rational(value: Expression | None) -> Fraction | None:
-    """The exact number that an expression without names is made of, or None."""
-    form = None if value is None else linear_form(value)
-    return form.constant if form is not None and form.is_constant else None

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
-from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
@@ -71,16 +71,15 @@ class ModelError:
 def variants(scenario: Scenario) -> Iterator[Variant]:
     """Every model of the scenario, the given one first; those that cannot be derived are left out."""
     system = scenario.system
-    fields = [load for load in system.loads if isinstance(load, NewtonianGravity)]
+    fields = system.newtonian_fields
     faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
     yield Variant(DESCRIBED, "nothing that the description has", Dynamics(scenario), faithful)
     for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
         if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
             continue
-        loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in system.loads)
         dropped = "nothing of the field" if order == EXACT else f"terms of the field above order {order} in size/R"
         name = "exact gravity" if order == EXACT else f"gravity of order {order}"
-        yield Variant(name, dropped, Dynamics(replace(scenario, system=replace(system, loads=loads))), rank)
+        yield Variant(name, dropped, Dynamics(replace(scenario, system=system.with_field_order(order))), rank)
     if system.motion:
         label = "linearised"
         yield Variant(label, "all that is not linear in the deviation", LinearisedDynamics(scenario), -1)

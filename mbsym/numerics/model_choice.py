@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
-from mbsym.model.system import EXACT
+from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting

@@ -16,7 +16,8 @@ from typing import Any
 
 from mbsym.expressions.tree import names
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import EXACT, GRAVITY_ORDERS, NewtonianGravity, System
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS
+from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
@@ -47,11 +48,9 @@ class Model:
 def scenario_of(scenario: Scenario, model: Model) -> Scenario:
     """The scenario with the field of a model's order and zero for the parameters that it leaves out."""
     found = changed(scenario, **dict.fromkeys(model.without, Fraction(0))) if model.without else scenario
-    if model.gravity is None or all(load.order == model.gravity for load in _fields(scenario.system)):
+    if model.gravity is None or all(load.order == model.gravity for load in scenario.system.newtonian_fields):
         return found
-    order = model.gravity
-    loads = tuple(replace(x, order=order) if isinstance(x, NewtonianGravity) else x for x in scenario.system.loads)
-    return replace(found, system=replace(scenario.system, loads=loads))
+    return replace(found, system=scenario.system.with_field_order(model.gravity))
 
 
 def modelled(scenario: Scenario, model: Model) -> Dynamics:
@@ -62,13 +61,13 @@ def modelled(scenario: Scenario, model: Model) -> Dynamics:
 
 def described(scenario: Scenario) -> Model:
     """The model that the description gives: the least order of its Newtonian fields, nothing else left out."""
-    orders = [load.order for load in _fields(scenario.system)]
+    orders = [load.order for load in scenario.system.newtonian_fields]
     return Model(min(orders, key=GRAVITY_ORDERS.index)) if orders else Model()
 
 
 def faithful(scenario: Scenario) -> Model:
     """The model that leaves nothing out of what the description has."""
-    return Model(EXACT) if _fields(scenario.system) else Model()
+    return Model(EXACT) if scenario.system.newtonian_fields else Model()
 
 
 def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
@@ -77,7 +76,7 @@ def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
     An expansion in size/R is offered where the bodies are nearer to O1 than O1 to the centre, or where the description
     itself expands.
     """
-    found = _fields(scenario.system)
+    found = scenario.system.newtonian_fields
     if not found:
         return (None,)
     sizes = [relative_size(scenario, load) for load in found if load.order == EXACT]
@@ -117,7 +116,3 @@ def parted(scenario: Scenario, model: Model) -> tuple[tuple[str, ...], tuple[str
     empty = emptied(scenario, model.without)
     held = {name for found in empty.values() for name in found}
     return tuple(empty), tuple(name for name in model.without if name not in held)
-
-
-def _fields(system: System) -> list[NewtonianGravity]:
-    return [load for load in system.loads if isinstance(load, NewtonianGravity)]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
-from mbsym.model.system import GRAVITY_ORDERS
+from mbsym.model.loads import GRAVITY_ORDERS
 from mbsym.model.welded import lumped
 from mbsym.numerics.choice import Choice
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64

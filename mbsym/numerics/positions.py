@@ -20,17 +20,10 @@ from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import expressions, program_environment, ring_of
-from mbsym.model.system import (
-    INERTIAL,
-    Body,
-    CoordinateDamper,
-    CoordinateSpring,
-    NewtonianGravity,
-    System,
-    UniformGravity,
-)
+from mbsym.model.system import INERTIAL, Body, System
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
@@ -197,11 +190,10 @@ def _place(scene: Scene, frame: str, point: Point) -> Vector:
 def _upward(scene: Scene, frame: str) -> Iterator[Vector]:
     """Against gravity, in the axes of the frame: away from the centre, or opposite to uniform gravity."""
     for load in scene.system.loads:
-        if isinstance(load, UniformGravity):
-            yield scene.to_axes(-scene.vector(load.acceleration, INERTIAL), frame)
-            return
-        if isinstance(load, NewtonianGravity) and load.about == frame and load.centre == INERTIAL != frame:
-            yield scene.to_axes(scene.position(scene.zero(frame), INERTIAL), frame)
+        found = KINDS[type(load)].upward
+        up = None if found is None else found(load, scene, frame)
+        if up is not None:
+            yield up
             return
 
 
@@ -274,7 +266,7 @@ def _held(system: System, frame: str, point: Point) -> bool:
     """Whether a joint hangs on the origin of the frame by a spring or a damper."""
     if point.kind != JOINT or system.body(point.body).attached_to != frame:
         return False
-    held = {load.coordinate for load in system.loads if isinstance(load, CoordinateSpring | CoordinateDamper)}
+    held = {name for load in system.loads if not load.given for name in load.coordinates}
     return any(held & names(x) for x in system.body(point.body).connection_point)
 
 

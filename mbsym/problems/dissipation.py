@@ -49,19 +49,10 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.motion import relations, turning, unperturbed_with
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import (
-    INERTIAL,
-    CoordinateDamper,
-    GeneralizedForce,
-    IsotropicDamper,
+from mbsym.model.loads import (
     Load,
-    PointDamper,
-    PointForce,
-    Rayleigh,
-    Torque,
-    rational,
-    velocity_name,
 )
+from mbsym.model.system import INERTIAL, rational, velocity_name
 from mbsym.problems.energy import Energy
 
 
@@ -79,8 +70,6 @@ class EnergyLaw(Enum):
         return self in (EnergyLaw.CONSERVED, EnergyLaw.NOT_GROWING)
 
 
-#: Loads whose generalised forces are formulas in q and q' and need no kinematics.
-_FORMULAS = (CoordinateDamper, Rayleigh, GeneralizedForce)
 #: A formula of more products than this is not judged product by product.
 MOST_PRODUCTS = 64
 
@@ -157,7 +146,7 @@ class Balance:
         acting = [load for load in self._without_potential if self._acts_on(load, name, own)]
         if not acting:
             return True
-        if all(isinstance(load, CoordinateDamper) for load in acting):
+        if all(load.linear for load in acting):
             return True
         forces = self._forces
         if forces is None:
@@ -173,12 +162,10 @@ class Balance:
         return not any(ring.dependencies(slope, moving) for slope in slopes)
 
     def _acts_on(self, load: Load, name: str, own: set[str]) -> bool:
-        if isinstance(load, GeneralizedForce):
-            return any(coordinate == name for coordinate, _ in load.components)
-        if isinstance(load, CoordinateDamper):
-            return load.coordinate == name
-        if isinstance(load, Rayleigh):
-            return velocity_name(name) in names(load.expression)
+        if load.coordinates:
+            return name in load.coordinates
+        if load.dissipation_function is not None:
+            return velocity_name(name) in names(load.dissipation_function)
         return bool(own & self._names_of(load))
 
     @cached_property
@@ -193,11 +180,11 @@ class Balance:
 
     @property
     def _without_potential(self) -> list[Load]:
-        return [load for load in self.scene.system.loads if KINDS[type(load)].force_function is None]
+        return [load for load in self.scene.system.loads if not load.conservative]
 
     @property
     def _others(self) -> list[Load]:
-        return [load for load in self._acting if not isinstance(load, _FORMULAS)]
+        return [load for load in self._acting if not _is_formula(load)]
 
     @property
     def _acting(self) -> list[Load]:
@@ -207,7 +194,7 @@ class Balance:
     @cached_property
     def _gradients(self) -> tuple[Load, ...]:
         """Forces that are the gradient of a function of the coordinates: together, or each by itself."""
-        given = [load for load in self._without_potential if isinstance(load, (PointForce, Torque, GeneralizedForce))]
+        given = [load for load in self._without_potential if load.given]
         if not given or not self.scene.motions:
             return ()
         if self._is_gradient(given):
@@ -291,7 +278,7 @@ class Balance:
     def _formulas(self) -> EnergyLaw:
         """The power of dampers of coordinates, dissipation functions and generalised forces together."""
         system = self.scene.system
-        loads = [load for load in self._acting if isinstance(load, _FORMULAS)]
+        loads = [load for load in self._acting if _is_formula(load)]
         spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
         if any(spinning & self._names_of(load) for load in loads):
             return EnergyLaw.UNKNOWN
@@ -311,16 +298,15 @@ class Balance:
 
     def _losses(self, load: Load) -> Iterator[str]:
         """The signs of parts of -P, product by product."""
-        if isinstance(load, CoordinateDamper):
-            yield self._word(self.scene.lower(load.coefficient))
-        elif isinstance(load, Rayleigh):
-            for one in _products(load.expression):
+        if load.damping is not None:
+            yield self._word(self.scene.lower(load.damping))
+        if load.dissipation_function is not None:
+            for one in _products(load.dissipation_function):
                 degree = self._degree(one)
                 yield "unknown" if degree is None else "zero" if degree == 0 else self._product_word(one)
-        elif isinstance(load, GeneralizedForce):
-            for name, force in load.components:
-                for one in _products(multiply(Name(velocity_name(name)), force)):
-                    yield sign_of_product("negative", self._product_word(one))
+        for name, force in zip(load.coordinates, load.given, strict=False):
+            for one in _products(multiply(Name(velocity_name(name)), force)):
+                yield sign_of_product("negative", self._product_word(one))
 
     def _degree(self, one: _Product) -> int | None:
         """The degree of a product in the velocities; None where it is not homogeneous."""
@@ -361,12 +347,12 @@ class Balance:
 
     def _pair(self, load: Load) -> EnergyLaw:
         """A dashpot, force or torque."""
-        if isinstance(load, (PointForce, Torque)):
-            still = all(self._word(self.scene.lower(x)) == "zero" for x in load.components)
+        if load.given:
+            still = all(self._word(self.scene.lower(x)) == "zero" for x in load.given)
             return EnergyLaw.CONSERVED if still else EnergyLaw.UNKNOWN
-        if not isinstance(load, (PointDamper, IsotropicDamper)):
+        if load.damping is None:
             return EnergyLaw.UNKNOWN
-        word = self._word(self.scene.lower(load.coefficient))
+        word = self._word(self.scene.lower(load.damping))
         if word == "zero":
             return EnergyLaw.CONSERVED
         if {*self._running} & self._names_of(load):
@@ -380,31 +366,25 @@ class Balance:
 
         A dashpot along a line knows only what moves its ends with respect to each other.
         """
-        found = {name for x in expressions(load) for name in names(x)}
-        if isinstance(load, CoordinateDamper):
-            return found | {load.coordinate, velocity_name(load.coordinate)}
-        if isinstance(load, GeneralizedForce):
-            return found | {x for name, _ in load.components for x in (name, velocity_name(name))}
-        if isinstance(load, Rayleigh):
-            return found
         system = self.scene.system
-        if isinstance(load, (PointDamper, IsotropicDamper)):
-            bodies = [load.first.body, load.second.body]
-        elif isinstance(load, PointForce):
-            bodies = [load.point.body, load.axes]
-        elif isinstance(load, Torque):
-            bodies = [load.body, load.axes, load.reaction_on or INERTIAL]
-        else:  # of a kind that is not known here: on anything
+        found = {name for x in expressions(load) for name in names(x)}
+        found |= {x for name in load.coordinates for x in (name, velocity_name(name))}
+        if load.bodies is None:  # it depends on places in space: on anything
             return found | {*system.coordinates, *system.velocities}
-        paths = [system.path(name) for name in bodies]
+        paths = [system.path(name) for name in load.bodies]
         common: set[str] = {INERTIAL}
-        if isinstance(load, PointDamper):
+        if load.along_line:
             common |= {*paths[0]} & {*paths[1]}
         for body in {name for path in paths for name in path} - common:
             part = system.body(body)
             moved = {name for x in expressions((part.rotation, part.connection_point)) for name in names(x)}
             found |= moved | {velocity_name(name) for name in moved & {*system.coordinates}}
         return found
+
+
+def _is_formula(load: Load) -> bool:
+    """Whether its generalised forces are formulas in q and q' and need no kinematics."""
+    return load.bodies == ()
 
 
 def _together(laws: Sequence[EnergyLaw]) -> EnergyLaw:

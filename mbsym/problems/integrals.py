@@ -42,7 +42,6 @@ from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import ball_states, rational_states
@@ -106,7 +105,7 @@ def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
     The energy T - U, if nothing depends on the time, and the momentum dL/dq' of every coordinate that the straight-line
     program of L = T + U does not read.  Sufficient: a coordinate may drop out only when formulas are simplified.
     """
-    if any(KINDS[type(load)].force_function is None for load in system.loads):
+    if not all(load.conservative for load in system.loads):
         return ()
     given = {name for expression in expressions(system) for name in names(expression)}
     rates = {*system.velocities, *(acceleration_name(name) for name in system.coordinates)}

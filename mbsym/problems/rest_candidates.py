@@ -16,7 +16,6 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.mechanics.rest import Rest
-from mbsym.model.system import CoordinateSpring
 from mbsym.problems.rest_place import PRECISION, Place
 
 #: A root of higher multiplicity is not told apart from others.
@@ -62,9 +61,10 @@ def candidates(found: Rest, names: Sequence[str], equations: Sequence[Polynomial
     """Those at which all equations vanish: ``names`` at zero, and at the rests of their springs."""
     rests: dict[str, list[LinearForm]] = {name: [LinearForm()] for name in names}
     for load in found.system.loads:
-        form = linear_form(load.rest) if isinstance(load, CoordinateSpring) else None
-        if isinstance(load, CoordinateSpring) and form is not None and not form.coefficients:
-            rests.get(load.coordinate, []).append(form)
+        name, value = load.rest_position or ("", None)
+        form = None if value is None else linear_form(value)
+        if form is not None and not form.coefficients:
+            rests.get(name, []).append(form)
     longest = max(map(len, rests.values()), default=0)
     tried = []
     for k in range(longest):

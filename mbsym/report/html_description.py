@@ -22,10 +22,8 @@ from mbsym.formulas.mathml import (
     row,
     sign,
 )
-from mbsym.model.speeds import OMEGA, Speed
-from mbsym.model.system import (
+from mbsym.model.loads import (
     EXACT,
-    INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
     ForceFunction,
@@ -33,7 +31,6 @@ from mbsym.model.system import (
     IsotropicDamper,
     Load,
     NewtonianGravity,
-    Point,
     PointDamper,
     PointForce,
     PointSpring,
@@ -41,6 +38,8 @@ from mbsym.model.system import (
     Torque,
     UniformGravity,
 )
+from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.system import INERTIAL, Point
 
 _FUNCTIONS = {"atan": "arctan", "log": "ln"}
 _DOTS = {"dot": "˙", "ddot": "¨"}

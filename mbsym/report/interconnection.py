@@ -16,7 +16,7 @@ from enum import StrEnum
 from math import ceil
 
 from mbsym.expressions.tree import ZERO, Expression, names
-from mbsym.model.system import INERTIAL, IsotropicDamper, PointDamper, PointSpring, System, Torque
+from mbsym.model.system import INERTIAL, System
 
 #: A page holds so many rows and columns of nodes.
 MOST_ROWS, MOST_COLUMNS = 12, 12
@@ -138,16 +138,7 @@ def _joint(system: System, nodes: Sequence[Node], before: int, after: int) -> Jo
 
 
 def _interactions(system: System) -> Iterator[tuple[str, str, str]]:
-    for load in system.loads:
-        match load:
-            case PointSpring(first, second):
-                yield first.body, second.body, "spring"
-            case PointDamper(first, second):
-                yield first.body, second.body, "damper"
-            case IsotropicDamper(first, second):
-                yield first.body, second.body, "isotropic damper"
-            case Torque(body=body, reaction_on=str() as other):
-                yield other, body, "torque"
+    return (load.link for load in system.loads if load.link is not None)
 
 
 # --- strips -----------------------------------------------------------------------------------------------------------

@@ -8,10 +8,8 @@ from fractions import Fraction
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.latex import LatexNames, Symbol
-from mbsym.model.speeds import OMEGA, Speed
-from mbsym.model.system import (
+from mbsym.model.loads import (
     EXACT,
-    INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
     ForceFunction,
@@ -19,7 +17,6 @@ from mbsym.model.system import (
     IsotropicDamper,
     Load,
     NewtonianGravity,
-    Point,
     PointDamper,
     PointForce,
     PointSpring,
@@ -27,6 +24,8 @@ from mbsym.model.system import (
     Torque,
     UniformGravity,
 )
+from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.system import INERTIAL, Point
 from mbsym.report.language import Language
 
 # --- expressions ---

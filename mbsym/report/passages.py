@@ -12,7 +12,8 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.told import Definition, Told
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.intermediates import Meaning, Quantity
-from mbsym.model.system import INERTIAL, NewtonianGravity, System, UniformGravity
+from mbsym.model.loads import Load, NewtonianGravity
+from mbsym.model.system import INERTIAL, System
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ class _Speaker:
     def _carried(self, name: str) -> str:
         return " with what it carries" if name in self.carriers else ""
 
-    def _load(self, number: int) -> object:
+    def _load(self, number: int) -> Load:
         return self.system.loads[number - 1]
 
     def _expansion_point(self, number: int) -> str:
@@ -136,15 +137,13 @@ class _Speaker:
         return f"the connection point of {self._body(about)}"
 
     def _common(self, number: int) -> str:
-        load = self._load(number)
-        ends = [getattr(load, "first").body, getattr(load, "second").body]  # noqa: B009 - any load between two points
-        paths = [self.system.path(name) for name in ends]
+        paths = [self.system.path(point.body) for point in self._load(number).points]
         shared = [a for a, b in zip(*paths, strict=False) if a == b]
         return self._body(shared[-1])
 
     def _gravity(self, name: str) -> str:
         """Which gravity is taken off an acceleration: the uniform one, and that at the origin of a falling frame."""
-        parts = ["gravity"] if any(isinstance(x, UniformGravity) for x in self.system.loads) else []
+        parts = ["gravity"] if self.system.uniform_fields else []
         carriers = [frame for frame in falling_frames(self.system) if frame in self.system.path(name)]
         parts += [f"the field at the connection point of {self._body(frame)}" for frame in carriers]
         return f" less {' and '.join(parts)}" if parts else ""

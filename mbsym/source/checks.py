@@ -33,7 +33,7 @@ from mbsym.model.admissibility import (
     symbolic_violation,
 )
 from mbsym.model.assumptions import broken, contradictory
-from mbsym.model.system import Body, NewtonianGravity, System, velocity_name
+from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
@@ -218,7 +218,7 @@ def _is_enough(system: System, body: Body, index: int) -> bool:
     bring it into other axes, q about axis 3 and then pi/2 about axis 1 turns the body about its axis 2.  A Newtonian
     field acts on the other moments, too.
     """
-    if any(isinstance(load, NewtonianGravity) for load in system.loads):
+    if system.newtonian_fields:
         return False
     moving = {*system.coordinates, *(one.name for one in system.prescribed)}
     bodies = {one.name: one for one in system.bodies}

@@ -9,10 +9,9 @@ from fractions import Fraction
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Name, Number, multiply
-from mbsym.model.system import (
+from mbsym.model.loads import (
     EXACT,
     GRAVITY_ORDERS,
-    INERTIAL,
     CoordinateDamper,
     CoordinateSpring,
     ForceFunction,
@@ -20,16 +19,14 @@ from mbsym.model.system import (
     IsotropicDamper,
     Load,
     NewtonianGravity,
-    Point,
     PointDamper,
     PointForce,
     PointSpring,
     Rayleigh,
     Torque,
     UniformGravity,
-    Vector,
-    rational,
 )
+from mbsym.model.system import INERTIAL, Point, Vector, rational
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import ALIASES, LOADS, POINT, UNSUPPORTED
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence

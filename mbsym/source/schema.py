@@ -9,7 +9,8 @@ from typing import Any
 
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
-from mbsym.model.system import EXACT, GRAVITY_ORDERS, LANGUAGES, SHAPES
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS
+from mbsym.model.system import LANGUAGES, SHAPES
 from mbsym.source.keys import (
     ALIASES,
     AXIS,

@@ -14,31 +14,23 @@ from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, t
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
 from mbsym.model.inputs import Input
-from mbsym.model.speeds import OMEGA, Speed
-from mbsym.model.system import (
-    Body,
+from mbsym.model.loads import (
     CoordinateDamper,
     CoordinateSpring,
     ForceFunction,
     GeneralizedForce,
-    Inertia,
-    InitialValue,
     IsotropicDamper,
     Load,
-    MotionEntry,
     NewtonianGravity,
-    Parameter,
-    Point,
     PointDamper,
     PointForce,
     PointSpring,
-    Prescribed,
     Rayleigh,
-    System,
     Torque,
     UniformGravity,
-    Vector,
 )
+from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.system import Body, Inertia, InitialValue, MotionEntry, Parameter, Point, Prescribed, System, Vector
 from mbsym.model.system import Shape as Look
 
 Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)

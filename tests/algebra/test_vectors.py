@@ -164,7 +164,12 @@ PLANTED = [
     Mistake("omega_k, as the paper prints it", RECURSIONS, "parent_spin.cross(offset)", "spin.cross(offset)", "", ()),
     Mistake("velocity not turned", RECURSIONS, "forward(turns, carried + relative_velocity, name)", "carried", "", ()),
     Mistake(
-        "a weight in inertial axes", "mechanics.loads.gravity:_uniform_action", "field[name] *", "field['0'] *", "", ()
+        "a weight in inertial axes",
+        "mechanics.loads.uniform_gravity:_uniform_action",
+        "field[name] *",
+        "field['0'] *",
+        "",
+        (),
     ),
     Mistake("a force not turned back", "mechanics.bias_forces:forcing", "frame.back(force), ", "force, ", "", ()),
     Mistake("R for R^T", "mechanics.intermediates:NamedScene.back", "].T @ v", "] @ v", "", ()),

@@ -309,7 +309,7 @@ MISTAKES = [
     ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
     ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
     ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),
-    ("mechanics.bias_forces:_gravity", "base - system", "base + system"),
+    ("mechanics.loads.kinds:base_acceleration", "base - field", "base + field"),
 ]
 
 

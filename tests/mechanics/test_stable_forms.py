@@ -23,7 +23,8 @@ from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
-from mbsym.model.system import GRAVITY_ORDERS, NewtonianGravity, System
+from mbsym.model.loads import GRAVITY_ORDERS, NewtonianGravity
+from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code

@@ -28,7 +28,8 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated, programs
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import expressions, ring_of
-from mbsym.model.system import GeneralizedForce, System
+from mbsym.model.loads import GeneralizedForce
+from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kinds import PARTS
 from mbsym.numerics.ledger import code

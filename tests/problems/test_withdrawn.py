@@ -130,7 +130,12 @@ def test_whether_the_motion_is_one_falls_with_its_check(monkeypatch: pytest.Monk
 def test_conserved_falls_with_its_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """Energy with the wrong sign of a potential: the closed equations conserve it, the motion does not."""
     wrong = Mistake(
-        "the sign of a potential", "mechanics.loads.free:_force_function", "-value if", "value if", "machine", ()
+        "the sign of a potential",
+        "mechanics.loads.force_function:_force_function",
+        "-value if",
+        "value if",
+        "machine",
+        (),
     )
     rod = {"name": "rod", "attached to": 0, "rotation": {"axes": [3], "angles": ["q"]}, "mass centre": [1, 0, 0]}
     description = {"mbsym": 1, "name": "torsion", "parameters": ["k"], "bodies": [rod | {"mass": 1}]}

@@ -28,7 +28,8 @@ from mbsym.algebra.point import Rationals
 from mbsym.analysis import Analysis
 from mbsym.expressions.tree import ZERO
 from mbsym.formulas.formula import Formula, Matrix
-from mbsym.model.system import ForceFunction, System
+from mbsym.model.loads import ForceFunction
+from mbsym.model.system import System
 from mbsym.problems.integrals import residual
 from mbsym.problems.knowledge import definition_in_parameters
 

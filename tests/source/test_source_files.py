@@ -17,7 +17,8 @@ from hypothesis import strategies as st
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.safe import safe
 from mbsym.expressions.tree import text as written
-from mbsym.model.system import CoordinateSpring, Inertia, PointForce, System, UniformGravity, rational
+from mbsym.model.loads import CoordinateSpring, PointForce, UniformGravity
+from mbsym.model.system import Inertia, System, rational
 from mbsym.source import json_schema, load, read, render, to_text, to_yaml
 from mbsym.source.document import MAX_COMPLAINTS, MAX_OF_A_KIND
 from mbsym.source.placed import MAX_TEXT

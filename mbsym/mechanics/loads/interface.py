@@ -6,12 +6,13 @@ wrenches otherwise; the Newton-Euler recursion takes wrenches always; where they
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.vectors import Vector
+from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.kinematics import Scene
 
 L = TypeVar("L")
@@ -34,12 +35,32 @@ class Action:
     generalized: dict[str, Scalar] = field(default_factory=dict)
 
 
+class Note(NamedTuple):
+    """A vector or scalar on which a load depends and that has a name in mechanics; ``body`` is empty for none."""
+
+    quantity: Quantity
+    body: str
+    value: Any
+
+
 @dataclass(frozen=True)
 class Kind(Generic[L]):
-    """``force_function`` is None for loads that have none; ``action`` is always there."""
+    """What a kind of load does to a motion; what it says of itself stands with its type in ``mbsym.model.loads``.
+
+    ``force_function``: U; None where it has none.
+    ``field``: the acceleration g that it gives to every mass alike, in inertial axes: a base accelerated by -g has the
+    same effect.  None for all other loads.
+    ``falls``: frames may fall in it (``mbsym.mechanics.falling``), and seen from these it acts by its variation only.
+    ``notes``: the quantities that its formulas are told through.
+    ``upward``: against it, in the axes of a frame, where there is such a direction: for pictures.
+    """
 
     action: Callable[[L, Scene], Action]
     force_function: Callable[[L, Scene], Scalar] | None = None
+    field: Callable[[L, Scene], Vector] | None = None
+    falls: bool = False
+    notes: Callable[[L, Scene], Iterable[Note]] | None = None
+    upward: Callable[[L, Scene, str], Vector | None] | None = None
 
 
 def force_at(point: Vector, force: Vector) -> Wrench:

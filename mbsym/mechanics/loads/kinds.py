@@ -2,27 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads import applied, free, gravity, springs
+from mbsym.mechanics.loads import (
+    coordinate_damper,
+    coordinate_spring,
+    generalized_force,
+    isotropic_damper,
+    newtonian_gravity,
+    point_damper,
+    point_force,
+    point_spring,
+    rayleigh,
+    torque,
+    uniform_gravity,
+)
+from mbsym.mechanics.loads import force_function as free_force_function
 from mbsym.mechanics.loads.interface import Action, Kind
-from mbsym.model import system as model
+from mbsym.model import loads as model
+from mbsym.model.system import INERTIAL
 
 KINDS: dict[type, Kind[Any]] = {
-    model.NewtonianGravity: gravity.NEWTONIAN,
-    model.UniformGravity: gravity.UNIFORM,
-    model.CoordinateSpring: springs.SPRING,
-    model.PointSpring: springs.POINT_SPRING,
-    model.CoordinateDamper: springs.DAMPER,
-    model.PointDamper: springs.POINT_DAMPER,
-    model.IsotropicDamper: springs.ISOTROPIC_DAMPER,
-    model.ForceFunction: free.FORCE_FUNCTION,
-    model.Rayleigh: free.RAYLEIGH,
-    model.GeneralizedForce: free.GENERALIZED,
-    model.PointForce: applied.FORCE,
-    model.Torque: applied.TORQUE,
+    model.NewtonianGravity: newtonian_gravity.KIND,
+    model.UniformGravity: uniform_gravity.KIND,
+    model.CoordinateSpring: coordinate_spring.KIND,
+    model.PointSpring: point_spring.KIND,
+    model.CoordinateDamper: coordinate_damper.KIND,
+    model.PointDamper: point_damper.KIND,
+    model.IsotropicDamper: isotropic_damper.KIND,
+    model.ForceFunction: free_force_function.KIND,
+    model.Rayleigh: rayleigh.KIND,
+    model.GeneralizedForce: generalized_force.KIND,
+    model.PointForce: point_force.KIND,
+    model.Torque: torque.KIND,
 }
 
 
@@ -38,9 +54,26 @@ def force_function(scene: Scene) -> Scalar:
 
 def actions(scene: Scene, potential: bool = True) -> list[Action]:
     """What the loads do to the bodies; with ``potential`` false, only those that have no force function."""
-    chosen = [KINDS[type(load)] for load in scene.system.loads]
-    return [
-        kind.action(load, scene)
-        for load, kind in zip(scene.system.loads, chosen, strict=True)
-        if potential or kind.force_function is None
-    ]
+    loads = [load for load in scene.system.loads if potential or not load.conservative]
+    return [KINDS[type(load)].action(load, scene) for load in loads]
+
+
+def base_acceleration(scene: Scene) -> Vector:
+    """-sum of g: the acceleration of a base that stands for all uniform fields, in inertial axes."""
+    base = scene.zero(INERTIAL)
+    for load in scene.system.loads:
+        field = KINDS[type(load)].field
+        if field is not None:
+            base = base - field(load, scene)
+    return base
+
+
+def actions_beyond_fields(scene: Scene, falling: Scene) -> Iterator[Action]:
+    """What the loads do to the bodies, less what ``base_acceleration`` stands for.
+
+    ``falling`` is the scene seen from its falling frames, or the same scene where none falls.
+    """
+    for load in scene.system.loads:
+        kind = KINDS[type(load)]
+        if kind.field is None:
+            yield kind.action(load, falling if kind.falls else scene)

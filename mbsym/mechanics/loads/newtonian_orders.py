@@ -37,7 +37,7 @@ from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Wrench
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radius_vectors, trace
-from mbsym.model.system import EXACT, NewtonianGravity
+from mbsym.model.loads import EXACT, NewtonianGravity
 
 
 def order_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:

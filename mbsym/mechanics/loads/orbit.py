@@ -14,7 +14,8 @@ from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Wrench
 from mbsym.mechanics.variables import expressions, ring_environment
-from mbsym.model.system import INERTIAL, NewtonianGravity
+from mbsym.model.loads import NewtonianGravity
+from mbsym.model.system import INERTIAL
 
 
 class Orbit:

@@ -14,17 +14,8 @@ from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, trace
 from mbsym.mechanics.variables import ring_of
-from mbsym.model.system import (
-    EXACT,
-    GRAVITY_ORDERS,
-    Body,
-    Inertia,
-    NewtonianGravity,
-    Rotation,
-    Tensor,
-    acceleration_name,
-    rational,
-)
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
+from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_name, rational
 from mbsym.model.welded import lumped
 from mbsym.numerics.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
 from mbsym.numerics.ledger.entry import ESTIMATED, OPERATIONS, PROVED, SECONDS, UNDECIDED, Measure, Saving

@@ -33,7 +33,6 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
@@ -316,7 +315,7 @@ def without_potential(system: System) -> tuple[str, ...]:
     """The loads that have no force function, in words."""
     found = []
     for load in system.loads:
-        if KINDS[type(load)].force_function is None:
+        if not load.conservative:
             words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(load).__name__).lower()
             found.append(words)
     return tuple(dict.fromkeys(found))

@@ -10,30 +10,12 @@ from itertools import pairwise
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
-from mbsym.model.system import (
-    Body,
-    CoordinateDamper,
-    CoordinateSpring,
-    ForceFunction,
-    GeneralizedForce,
-    IsotropicDamper,
+from mbsym.model.loads import (
     Load,
-    NewtonianGravity,
-    Point,
-    PointDamper,
-    PointForce,
-    PointSpring,
-    Rayleigh,
-    System,
-    Torque,
-    UniformGravity,
-    Vector,
 )
+from mbsym.model.system import Body, Point, System, Vector
 from mbsym.model.units import (
-    ACCELERATION,
     BASES,
-    ENERGY,
-    FORCE,
     INERTIA,
     LENGTH,
     MASS,
@@ -203,37 +185,10 @@ class _System:
                 self.expect(size, LENGTH, "a size")
 
     def load(self, load: Load) -> None:
-        match load:
-            case NewtonianGravity(constant=constant):
-                self.expect(constant, times(times(LENGTH, LENGTH, 2), TIME, -2), "a gravitational parameter")
-            case UniformGravity(acceleration):
-                self.vector(acceleration, ACCELERATION, "an acceleration")
-            case CoordinateSpring(coordinate, stiffness, rest):
-                there = self.of(coordinate)
-                self.expect(stiffness, Form(ENERGY).times(there, -2), f"the stiffness of a spring on '{coordinate}'")
-                self.expect(rest, there, f"'{coordinate}'")
-            case CoordinateDamper(coordinate, coefficient):
-                wanted = Form(times(ENERGY, TIME)).times(self.of(coordinate), -2)
-                self.expect(coefficient, wanted, f"the coefficient of a damper on '{coordinate}'")
-            case PointSpring(first, second, stiffness, length):
-                self.points((first, second))
-                self.expect(stiffness, times(FORCE, LENGTH, -1), "a stiffness")
-                self.expect(length, LENGTH, "a length")
-            case PointDamper(first, second, coefficient) | IsotropicDamper(first, second, coefficient):
-                self.points((first, second))
-                self.expect(coefficient, times(FORCE, SPEED, -1), "a damping coefficient")
-            case ForceFunction(expression, spelled):
-                self.expect(expression, ENERGY, f"a {spelled}")
-            case Rayleigh(expression):
-                self.expect(expression, times(ENERGY, TIME, -1), "a dissipation function")
-            case GeneralizedForce(components):
-                for name, component in components:
-                    self.expect(component, Form(ENERGY).times(self.of(name), -1), f"the generalised force of '{name}'")
-            case PointForce(point, components):
-                self.points((point,))
-                self.vector(components, FORCE, "a force")
-            case Torque(components=components):
-                self.vector(components, ENERGY, "a torque")
+        self.points(load.points)
+        for formula, dimension, what, coordinate, power in load.measured():
+            wanted = Form(dimension).times(self.of(coordinate), power) if coordinate else dimension
+            self.expect(formula, wanted, what)
 
     def constraint(self, constraint: Constraint) -> None:
         match constraint:

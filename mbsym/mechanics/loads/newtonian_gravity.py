@@ -1,49 +1,19 @@
-"""Gravity: uniform, and the Newtonian field of a centre; the orders above the second are in ``newtonian_orders``."""
+"""The Newtonian field of a centre, of second order; the orders above are in ``newtonian_orders``."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 from mbsym.algebra.base import Scalar
+from mbsym.algebra.vectors import Vector
+from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.interface import Action, Kind, Wrench, force_at
+from mbsym.mechanics.loads.interface import Action, Kind, Note, Wrench
 from mbsym.mechanics.loads.newtonian_orders import order_action, order_force_function
-from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed
-from mbsym.model.system import INERTIAL, NewtonianGravity, UniformGravity
-
-# --- uniform ---
-
-
-def _uniform_force_function(load: UniformGravity, scene: Scene) -> Scalar:
-    """U = sum m g.r_C, without turning r_C into inertial axes: g turns outwards, and g.r_O adds up joint by joint."""
-    algebra = scene.algebra
-    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
-    height = {INERTIAL: algebra.zero}
-    total = algebra.zero
-    for name, motion in scene.motions.items():
-        parent = motion.body.attached_to
-        field[name] = scene.to_axes(field[parent], name)
-        height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
-        if not algebra.vanishes(motion.mass):
-            rise = height[name] + field[name].dot(motion.mass_centre)
-            total = total + algebra.times(motion.mass, rise)
-    return algebra.reduce(total)
-
-
-def _uniform_action(load: UniformGravity, scene: Scene) -> Action:
-    """m g at each mass centre."""
-    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
-    wrenches = []
-    for name, motion in scene.motions.items():
-        field[name] = scene.to_axes(field[motion.body.attached_to], name)
-        if not scene.algebra.vanishes(motion.mass):
-            wrenches.append(force_at(motion.mass_centre, field[name] * motion.mass))
-    return Action(tuple(wrenches))
-
-
-UNIFORM = Kind(_uniform_action, _uniform_force_function)
-
-# --- Newtonian, of second order ---
+from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radius_vectors
+from mbsym.model.loads import EXACT, NewtonianGravity
+from mbsym.model.system import INERTIAL
 
 
 def _newtonian_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
@@ -118,4 +88,23 @@ def _action_of_order(load: NewtonianGravity, scene: Scene) -> Action:
     return _newtonian_action(load, scene) if load.order == 2 else order_action(load, scene)
 
 
-NEWTONIAN = Kind(_action_of_order, _force_function_of_order)
+def _notes(load: NewtonianGravity, scene: Scene) -> Iterator[Note]:
+    """Where the bodies are: r in the exact field; e, c and e.c where it is expanded."""
+    if load.order == EXACT:
+        for motion, r in radius_vectors(load, scene):
+            yield Note(Quantity.RADIUS, motion.body.name, r)
+        return
+    for motion, e, c in Orbit(load, scene).bodies():
+        yield Note(Quantity.OUTWARD, motion.body.name, e)
+        yield Note(Quantity.PLACE, motion.body.name, c)
+        yield Note(Quantity.ALONG, motion.body.name, e.dot(c))
+
+
+def _upward(load: NewtonianGravity, scene: Scene, frame: str) -> Vector | None:
+    """Away from a centre at rest; None where it is another frame that is expanded about."""
+    if load.about != frame or load.centre != INERTIAL or frame == INERTIAL:
+        return None
+    return scene.to_axes(scene.position(scene.zero(frame), INERTIAL), frame)
+
+
+KIND = Kind(_action_of_order, _force_function_of_order, notes=_notes, upward=_upward, falls=True)
