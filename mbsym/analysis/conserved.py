@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import Failure
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -13,6 +13,7 @@ from mbsym.problems.integrals import Integral
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.speeds import SpeedEquations
 
 
 def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
@@ -21,6 +22,11 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     Raises Failure where formulas outgrow a limit; the reason names then what is conserved nevertheless, if the
     straight-line program from which that is read has passed its check.
     """
+    if analysis.speed_form is not None:
+        from mbsym.problems import speed_integrals
+
+        equations = cast("SpeedEquations", analysis.equations)
+        return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
     try:
         return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
     except Failure as failure:

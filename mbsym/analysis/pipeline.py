@@ -74,7 +74,18 @@ KNOW_CONSTRAINTS = frozenset(
 
 #: The stages that know speeds, or hold whether there are any or not.
 KNOW_SPEEDS = frozenset(
-    ("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "programs", "claims", "checks")
+    (
+        "scene",
+        "parameters_scene",
+        "signs",
+        "kinematics",
+        "energy",
+        "equations",
+        "programs",
+        "integrals",
+        "claims",
+        "checks",
+    )
 )
 
 

@@ -20,20 +20,23 @@ from mbsym.model.system import velocity_name
 
 def completed(oracle: Oracle) -> State:
     """The oracle's state with values for speeds, unit vectors and their derivatives."""
-    system, state = oracle.system, oracle.state
-    values = dict(state.values)
+    values = dict(oracle.state.values)
+    for name, series in variables(oracle).items():
+        values |= {name: series.a, velocity_name(name): series.b}
+    return State(oracle.state.numbers, values)
+
+
+def variables(oracle: Oracle) -> dict[str, Series]:
+    """Speeds and components of unit vectors as series in time, of which the first two coefficients count."""
+    system, found = oracle.system, {}
     for body in system.bodies:
         if not body.orientation:
             continue
         own, frame = oracle.moving.axes[body.name], oracle.moving.axes[body.attached_to]
         for vector in body.orientation:
             for i, name in enumerate(vector.components):
-                cosine = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
-                values |= {name: cosine.a, velocity_name(name): cosine.b}
-    for speed in system.speeds:
-        value = _speed(oracle, speed)
-        values |= {speed.name: value.a, velocity_name(speed.name): value.b}
-    return State(state.numbers, values)
+                found[name] = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
+    return found | {speed.name: _speed(oracle, speed) for speed in system.speeds}
 
 
 def _sum(items: Any) -> Any:

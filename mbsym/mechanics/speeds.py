@@ -83,6 +83,35 @@ class SpeedForm:
         self.speeds = tuple(self._speeds(kept))
         self.positions = tuple(self._variable(name) for name in self._position_names())
 
+    # --- u = S q' + s0 ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def slopes(self) -> dict[str, list[Polynomial]]:
+        """du_r/dq'_i for every speed, by coordinate, relative angular velocities of bodies told by vectors kept."""
+        return {
+            name: [x.derivative(self.ring.index("velocity", name)) for x in self._in_velocities]
+            for name in self.coordinates
+        }
+
+    @cached_property
+    def drifts(self) -> list[Polynomial]:
+        """s0: the speeds of a system whose coordinates and relative orientations stand still."""
+        still = {self.ring.index("velocity", name): self.ring.zero for name in self.coordinates}
+        return [self.ring.substitute(x, still) for x in self._in_velocities]
+
+    @cached_property
+    def _in_velocities(self) -> list[Polynomial]:
+        """Every speed in q', for bodies that are told by vectors and do not turn on what they hang on."""
+        ring, given = self.ring, self._given(self.ring, self._plain, only_vectors=True)
+        for body in self.by_vectors:
+            scene = Scene(self.system, ring, self._plain, ring, given=given)
+            motion = scene.motions[body.name]
+            carried = motion.angular_velocity - motion.relative_angular_velocity
+            given[body.name] = Given(carried, given[body.name].angular_acceleration, given[body.name].cosines)
+        scene = Scene(self.system, ring, self._plain, ring, given=given)
+        declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
+        return [declared.get(u.name, ring.context.gen(u.index)) for u in self.speeds]
+
     def _form(self, scene: Scene, speed: Speed) -> Polynomial:
         spin = scene.motions[speed.body].angular_velocity
         environment = dict(self._plain) | dict(zip(OMEGA, spin, strict=True))

@@ -276,6 +276,11 @@ class System(GuessesNames):
         return (*vectors, *(speed.name for speed in self.speeds))
 
     @property
+    def claimable(self) -> tuple[str, ...]:
+        """What equations and rows of matrices are called by in claims."""
+        return (*self.coordinates, *self.variables)
+
+    @property
     def parameter_names(self) -> tuple[str, ...]:
         return tuple(parameter.name for parameter in self.parameters)
 

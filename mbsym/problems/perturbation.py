@@ -209,7 +209,12 @@ def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = accelerated(truth.system, oracle.state, programs)
-        environment = Oracle(truth.system, state).in_time
+        moving = Oracle(truth.system, state)
+        environment = moving.in_time
+        if truth.system.speeds:
+            from mbsym.mechanics.speed_states import variables  # few systems have speeds of their own
+
+            environment = environment | variables(moving)
         carry = Carrier(truth.ring, TaylorSeries(state.numbers, environment), environment)
         return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in short]
 

@@ -104,7 +104,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         dependent=dependent,
     )
     names = [body.name for body in bodies]
-    claims = read_claims(fields.get("claims"), names, system.coordinates, reading)
+    claims = read_claims(fields.get("claims"), names, system.claimable, reading)
     system = replace(system, claims=claims)
     values = known_values(system)
     for draft, good in zip(drafts, sound, strict=True):

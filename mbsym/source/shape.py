@@ -252,7 +252,7 @@ def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
     if claim.of or claim.of_expression is not None:
         shape["of"] = claim.of if claim.of_expression is None else text(claim.of_expression)
     if claim.entry:
-        indices: list[Shape] = [str(k) if kind.axes else system.coordinates[k - 1] for k in claim.entry]
+        indices: list[Shape] = [str(k) if kind.axes else system.claimable[k - 1] for k in claim.entry]
         shape["component" if kind.entry == 1 else "entry"] = indices[0] if kind.entry == 1 else indices
     if claim.at is not None:
         shape["at"] = text(claim.at)

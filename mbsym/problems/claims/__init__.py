@@ -91,6 +91,10 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
     """
     about = title(claim, derived.system)
+    if derived.system.speeds:
+        from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
+
+        return in_speeds.examined(derived, claim, about)
     if claim.is_numerical:
         return examined_number(derived, claim, about)
     if claim.right is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.signs import Signs
@@ -27,6 +27,9 @@ from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
 
+if TYPE_CHECKING:
+    from mbsym.mechanics.speeds import SpeedForm
+
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
 FACTOR = "holds up to a factor"
@@ -47,6 +50,8 @@ class Derived(Protocol):
 
     @property
     def system(self) -> System: ...
+    @property
+    def speed_form(self) -> SpeedForm | None: ...
     @property
     def ring(self) -> Ring: ...
     @property
@@ -136,7 +141,7 @@ def title(claim: Claim, system: System) -> str:
     elif claim.of:
         words += f" of {claim.of}"
     if claim.entry:
-        words += " [" + ", ".join(str(k) if kind.axes else system.coordinates[k - 1] for k in claim.entry) + "]"
+        words += " [" + ", ".join(str(k) if kind.axes else system.claimable[k - 1] for k in claim.entry) + "]"
     if claim.right is not None:
         words += f" {text(claim.equals)} {claim.relation} {text(claim.right)}"
     if claim.at_initial:

@@ -1,0 +1,126 @@
+"""Claims about systems with speeds and unit vectors of their own, in the variables of these.
+
+A claim holds if claimed - derived vanishes wherever the unit vectors are orthonormal; an equation also if it is a
+multiple of the derived one by parameters.  A first integral is decided by its rate along the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import cast
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.ring import Polynomial
+from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.motion import relations
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.model.claims import Claim
+from mbsym.problems import speeds
+from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.quantities import derived_quantity
+from mbsym.problems.claims.result import DIFFERS, EXACT, FACTOR, FAILS, RELATIONS, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.speed_integrals import Field
+from mbsym.problems.speeds import SpeedEquations
+
+#: Quantities that are the same whatever the variables are; those of one body among them.
+_QUANTITIES = (
+    "kinetic energy", "force function", "potential energy", "lagrangian", "angular velocity",
+    "relative angular velocity", "direction cosine", "position", "velocity",
+)  # fmt: skip
+
+
+def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """One claim.  Raises NoClosedForm where it is about something that is not derived in speeds."""
+    form = derived.speed_form
+    assert form is not None
+    claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
+    if claim.kind == "first integral":
+        return _integral(derived, form, claim, about, claimed)
+    truth = in_parameters(derived, _derived(derived, form, claim))
+    result = ClaimResult(claim, about, EXACT, Formula(form.ring, truth))
+    images = relations(derived.parameters_scene)
+    difference = form.ring.reduce(claimed - truth)
+    known = form.vanishes(difference)
+    if known is True:
+        return result
+    if claim.kind == "equation of motion":
+        factor = _factor(form, claimed, truth)
+        if factor is not None:
+            return replace(result, outcome=FACTOR, factor=Formula(form.ring, factor))
+    if images:
+        difference = form.ring.substitute(difference, images)
+        known = form.vanishes(difference)
+        if known is True:
+            return replace(result, outcome=RELATIONS)
+    outcome = UNDECIDED if known is None else DIFFERS
+    return replace(result, outcome=outcome, difference=Formula(form.ring, difference))
+
+
+def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
+    names = derived.system.claimable
+    if claim.kind in _QUANTITIES:
+        return derived_quantity(derived, claim)
+    equations = cast(SpeedEquations, derived.equations)
+    if claim.kind == "mass matrix":
+        rows = [_speed(form, names[k - 1]) for k in claim.entry]
+        return equations.mass_matrix[rows[0], rows[1]].polynomial
+    if claim.kind == "equation of motion":
+        for position in form.positions:
+            if position.name == claim.of and claim.of in derived.system.variables:
+                return form.ring.context.gen(position.rate_index) - form.rates[claim.of]
+        return speeds.residual(equations, _speed(form, claim.of))
+    raise NoClosedForm(f"a claim about the {claim.kind}: not judged in speeds")
+
+
+def _speed(form: SpeedForm, name: str) -> int:
+    """The place of a speed, or of the generalised velocity of a coordinate that is one."""
+    for r, u in enumerate(form.speeds):
+        if name in (u.name, u.name.removesuffix("_dot")):
+            return r
+    raise NoClosedForm(f"the velocity of {name} is no speed: other speeds have taken its place")
+
+
+def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomial | None:
+    """Parameters lambda, not zero, with claimed = lambda truth; None where there are none."""
+    ring = form.ring
+    for variable in (*form.speeds, *form.positions):
+        first, second = claimed.derivative(variable.rate_index), truth.derivative(variable.rate_index)
+        held = ring.dependencies(first, [x.name for x in (*form.positions, *form.speeds)])
+        if ring.vanishes(first) or ring.vanishes(second) or held:
+            continue
+        if form.vanishes(ring.times(second, claimed) - ring.times(first, truth)) is True:
+            return ring.reduce(ring.times(first, ring.reciprocal(second)))
+    return None
+
+
+def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
+    ring, equations = form.ring, cast(SpeedEquations, derived.equations)
+    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    if not ring.dependencies(claimed, [u.name for u in form.speeds]):
+        vectors = [name for body in form.by_vectors for vector in body.orientation for name in vector.components]
+        if ring.dependencies(claimed, vectors) and Field(form, equations).keeps(claimed) is True:
+            return replace(result, remark="of the unit vectors alone: it is known beforehand")
+        return replace(result, outcome=FAILS, remark="it contains no velocity")
+    images = relations(derived.parameters_scene)
+    field = Field(form, equations)
+    outcome, known = EXACT, field.keeps(claimed)
+    if known is not True and images:
+        outcome, claimed = RELATIONS, ring.substitute(claimed, images)
+        field = Field(form, _substituted(equations, images))
+        known = field.keeps(claimed)
+    if known is True:
+        slopes = [ring.derivative(claimed, u.name) for u in form.speeds]
+        if all(form.vanishes(slope) is True for slope in slopes):
+            return replace(result, outcome=FAILS, remark="it is a constant, whatever the motion")
+        return replace(result, outcome=outcome)
+    rate = field.rate_in_lowest_terms(claimed)
+    return replace(result, outcome=UNDECIDED if known is None else FAILS, difference=rate)
+
+
+def _substituted(equations: SpeedEquations, images: Mapping[int, Polynomial]) -> SpeedEquations:
+    ring = equations.forcing[0].ring
+    mass = [[ring.substitute(x, images) for x in row] for row in equations.mass_matrix.polynomials]
+    forcing = [ring.substitute(x.polynomial, images) for x in equations.forcing]
+    return replace(equations, mass_matrix=Matrix.of(ring, mass), forcing=column(ring, forcing))
