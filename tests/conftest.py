@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -24,12 +25,17 @@ from mbsym.expressions.tree import Expression, number, substitute
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
+from mbsym.numerics.kernels.llvm import Library
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no chromium")
 needs_pdflatex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
 
 TESTS = Path(__file__).parent
+
+#: So many compiled libraries wait for a test that needs the same: some hundred kilobytes each.
+MOST_SHARED = 100
+
 SHIPPED = TESTS.parent / "systems"
 OWN = TESTS / "systems"
 
@@ -63,6 +69,27 @@ def browsed(file: Path, *options: str, wait: int = 1000) -> tuple[str, list[str]
     done = subprocess.run([*command, file.as_uri()], capture_output=True, timeout=120)
     said = done.stderr.decode(errors="replace").splitlines()
     return done.stdout.decode(errors="replace"), [line for line in said if "CONSOLE" in line]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shared_machine_code() -> Iterator[None]:
+    """What several tests compile is compiled once: a library is a function of its text, and nothing in it changes."""
+    compile_text, engines = Library.__init__, OrderedDict[tuple[object, ...], Any]()
+
+    def shared(library: Library, text: str, level: int = 2, thorough: bool = True) -> None:
+        key = (text, level, thorough)
+        if key in engines:
+            library._engine = engines[key]
+        else:
+            compile_text(library, text, level, thorough)
+            engines[key] = library._engine
+        engines.move_to_end(key)
+        if len(engines) > MOST_SHARED:
+            engines.popitem(last=False)
+
+    Library.__init__ = shared  # type: ignore[method-assign]
+    yield
+    Library.__init__ = compile_text  # type: ignore[method-assign]
 
 
 class Exact:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.crossings import Sign, nodes, passages, resolved, series
+from mbsym.numerics.crossings import NODES, Sign, nodes, passages, resolved, series
 from mbsym.numerics.features import DIP, PEAK, TURN
 from mbsym.numerics.methods.interface import Piece
 
@@ -32,6 +32,10 @@ SHALLOW = 0.3
 #: A piece is halved so often to resolve a u.
 DEPTH = 4
 
+#: Of sums over k of |c_k|, what bounds u - c_0, u' and u''.
+_ORDERS = np.arange(NODES, dtype=float)
+_BOUNDS = np.array([_ORDERS > 0, _ORDERS**2, _ORDERS**2 * (_ORDERS**2 - 1) / 3])
+
 
 def met(kinds: Sequence[str], values: Callable[[Any], Any], piece: Piece) -> list[tuple[float, float, int]]:
     """(time, width, place among the kinds) of the features that are narrow for a piece, in their order.
@@ -40,12 +44,13 @@ def met(kinds: Sequence[str], values: Callable[[Any], Any], piece: Piece) -> lis
     """
     if not kinds:
         return []
-    found = []
+    found, most = [], NARROW * (piece.end - piece.start)
     whole = along(values, piece, piece.start, piece.end)
     for k, kind in enumerate(kinds):
         for start, end, known in _resolved(k, values, piece, (piece.start, piece.end), whole[k], DEPTH):
-            found += [(time, width, k) for time, width in _places(kind, start, end, known)]
-    return sorted(one for one in found if one[1] < NARROW * (piece.end - piece.start))
+            if np.all(np.isfinite(known)) and not _is_plain(kind, series(known), 2.0 * most / (end - start)):
+                found += [(time, width, k) for time, width in _places(kind, start, end, known)]
+    return sorted(one for one in found if one[1] < most)
 
 
 def along(values: Callable[[Any], Any], piece: Piece, start: float, end: float) -> Any:
@@ -70,12 +75,7 @@ def _resolved(
 
 def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[float, float]]:
     """(time, width) of what a function of u does narrowly, u given at Chebyshev's points from start to end."""
-    if not np.all(np.isfinite(values)):
-        return []
-    coefficients = series(values)
-    if _is_far(kind, float(coefficients[0]), float(np.sum(np.abs(coefficients[1:])))):
-        return []
-    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients)
+    polynomial = np.polynomial.chebyshev.Chebyshev(series(values))
     per = 2.0 / (end - start)  # ds/dt
     slope, bend = polynomial.deriv(), polynomial.deriv(2)
     if kind == TURN:
@@ -103,15 +103,20 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
     return [(float(time), float(width)) for time, width in found]
 
 
-def _is_far(kind: str, middle: float, most: float) -> bool:
-    """Whether a series c_0 + ..., the rest of which is at most ``most``, cannot do what ``_places`` looks for.
+def _is_plain(kind: str, coefficients: Any, most: float) -> bool:
+    """Whether u(s) = sum_k c_k T_k(s), -1 <= s <= 1, does nothing within a width, in s, of less than ``most``.
 
-    Nearly every step is of that kind, and a bound costs a hundredth of the roots of a polynomial.
+    By |T_k| <= 1, |T_k'| <= k^2, |T_k''| <= k^2 (k^2 - 1)/3.  Nearly every step is plain, and these bounds cost a
+    hundredth of what the turning points of a polynomial do.
     """
-    most *= 1 + 1e-9  # rounding
+    rest, slope, bend = (float(x) * (1 + 1e-9) for x in _BOUNDS @ np.abs(coefficients))  # and rounding
+    middle = float(coefficients[0])
     if kind == PEAK:
-        return middle + most < -SMALL
-    return abs(middle) > most if kind == TURN else abs(middle) - most > SHALLOW * (abs(middle) + most)
+        return middle + rest < -SMALL or (bend * most**2 < 2.0 and slope * most < WALL)
+    if kind == TURN:
+        return abs(middle) > rest or slope * most < 1.0
+    least = abs(middle) - rest
+    return least > SHALLOW * (abs(middle) + rest) or 2.0 * least > bend * most**2
 
 
 def _others(values: Any, s: float) -> list[float]:
