@@ -1,4 +1,4 @@
-"""What the mechanics asks of a scalar, and vectors over any such scalar.
+"""What the mechanics asks of a scalar.
 
 The recursions in ``mbsym.mechanics`` are written once.  An ``Algebra`` supplies what they need beyond ``+ - *``:
 numbers, sine and cosine of an angle, reciprocals, roots, and a normal form.  The algebras are
@@ -27,7 +27,6 @@ from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Ope
 Scalar = Any
 #: The components of a vector, in the axes of a frame that only the reader knows; with it: ``mbsym.algebra.vectors``.
 Components = tuple[Scalar, Scalar, Scalar]
-Vector = Components
 
 
 class Algebra:
@@ -87,35 +86,12 @@ class Algebra:
                 square = self.reduce(self.times(square, square))
         return result
 
-    def add(self, u: Vector, v: Vector) -> Vector:
-        return (u[0] + v[0], u[1] + v[1], u[2] + v[2])
-
-    def subtract(self, u: Vector, v: Vector) -> Vector:
-        return (u[0] - v[0], u[1] - v[1], u[2] - v[2])
-
-    def scale(self, factor: Scalar, v: Vector) -> Vector:
-        return (self.times(factor, v[0]), self.times(factor, v[1]), self.times(factor, v[2]))
-
     def dot(self, u: Sequence[Scalar], v: Sequence[Scalar]) -> Scalar:
         total = self.zero
         for a, b in zip(u, v, strict=True):
             if not (self.vanishes(a) or self.vanishes(b)):
                 total = total + self.times(a, b)
         return self.reduce(total)
-
-    def cross(self, u: Vector, v: Vector) -> Vector:
-        return (
-            self.dot((u[1], -u[2]), (v[2], v[1])),
-            self.dot((u[2], -u[0]), (v[0], v[2])),
-            self.dot((u[0], -u[1]), (v[1], v[0])),
-        )
-
-    def apply(self, matrix: Sequence[Sequence[Scalar]], v: Vector) -> Vector:
-        return (self.dot(matrix[0], v), self.dot(matrix[1], v), self.dot(matrix[2], v))
-
-    @property
-    def zero_vector(self) -> Vector:
-        return (self.zero, self.zero, self.zero)
 
 
 class Lowering:

@@ -22,6 +22,7 @@ import numpy as np
 import pytest
 from conftest import OWN, SHIPPED, Exact, agrees, at_values, parsed, precision, reference, total
 from flint import fmpq, fmpq_mat
+from plain_vectors import add, apply, cross
 
 import mbsym
 from mbsym.algebra.evaluate import Carrier
@@ -257,9 +258,9 @@ def moving_point(a: Analysis, point: Sequence[str]) -> tuple[list[Formula], list
     back = tuple(zip(*body.rotation.polynomials, strict=True))
     spin = tuple(x.polynomial for x in body.angular_velocity)
     origin = tuple(x.polynomial for x in body.velocity_origin)
-    velocity = ring.apply(back, ring.add(origin, ring.cross(spin, fixed)))
+    velocity = apply(ring, back, add(origin, cross(ring, spin, fixed)))
     place = tuple(exact(name).polynomial for name in ("q1", "q2", "q3"))
-    position = ring.add(place, ring.apply(back, fixed))
+    position = add(place, apply(ring, back, fixed))
     acceleration = [total_rate(a.scene, x) for x in velocity]
     return tuple([Formula(ring, ring.reduce(x)) for x in v] for v in (position, velocity, acceleration))
 

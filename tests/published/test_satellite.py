@@ -20,6 +20,7 @@ import pytest
 from conftest import SHIPPED, Exact, agrees, at_values, ball, parsed, precision, reference, total
 from flint import fmpq
 from mpmath import mp
+from plain_vectors import add, apply, cross
 
 import mbsym
 from mbsym.algebra.characteristic import characteristic_polynomial
@@ -183,12 +184,12 @@ def first_approximation_of_mass(a: Analysis, spin_of_joint: Callable[[Any, Any],
     lower = Exact(a)
     r, l, m, m0 = (lower(name).polynomial for name in ("r", "l", "m", "m0"))
     back = tuple(zip(*turn, strict=True))
-    spin = spin_of_joint(omega2, ring.apply(back, omega3))
+    spin = spin_of_joint(omega2, apply(ring, back, omega3))
     origin = tuple(x.polynomial for x in satellite.velocity_origin)
-    joint = ring.apply(turn, ring.add(origin, ring.cross(spin, (ring.zero, r, ring.zero))))
+    joint = apply(ring, turn, add(origin, cross(ring, spin, (ring.zero, r, ring.zero))))
     up = (ring.zero, l, ring.zero)
-    tip = ring.add(joint, ring.cross(omega3, up))
-    doubled = m * (ring.dot(joint, joint) + ring.dot(joint, ring.cross(omega3, up)))
+    tip = add(joint, cross(ring, omega3, up))
+    doubled = m * (ring.dot(joint, joint) + ring.dot(joint, cross(ring, omega3, up)))
     doubled = doubled + m * l**2 * ring.number(Fraction(1, 3)) * (omega3[0] ** 2 + omega3[2] ** 2)
     doubled = ring.reduce(doubled + m0 * ring.dot(tip, tip))
     rest = {ring.index("sine", name): ring.zero for name in ORDER}
