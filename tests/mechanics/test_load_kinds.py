@@ -52,7 +52,7 @@ every_kind = pytest.mark.parametrize("kind", LOADS, ids=lambda kind: kind.__name
 
 
 def alone(kind: type) -> tuple[Any, Scene, Ring]:
-    text = {"mbsym": 1, "name": "one load", "parameters": {x: "positive" for x in POSITIVE}}
+    text = {"mbsym": 1, "name": "one load", "parameters": dict.fromkeys(POSITIVE, "positive")}
     system = mbsym.loads(json.dumps(text | {"bodies": BODIES, "loads": [LOADS[kind]]}), ()).system
     (load,) = system.loads
     assert type(load) is kind
