@@ -154,6 +154,10 @@ def read_description(path: Path, unconstrained: str = "") -> System | None:
     from mbsym.source import load, render
 
     system, complaints, text = load(path)
+    if system is not None and system.constraints and not complaints.errors:
+        from mbsym.analysis.soundness import complain_of_constraints
+
+        complain_of_constraints(system, complaints)
     for one in system.constraints if system is not None and unconstrained else ():
         message = f"'mbsym {unconstrained}' does not take constraints into account yet"
         complaints.error("constraints", message, one.span, "without it this would be another system")

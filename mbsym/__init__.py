@@ -416,6 +416,10 @@ def _analysis(system, complaints, text, name, problems) -> Analysis:  # type: ig
     from mbsym.analysis import Analysis
     from mbsym.source import render
 
-    if system is None:
+    if system is not None and system.constraints:
+        from mbsym.analysis.soundness import complain_of_constraints
+
+        complain_of_constraints(system, complaints)
+    if system is None or complaints.errors:
         raise DescriptionError("\n".join(render(item, text, name) for item in complaints.sorted()))
     return Analysis(system, problems)

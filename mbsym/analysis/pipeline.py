@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, judging, second_routes
+from mbsym.analysis import approximation, conserved, constrained, judging, second_routes
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
@@ -54,6 +54,7 @@ from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.reduction import Reduced
 
@@ -67,8 +68,10 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 #: The stages that know constraints, or hold whether there are any or not.
 KNOW_CONSTRAINTS = frozenset(
     (
-        *("scene", "parameters_scene", "signs", "kinematics", "claims", "checks"),
+        *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
+        *("claims", "checks"),
         *("reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
+        *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
     )
 )
 
@@ -230,8 +233,9 @@ class Analysis(Stages):
         "nonlinear Lagrange equations",
         equations,
         lambda a: a._equations(),
-        ("equations of motion",),
+        ("equations of motion", "constraints", "constrained motion"),
     )
+    constraints = Derived["Analysis", "Constraints"](lambda a: a._constraints(), ("constraints",))
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
     residuals = Derived["Analysis", Column](approximation.residuals)
     equilibrium = Problem[Equilibrium](
@@ -302,6 +306,8 @@ class Analysis(Stages):
         return speeds.energy(self.speed_form, self.scene)
 
     def _equations(self) -> Equations:
+        if self.system.constraints:
+            return constrained.equations_of(self)
         if self.speed_form is None:
             return equations.equations(self.scene, self.energy)
         from mbsym.problems import speeds
@@ -323,6 +329,9 @@ class Analysis(Stages):
 
     def _told(self) -> ToldSystem:
         return told_system(self.system, self.ring, self.terms)
+
+    def _constraints(self) -> Constraints:
+        return constrained.constraints_of(self)
 
     def _equilibria(self) -> Equilibria:
         values = given_values(self.system, {})

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.analysis import constrained
 from mbsym.formulas.formula import Column
 from mbsym.mechanics import motion
 from mbsym.problems import checks as comparison
@@ -152,6 +153,8 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "linearisation": _linearisation,
     "perturbed motion": _perturbed,
     "first integrals": _integrals,
+    "constraints": constrained.rows_check,
+    "constrained motion": constrained.motion_check,
 }
 
 

@@ -249,6 +249,7 @@ class System(GuessesNames):
     tables: tuple[Table, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     dependent: tuple[str, ...] = ()
+    dependent_span: Span | None = _span()
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
 

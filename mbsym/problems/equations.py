@@ -4,6 +4,9 @@
 
     f_i = dT/dq_i + dU/dq_i + Q_i - sum_j q'_j d(dT/dq'_i)/dq_j - sum_x rate_x d(dT/dq'_i)/dx - d(dT/dq'_i)/dt
 
+With constraints (``mbsym.problems.constraints``) these are the equations of the open tree, and constraint forces join
+them:  M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y u' = Y^T (f - M a0).
+
 where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
 
 Source: Banshchikov & Vetrov, Problem 3.
@@ -18,7 +21,8 @@ Example:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Matrix, column
@@ -27,14 +31,23 @@ from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.energy import Energy
 
+if TYPE_CHECKING:
+    from mbsym.problems.constraints import Constraints, Embedded
+
 
 @dataclass(frozen=True, repr=False)
 class Equations(Shown):
-    """M (n x n), f (n) and the part Q (n) of f that comes from loads without a force function."""
+    """M (n x n), f (n) and the part Q (n) of f that comes from loads without a force function.
+
+    With ``constraints`` M q'' = f + J^T lambda; ``embedded`` are the equations without multipliers, None where these
+    outgrow the budget.
+    """
 
     mass_matrix: Matrix
     forcing: Column
     generalized_force: Column
+    constraints: Constraints | None = field(default=None, kw_only=True)
+    embedded: Embedded | None = field(default=None, kw_only=True)
 
     @property
     def in_speeds(self) -> bool:

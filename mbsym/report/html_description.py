@@ -22,6 +22,7 @@ from mbsym.formulas.mathml import (
     row,
     sign,
 )
+from mbsym.model.constraints import Constraint
 from mbsym.model.loads import (
     EXACT,
     CoordinateDamper,
@@ -149,6 +150,25 @@ def _number(value: Fraction) -> str:
 def load_in_words(load: Load, names: MathNames) -> Markup:
     """A load with its data, and the formula by which it acts where that is short."""
     return _Loads(names).text(load)
+
+
+def constraint_in_words(constraint: Constraint, names: MathNames) -> Markup:
+    """A constraint with its data."""
+    from mbsym.report.constraint_description import Medium, described
+
+    write = _Loads(names)
+    medium = Medium(
+        lambda left, right: _math(expression(left, names), mo("="), expression(right, names)),
+        write.math,
+        lambda value: _math(write.vector(value)),
+        write.frame,
+        write.point,
+    )
+    said, values = described(constraint, medium)
+    text = escape(said)
+    for name, value in values.items():
+        text = text.replace(f"[[{name}]]", escape(value))
+    return text
 
 
 class _Loads:

@@ -5,11 +5,11 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from mbsym import __version__
 from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext, power
@@ -26,7 +26,14 @@ from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repai
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
-from mbsym.report.html_description import expression, load_in_words, point_of_table, speed, speed_form
+from mbsym.report.html_description import (
+    constraint_in_words,
+    expression,
+    load_in_words,
+    point_of_table,
+    speed,
+    speed_form,
+)
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
@@ -40,6 +47,7 @@ from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.problems.constraints import Constraints
 
 #: The order of the sections: as a reader wants them, as in report.tex.
 ORDER = (1, 2, 3, 4, 5, 6, 7)
@@ -75,6 +83,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "unperturbed": lambda: _motion(analysis, names),
         "unit": lambda name: labelled("", unit_of(system, name)),
         "pretty": pretty,
+        "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
+        "constraint": lambda value: constraint_in_words(value, names),
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
     motion, no_motion = asked_motion(system)
@@ -107,6 +117,18 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         version=__version__,
         digest=meaning(system),
     )
+
+
+def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
+    """The sentences about constraints, names in MathML."""
+    from mbsym.report.constraint_words import Writer, sentences
+
+    write = Writer(lambda listed: shown.math(*_separated([str(names[name]) for name in listed])))
+    for text, values in sentences(tied, write):
+        said = escape(text)
+        for name, value in values.items():
+            said = said.replace(f"[[{name}]]", escape(value))
+        yield said
 
 
 def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:

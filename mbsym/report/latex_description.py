@@ -8,6 +8,7 @@ from fractions import Fraction
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.latex import LatexNames, Symbol
+from mbsym.model.constraints import Constraint
 from mbsym.model.loads import (
     EXACT,
     CoordinateDamper,
@@ -177,6 +178,24 @@ _NEWTONIAN_EXACT = (
 def load_in_words(load: Load, names: LatexNames, escaped: Callable[[str], str], language: Language) -> str:
     """A load with its data, and the formula by which it acts."""
     return _Loads(names, escaped, language).text(load)
+
+
+def constraint_in_words(
+    constraint: Constraint, names: LatexNames, escaped: Callable[[str], str], language: Language
+) -> str:
+    """A constraint with its data."""
+    from mbsym.report.constraint_description import Medium, described
+
+    write = _Loads(names, escaped, language)
+    medium = Medium(
+        lambda left, right: f"${write.math(left)} = {write.math(right)}$",
+        lambda value: f"${write.math(value)}$",
+        lambda value: f"${write.vector(value)}$",
+        write.frame,
+        write.point,
+    )
+    said, values = described(constraint, medium)
+    return language.sentence(said, **values)
 
 
 class _Loads:

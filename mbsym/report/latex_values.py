@@ -27,7 +27,15 @@ from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
-from mbsym.report.latex_description import call, expression, load_in_words, points, speed, speed_form
+from mbsym.report.latex_description import (
+    call,
+    constraint_in_words,
+    expression,
+    load_in_words,
+    points,
+    speed,
+    speed_form,
+)
 from mbsym.report.latex_diagram import diagram
 from mbsym.report.latex_form import Form, heading, subheading
 from mbsym.report.latex_formulas import (
@@ -54,7 +62,10 @@ from mbsym.report.unit_text import bracketed
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from mbsym.analysis import Analysis
+    from mbsym.problems.constraints import Constraints
 
 T = TypeVar("T")
 Filters = dict[str, Callable[..., Any]]
@@ -117,6 +128,8 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "problems": problems,
         "failures": {number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
+        "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
+        "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "statements": statements,
         "cases": cases,
         "Shown": Shown,
@@ -164,6 +177,7 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "label": lambda words: label(words, tongue.say),
         "refer": lambda reference: refer(reference, tongue.say),
         "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
+        "constraint": lambda value: constraint_in_words(value, names, escaped, tongue),
         "index": index,
         "displays": lambda part, k: displays(part, k, widest, measured),
         "prose": prose,
@@ -184,6 +198,25 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
 
 def _number_of(system: System, body: str) -> int:
     return next(k for k, one in enumerate(system.bodies, start=1) if one.name == body)
+
+
+def constraint_words() -> ModuleType:
+    """The module that says what is known of constraints; few systems have any."""
+    from mbsym.report import constraint_words as words
+
+    return words
+
+
+def _of_constraints(tied: Constraints, names: LatexNames, tongue: Language) -> list[str]:
+    said = constraint_words().sentences(tied, _writer(names, tongue))
+    return [tongue.sentence(text, **values) for text, values in said]
+
+
+def _writer(names: LatexNames, tongue: Language) -> Any:
+    return constraint_words().Writer(
+        lambda listed: "$" + ",\\, ".join(str(names[name]) for name in listed) + "$",
+        lambda word: escaped(tongue.say(word)),
+    )
 
 
 def _literature(found: Stability | None, tongue: Language) -> list[tuple[str, str]]:

@@ -102,6 +102,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         order=_order(fields, reading),
         constraints=constraints,
         dependent=dependent,
+        dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system.claimable, reading)

@@ -31,4 +31,5 @@ def lines(found: Energy, analysis: Analysis) -> Iterator[str]:
     kinetic, force = found.kinetic_energy.terms, found.force_function.terms
     yield f"T: {counted(kinetic, 'term')}, U: {counted(force, 'term')}"
     if found.cyclic:
-        yield f"cyclic: {', '.join(found.cyclic)}"
+        what = "not in L" if analysis.system.constraints else "cyclic"
+        yield f"{what}: {', '.join(found.cyclic)}"

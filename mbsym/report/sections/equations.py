@@ -12,12 +12,15 @@ from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.problems.constraints import Constraints, Solved
     from mbsym.problems.speeds import SpeedEquations
 
 
 def data(found: Equations, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     section = {"mass_matrix": matrix_text(found.mass_matrix, write), "forcing": column_text(found.forcing, write)}
+    if found.constraints is not None:
+        return section | {"constraints": _constraints(found.constraints, write)} | _embedded(found, write)
     return section | _in_speeds(cast("SpeedEquations", found), write) if found.in_speeds else section
 
 
@@ -32,6 +35,68 @@ def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:
     }
 
 
+def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
+    rows = [
+        {
+            "constraint": name.constraint + 1,
+            "component": name.component or None,
+            "kind": name.kind,
+            "holonomic": name.holonomic,
+            "position": None if position is None else write(position),
+            "velocity": write(velocity),
+            "independent": k in found.independent,
+        }
+        for k, (name, position, velocity) in enumerate(zip(found.names, found.position, found.velocity, strict=True))
+    ]
+    integrable = found.integrability
+    return {
+        "rows": rows,
+        "jacobian": matrix_text(found.jacobian, write),
+        "acceleration": column_text(found.acceleration, write),
+        "position_rank": found.position_rank,
+        "velocity_rank": found.velocity_rank,
+        "degrees_of_freedom": len(found.free),
+        "redundant": [
+            {
+                "row": one.name.label,
+                "follows_from": [name.label for name in one.from_rows],
+                "known": one.sureness.value,
+            }
+            for one in found.redundant
+        ],
+        "parameter_conditions": found.parameter_conditions,
+        "integrability": None
+        if integrable is None
+        else {
+            "word": integrable.word,
+            "growth": list(integrable.growth),
+            "kept": integrable.kept,
+            "known": integrable.sureness.value,
+        },
+        "dependent": list(found.dependent),
+        "independent": list(found.free),
+    } | _solved(found.solved, write)
+
+
+def _solved(found: Solved | None, write: Write) -> dict[str, Any]:
+    """The dependent velocities, where they have closed forms."""
+    if found is None:
+        return {}
+    return {
+        "regular_where_not_zero": write(found.regular_where),
+        "Y": matrix_text(found.transformation, write),
+        "y0": column_text(found.shift, write),
+        "a0": column_text(found.acceleration_shift, write),
+    }
+
+
+def _embedded(found: Equations, write: Write) -> dict[str, Any]:
+    if found.embedded is None:
+        return {}
+    matrix, forcing = found.embedded.mass_matrix, found.embedded.forcing
+    return {"embedded": {"mass_matrix": matrix_text(matrix, write), "forcing": column_text(forcing, write)}}
+
+
 def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     n = len(found.forcing)
@@ -41,3 +106,11 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     terms = sum(x.terms for x in found.forcing)
     size = counted(found.mass_matrix.terms, "term")
     yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
+    if found.constraints is not None:
+        from mbsym.report.constraint_words import Writer, filled, sentences
+
+        yield from map(filled, sentences(found.constraints, Writer(", ".join)))
+    if found.embedded is not None:
+        yield f"without multipliers: {counted(found.embedded.terms, 'term')}"
+    elif found.constraints is not None:
+        yield "without multipliers: longer than the budget of terms"

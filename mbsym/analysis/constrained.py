@@ -1,0 +1,69 @@
+"""Constraints in the pipeline: their analysis, problem 3 with them, and their second routes.
+
+The modules that know how are imported when a system has constraints; most have none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.problems import equations
+from mbsym.problems.checks import Check
+from mbsym.problems.equations import Equations
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.problems.constraints import Constraints
+
+#: The checks of what only constrained systems have.
+CHECKS = ("constraints", "constrained motion")
+
+
+def constraints_of(analysis: Analysis) -> Constraints:
+    """The rows, their ranks and what they leave free."""
+    from mbsym.problems.constraints import constraints
+
+    return constraints(analysis.scene)
+
+
+def equations_of(analysis: Analysis) -> Equations:
+    """The equations of the open tree with the constraints, and those without multipliers if they are not too long."""
+    from mbsym.problems.constraints import embedded_equations
+
+    tree, found = equations.equations(analysis.scene, analysis.energy), analysis.constraints
+    try:
+        embedded = embedded_equations(analysis.scene, tree, found)
+    except NoClosedForm:
+        embedded = None
+    return replace(tree, constraints=found, embedded=embedded)
+
+
+def programs_of(analysis: Analysis) -> ConstrainedPrograms:
+    """M, f and the rows as straight-line code."""
+    from mbsym.mechanics.constraints.programs import constrained_programs
+
+    kept = [(name.constraint, name.component) for name in analysis.constraints.names]
+    return constrained_programs(analysis.system, analysis.ring, kept)
+
+
+def rows_check(analysis: Analysis) -> Check | None:
+    """The rows against places in inertial axes."""
+    found = analysis.optional("constraints") if analysis.system.constraints else None
+    if found is None:
+        return None
+    from mbsym.problems.constraints.checks import check_rows
+
+    return check_rows(analysis.system, analysis.ring, found, programs_of(analysis))
+
+
+def motion_check(analysis: Analysis) -> Check | None:
+    """The embedded equations against d'Alembert's principle on the constraint manifold."""
+    closed = analysis.optional("equations") if analysis.system.constraints else None
+    if closed is None or closed.constraints is None or closed.embedded is None:
+        return None
+    from mbsym.problems.constraints.checks import check_embedded
+
+    return check_embedded(analysis.system, analysis.ring, closed.constraints, closed.embedded, programs_of(analysis))

@@ -1,0 +1,253 @@
+"""Dependent velocities and accelerations expressed by the independent ones; any scalar.
+
+With the independent rows of J split into the columns of the dependent coordinates d and of the others,
+
+    J_d q'_d + J_u u + j = 0          q'_d  = S u + s,         S = -J_d^-1 J_u,   s = -J_d^-1 j
+    J_d q''_d + J_u u' + gamma = 0    q''_d = S u' + c,        c = -J_d^-1 gamma
+
+so that q' = Y u + y0 and q'' = Y u' + a0 with the unit matrix in the rows of u.  The equations of motion projected on Y
+hold no multipliers (Maggi's equations; J Y = 0):
+
+    Y^T M Y u' = Y^T (f - M a0)
+
+The pivots are chosen once, over the ring (``choose``), and used in every algebra: first numbers and positive
+parameters, then, for what is left, the determinant of the block that remains, by Cramer's rule.  So the result is
+singular exactly where J_d is, and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from itertools import combinations, islice
+from typing import Any
+
+from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.failures import Constrained, NoClosedForm
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial, Ring
+
+#: So many blocks of columns are tried for the shortest determinant.
+MOST_BLOCKS = 60
+
+#: The length of a determinant that has no closed form within the budget.
+BEYOND = 1 << 60
+
+
+@dataclass(frozen=True)
+class Pivots:
+    """How J_d is solved: ``units`` are (row, column) whose entries cannot vanish, then the block of what is left.
+
+    Rows and columns are those of all rows that say something and of all coordinates.
+    """
+
+    units: tuple[tuple[int, int], ...]
+    block_rows: tuple[int, ...]
+    block_columns: tuple[int, ...]
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        return tuple(sorted((*(row for row, _ in self.units), *self.block_rows)))
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        return tuple(sorted((*(column for _, column in self.units), *self.block_columns)))
+
+
+@dataclass(frozen=True)
+class Embedding:
+    """S (r x (n - r)), s (r) and c (r) for the ``dependent`` columns, in their order; ``free`` are the other columns.
+
+    ``determinant`` is that of the block of ``Pivots``: all is regular where it is not zero.
+    """
+
+    dependent: tuple[int, ...]
+    free: tuple[int, ...]
+    matrix: tuple[tuple[Scalar, ...], ...]
+    shift: tuple[Scalar, ...]
+    acceleration: tuple[Scalar, ...]
+    determinant: Scalar
+
+
+def embedded(
+    algebra: Algebra, jacobian: Sequence[Sequence[Scalar]], sides: Sequence[Sequence[Scalar]], pivots: Pivots
+) -> Embedding:
+    """The dependent velocities; ``sides`` are (j, gamma) of every row."""
+    n = len(jacobian[0])
+    rows = {i: [*jacobian[i], *sides[i]] for i in pivots.rows}
+    for i, column in pivots.units:
+        _pivot(algebra, rows, i, column)
+    determined = _cramer(algebra, rows, pivots.block_rows, pivots.block_columns)
+    for i, _ in pivots.units:
+        for k in pivots.block_columns:
+            _clear(algebra, rows, i, k, rows[pivots.block_rows[pivots.block_columns.index(k)]])
+    owner = {column: i for i, column in pivots.units}
+    owner |= dict(zip(pivots.block_columns, pivots.block_rows, strict=True))
+    dependent = pivots.columns
+    free = tuple(k for k in range(n) if k not in owner)
+    solved = [rows[owner[column]] for column in dependent]
+    return Embedding(
+        dependent,
+        free,
+        tuple(tuple(algebra.reduce(-row[k]) for k in free) for row in solved),
+        tuple(algebra.reduce(-row[n]) for row in solved),
+        tuple(algebra.reduce(-row[n + 1]) for row in solved),
+        determined,
+    )
+
+
+def _pivot(algebra: Algebra, rows: dict[int, list[Scalar]], i: int, column: int) -> None:
+    """Row i divided by its pivot, and taken from all others."""
+    if not algebra.vanishes(rows[i][column] - algebra.one):
+        inverse = algebra.reciprocal(rows[i][column])
+        rows[i] = [algebra.reduce(algebra.times(inverse, x)) for x in rows[i]]
+        rows[i][column] = algebra.one
+    for k in rows:
+        if k != i:
+            _clear(algebra, rows, k, column, rows[i])
+
+
+def _clear(algebra: Algebra, rows: dict[int, list[Scalar]], k: int, column: int, pivot: Sequence[Scalar]) -> None:
+    factor = rows[k][column]
+    if algebra.vanishes(factor):
+        return
+    rows[k] = [
+        x if algebra.vanishes(y) else algebra.reduce(x - algebra.times(factor, y))
+        for x, y in zip(rows[k], pivot, strict=True)
+    ]
+    rows[k][column] = algebra.zero
+
+
+def _cramer(algebra: Algebra, rows: dict[int, list[Scalar]], chosen: Sequence[int], columns: Sequence[int]) -> Scalar:
+    """The rows of a block made unit rows in its columns: adj(A) B / det A.  Returns det A."""
+    if not chosen:
+        return algebra.one
+    block = [[rows[i][k] for k in columns] for i in chosen]
+    whole = determinant(algebra, block)
+    inverse = algebra.reciprocal(whole)
+    size = range(len(chosen))
+    adjugate = [[_signed(algebra, i + j, determinant(algebra, _without(block, j, i))) for j in size] for i in size]
+    old = [rows[i] for i in chosen]
+    for a, i in enumerate(chosen):
+        new = []
+        for k in range(len(old[0])):
+            if k in columns:
+                new.append(algebra.one if columns[a] == k else algebra.zero)
+                continue
+            total = algebra.dot(adjugate[a], [row[k] for row in old])
+            new.append(algebra.reduce(algebra.times(inverse, total)))
+        rows[i] = new
+    return whole
+
+
+def _signed(algebra: Algebra, exponent: int, x: Scalar) -> Scalar:
+    return -x if exponent % 2 else x
+
+
+def _without(block: Sequence[Sequence[Scalar]], row: int, column: int) -> list[list[Scalar]]:
+    return [[x for j, x in enumerate(line) if j != column] for i, line in enumerate(block) if i != row]
+
+
+def choose(
+    ring: Ring,
+    jacobian: Sequence[Sequence[Polynomial]],
+    independent: Sequence[int],
+    columns: Sequence[int],
+    regular: Callable[[Sequence[int], Sequence[int]], bool],
+    required: Collection[int] = (),
+) -> Pivots:
+    """Pivots for the independent rows, in all ``required`` columns and in others, the last ones preferred.
+
+    ``regular(rows, columns)`` tells whether a square block of J is regular somewhere on the manifold.  Raises
+    Constrained where none is.
+    """
+    for also in (columns, [k for k in columns if k in required]):  # units elsewhere may stand in the way
+        units, rows = _units(ring, jacobian, independent, also, required)
+        left = [i for i in independent if i not in {row for row, _ in units}]
+        used = [k for _, k in units]
+        missing = [k for k in required if k not in used]
+        free = [k for k in reversed(columns) if k not in used and k not in missing]
+        blocks = (
+            [(*missing, *x) for x in combinations(free, len(left) - len(missing))] if len(missing) <= len(left) else []
+        )
+        possible = (x for x in blocks if regular(sorted(independent), [*used, *x]))
+        best: tuple[int, tuple[int, ...]] | None = None
+        for block in islice(possible, MOST_BLOCKS):
+            length = _length(ring, [[rows[i][k] for k in block] for i in left])
+            if length and (best is None or length < best[0]):
+                best = length, tuple(sorted(block))
+            if length == BEYOND:  # the others will hardly be shorter
+                break
+        if best is not None:
+            return Pivots(tuple(units), tuple(left), best[1])
+    raise Constrained("the dependent coordinates cannot be solved for")
+
+
+def _length(ring: Ring, block: Sequence[Sequence[Polynomial]]) -> int:
+    """The terms of its determinant; BEYOND the budget it is still what it is, as a program."""
+    try:
+        return len(determinant(ring, block)) if block else 1
+    except NoClosedForm:
+        return BEYOND
+
+
+def _units(
+    ring: Ring,
+    jacobian: Sequence[Sequence[Polynomial]],
+    independent: Sequence[int],
+    columns: Sequence[int],
+    required: Collection[int],
+) -> tuple[list[tuple[int, int]], dict[int, list[Polynomial]]]:
+    """Pivots that cannot vanish, and the rows when they are taken; room is left for the required columns."""
+    rows = {i: list(jacobian[i]) for i in independent}
+    units: list[tuple[int, int]] = []
+    while len(units) < len(rows):
+        taken_rows, taken = {i for i, _ in units}, {k for _, k in units}
+        waiting = [k for k in required if k not in taken]
+        allowed = waiting if len(rows) - len(units) <= len(waiting) else columns
+        found = [
+            (k not in waiting, kind, sum(not ring.vanishes(x) for x in rows[i]), -place, i, k)
+            for i in rows
+            if i not in taken_rows
+            for place, k in enumerate(columns)
+            if k not in taken and k in allowed and (kind := _unit_class(ring, rows[i][k])) is not None
+        ]
+        if not found:
+            break
+        *_, i, k = min(found)
+        units.append((i, k))
+        _pivot(ring, rows, i, k)
+    return units, rows
+
+
+def _unit_class(ring: Ring, x: Polynomial) -> int | None:
+    """0 for a number, 1 for parameters that are known to be positive, None for what may vanish (or does)."""
+    if ring.vanishes(x):
+        return None
+    if x.is_constant():
+        return 0
+    return 1 if len(x) == 1 and (ring.is_positive(x) or ring.is_positive(-x)) else None
+
+
+def projected(
+    algebra: Algebra, found: Embedding, mass_matrix: Sequence[Sequence[Scalar]], forcing: Sequence[Scalar]
+) -> tuple[list[list[Scalar]], list[Scalar]]:
+    """(Y^T M Y, Y^T (f - M a0)) of M and f as they are given."""
+    n = len(forcing)
+    a0 = [algebra.zero] * n
+    for k, x in zip(found.dependent, found.acceleration, strict=True):
+        a0[k] = x
+    rest = [algebra.reduce(forcing[i] - algebra.dot(mass_matrix[i], a0)) for i in range(n)]
+    columns = [basis_vector(algebra, found, place) for place in range(len(found.free))]
+    products = [[algebra.dot(row, y) for row in mass_matrix] for y in columns]
+    matrix = [[algebra.dot(y, product) for product in products] for y in columns]
+    return matrix, [algebra.dot(y, rest) for y in columns]
+
+
+def basis_vector(algebra: Algebra, found: Embedding, place: int) -> list[Any]:
+    """A column of Y: q' for the independent velocity of that place equal to 1, the others 0."""
+    y = [algebra.zero] * (len(found.free) + len(found.dependent))
+    y[found.free[place]] = algebra.one
+    for k, row in zip(found.dependent, found.matrix, strict=True):
+        y[k] = row[place]
+    return y

@@ -1,0 +1,169 @@
+"""Constraint rows by another route: bodies placed in inertial axes, as series in time and along each coordinate.
+
+Nothing is taken from the recursion of the rows: a position is differentiated by being a series s -> r(q(s)), an angular
+velocity is read off the rate of the axes.  Rows are given in the axes of the frame in which ``rows`` has them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from mbsym.algebra.base import Scalar
+from mbsym.expressions.tree import Expression, subtract
+from mbsym.mechanics.constraints.rows import normals
+from mbsym.mechanics.oracle import Oracle, Placement, Series, State
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
+from mbsym.model.system import INERTIAL, Point, System
+
+
+@dataclass(frozen=True, slots=True)
+class OracleRow:
+    """f (None of a velocity constraint), g, dg/dt at the accelerations of the state, and dg/dq'."""
+
+    position: Scalar | None
+    velocity: Scalar
+    acceleration: Scalar
+    partials: tuple[Scalar, ...]
+
+
+def oracle_rows(system: System, state: State) -> list[list[OracleRow]]:
+    """The rows of every constraint at one state, trivial ones included."""
+    oracle = Oracle(system, state)
+    return [_Rows(system, oracle, one).rows() for one in system.constraints]
+
+
+class _Rows:
+    def __init__(self, system: System, oracle: Oracle, constraint: Constraint) -> None:
+        self.system = system
+        self.oracle = oracle
+        self.constraint = constraint
+        self.numbers = oracle.numbers
+
+    def rows(self) -> list[OracleRow]:
+        one = self.constraint
+        if isinstance(one, Rolling):
+            return self._rolling(one)
+        if isinstance(one, Velocity):
+            return [self._velocity(subtract(one.left, one.right))]
+        moving = self._series(self.oracle.moving)
+        two = self.numbers.number(2)
+        slopes = []
+        for name in self.system.coordinates:
+            place = Placement(self.system, self.oracle.state, self._along(name))
+            slopes.append([x.b for x in self._series(place)])
+        return [OracleRow(x.a, x.b, two * x.c, tuple(slope[k] for slope in slopes)) for k, x in enumerate(moving)]
+
+    def _along(self, name: str) -> dict[str, Series]:
+        """Only one coordinate moves, with the rate 1."""
+        zero = self.numbers.zero
+        found = {key: Series(value, zero, zero) for key, value in self.oracle.state.values.items()}
+        found[name] = Series(self.oracle.state.values[name], self.numbers.one, zero)
+        return found
+
+    # --- what is given by places ---
+
+    def _series(self, place: Placement) -> list[Series]:
+        one = self.constraint
+        if isinstance(one, Relation):
+            return [place.lower(subtract(one.left, one.right))]
+        if isinstance(one, Parallel):
+            e = place.direction(one.second.body, place.lower.vector(one.second.direction))
+            found = []
+            for normal in normals(one.first.direction):
+                n = place.direction(one.first.body, place.lower.vector(normal))
+                found.append(_dot(n, e))
+            return found
+        assert isinstance(one, Coincide | Distance)
+        apart = [a - b for a, b in zip(self._point(place, one.first), self._point(place, one.second), strict=True)]
+        if isinstance(one, Distance):
+            length, half = place.lower(one.length), place.algebra.number(Fraction(1, 2))
+            return [half * (_dot(apart, apart) - length * length)]
+        axes = place.axes[self._frame(one.first.body, one.second.body)]
+        return [_dot([axes[i][k] for i in range(3)], apart) for k in range(3)]
+
+    def _point(self, place: Placement, point: Point) -> Any:
+        return place.point(point.body, place.lower.vector(point.position))
+
+    def _frame(self, *bodies: str) -> str:
+        """The last frame that carries them all."""
+        paths = [self.system.path(body) for body in bodies]
+        shared = INERTIAL
+        for names in zip(*paths, strict=False):
+            if len(set(names)) > 1:
+                break
+            shared = names[0]
+        return shared
+
+    # --- what is given by velocities ---
+
+    def _velocity(self, g: Expression) -> OracleRow:
+        """g as a series in time, and its increments by unit velocities (it is linear in them)."""
+        moving = self.oracle.moving.lower(g)
+        values, zero = dict(self.oracle.state.values), self.numbers.zero
+        for name in self.system.coordinates:
+            values[name + "_dot"] = zero
+        slopes = []
+        for name in ("", *self.system.coordinates):
+            there = {**values, name + "_dot": self.numbers.one} if name else values
+            place = {key: Series(value, zero, zero) for key, value in there.items()}
+            slopes.append(type(self.oracle.moving.lower)(self.oracle.moving.algebra, self._angles(place))(g).a)
+        return OracleRow(None, moving.a, moving.b, tuple(x - slopes[0] for x in slopes[1:]))
+
+    def _angles(self, place: dict[str, Series]) -> dict[str, Series]:
+        """Sines are looked up at the state: nothing but velocities differs there."""
+        return place
+
+    def _rolling(self, one: Rolling) -> list[OracleRow]:
+        """V + omega x (c - r) of both bodies, each from rates of places: in time, and along each coordinate."""
+        moving = self._slip(one, self.oracle.moving, 0), self._slip(one, self.oracle.moving, 1)
+        slopes = []
+        for name in self.system.coordinates:
+            place = Placement(self.system, self.oracle.state, self._along(name))
+            slopes.append(self._slip(one, place, 0))
+        return [OracleRow(None, moving[0][k], moving[1][k], tuple(slope[k] for slope in slopes)) for k in range(3)]
+
+    def _slip(self, one: Rolling, place: Placement, order: int) -> list[Scalar]:
+        """The slip at the contact (order 0), or its rate, in the axes of the frame that carries all."""
+        arm = place.direction(one.axes, place.lower.vector(one.contact))
+        contact = [a + b for a, b in zip(place.origin[one.body], arm, strict=True)]
+        slip = [
+            [x - y for x, y in zip(u, v, strict=True)]
+            for u, v in zip(
+                self._material(place, one.body, contact), self._material(place, one.on, contact), strict=True
+            )
+        ]
+        axes = place.axes[self._frame(one.body, one.on, one.axes)]
+        found = []
+        for k in range(3):
+            column = [axes[i][k] for i in range(3)]
+            total = self.numbers.zero
+            for i in range(3):
+                total = total + column[i].a * slip[order][i]
+                if order:
+                    total = total + column[i].b * slip[0][i]
+            found.append(total)
+        return found
+
+    def _material(self, place: Placement, body: str, contact: Any) -> list[list[Scalar]]:
+        """The velocity of the material point at a contact that moves, and its rate, in inertial axes."""
+        omega, rate = place.spin(body) if body != INERTIAL else ([self.numbers.zero] * 3, [self.numbers.zero] * 3)
+        origin, two = place.origin[body], self.numbers.number(2)
+        arm = [c - o for c, o in zip(contact, origin, strict=True)]
+        turned = _cross(omega, [x.a for x in arm])
+        swung = [
+            a + b for a, b in zip(_cross(rate, [x.a for x in arm]), _cross(omega, [x.b for x in arm]), strict=True)
+        ]
+        return [
+            [x.b + y for x, y in zip(origin, turned, strict=True)],
+            [two * x.c + y for x, y in zip(origin, swung, strict=True)],
+        ]
+
+
+def _dot(u: Any, v: Any) -> Any:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _cross(u: Any, v: Any) -> list[Any]:
+    return [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]

@@ -1,0 +1,346 @@
+"""The analysis of constraints: rows over the ring, ranks at exact points of the manifold, pivots, integrability."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import ctx, fmpq_mat
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Constrained, Failure, NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded
+from mbsym.mechanics.constraints.programs import ConstrainedPrograms, constrained_programs
+from mbsym.mechanics.constraints.ranks import Eliminated, eliminated, is_certain
+from mbsym.mechanics.constraints.rows import Row, RowName, kept_rows, said_rows
+from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
+from mbsym.mechanics.kinematics import Scene
+from mbsym.model.constraints import is_holonomic, kind_name
+from mbsym.model.system import System
+from mbsym.problems.constraints.integrability import Field, integrability, undecided
+from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved, Sureness
+
+#: At so many points ranks are taken.
+POINTS = 3
+
+
+def constraints(scene: Scene) -> Constraints:
+    """Everything that is known of the constraints (scene over the ring).
+
+    Raises Unsound where they contradict one another, tie what nothing moves, or where the dependent set of the
+    description cannot be solved for; Constrained where no configuration that keeps them was found; NoClosedForm as the
+    ring does.
+    """
+    with ctx.workprec(PRECISION):
+        return _Analysis(scene).result()
+
+
+def faults(scene: Scene) -> tuple[Fault, ...]:
+    """The faults alone: what is said of a description before anything is derived from it."""
+    try:
+        with ctx.workprec(PRECISION):
+            _Analysis(scene).pivots()
+    except Unsound as reason:
+        return reason.faults
+    except Failure:  # nothing is known to be wrong
+        return ()
+    return ()
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Why constraints cannot be meant: the rows that it is about (none: the dependent set), and what to do."""
+
+    code: str
+    message: str
+    rows: tuple[RowName, ...] = ()
+    hint: str = ""
+
+
+class Unsound(Constrained):
+    """Constraints that cannot be meant, with every fault that was found."""
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        told = "; ".join(
+            fault.message + (f" ({', '.join(row.label for row in fault.rows)})" if fault.rows else "")
+            for fault in faults
+        )
+        super().__init__(told, remedy=faults[0].hint)
+        self.faults = tuple(faults)
+
+
+class _Points:
+    """Numbers at points of the manifold: J and j of the rows, and any formula of the ring."""
+
+    def __init__(self, ring: Ring, found: ConstrainedPrograms, states: Sequence[OnManifold]) -> None:
+        self.ring = ring
+        self.found = found
+        self.states = states
+        self.carriers = [Carrier(ring, one.state.numbers, one.state.values) for one in states]
+
+    @property
+    def exact(self) -> bool:
+        return all(one.exact for one in self.states)
+
+    def jacobians(self) -> list[list[list[Any]]]:
+        nodes = [x for row in self.found.jacobian for x in row]
+        n = len(self.found.jacobian[0]) if self.found.jacobian else 0
+        found = []
+        for one in self.states:
+            values = self.found.tree.program.evaluate(nodes, one.state.values, one.state.numbers)
+            found.append([values[i : i + n] for i in range(0, len(values), n)])
+        return found
+
+    def combined(self, independent: Sequence[int], i: int) -> list[int]:
+        """Of which independent rows of J a dependent one is a combination at the first point."""
+        jacobian = self.jacobians()[0]
+        m = len(independent)
+        table = [[*(jacobian[k][c] for k in independent), jacobian[i][c]] for c in range(len(jacobian[i]))]
+        done = eliminated(table, range(m))
+        return [independent[column] for row, column in done.pivots if is_certain(done.rows[row][m])]
+
+    def values(self, polynomials: Sequence[Polynomial]) -> list[list[Any]]:
+        """Each formula at each point."""
+        return [[carrier(x) for x in polynomials] for carrier in self.carriers]
+
+    def rank(self, fields: Sequence[Field]) -> tuple[int, bool]:
+        """The rank of fields, the greatest at the points; proved to be no greater only where it is full."""
+        best = 0
+        for carrier in self.carriers:
+            rows = [[carrier(x) for x in field] for field in fields]
+            best = max(best, eliminated(rows, range(len(rows[0]))).rank)
+        return best, best == len(fields)
+
+
+class _Analysis:
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.ring: Ring = scene.ring
+        self.system = scene.system
+        self.rows = said_rows(scene)
+        idle = _idle(self.system, self.rows, self.ring)
+        if idle:
+            raise Unsound(idle)
+        self.n = len(self.system.coordinates)
+        self.programs = constrained_programs(self.system, self.ring, kept_rows(self.rows))
+        self.manifold = Manifold(self.system, self.ring, self.programs)
+
+    def pivots(self) -> tuple[_Points, list[int], Pivots]:
+        """Points of the manifold, the independent rows, and how they are solved."""
+        impossible = contradiction(self.ring, self.rows)
+        if impossible:
+            message = "these constraints contradict one another: no configuration keeps them all"
+            raise Unsound([Fault("contradictory-constraints", message, impossible)])
+        points = _Points(self.ring, self.programs, list(self.manifold.states(POINTS)))
+        if not points.states:
+            raise Constrained("no configuration that keeps all constraints was found")
+        ranked = [self._ranked(jacobian) for jacobian in points.jacobians()]
+        best = max(range(len(ranked)), key=lambda k: ranked[k].rank)
+        independent = [i for i, _ in ranked[best].pivots]
+        self._check_velocities(points, independent)
+        jacobian = [row.partials for row in self.rows]
+        return points, independent, self._chosen(jacobian, independent, points)
+
+    def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
+        columns, required = self._columns(len(independent))
+        try:
+            return choose(self.ring, jacobian, independent, columns, _regular(points.jacobians()), required)
+        except Constrained as reason:
+            if not self.system.dependent:
+                raise
+            message = f"the constraints cannot be solved for the velocities of {', '.join(self.system.dependent)}"
+            raise Unsound([Fault("dependent-set", message, hint=self._dependent_hint(independent))]) from reason
+
+    def _dependent_hint(self, independent: list[int]) -> str:
+        """A set that can be solved for."""
+        block = eliminated(
+            [_Points(self.ring, self.programs, list(self.manifold.states(1))).jacobians()[0][i] for i in independent],
+            range(self.n - 1, -1, -1),
+        )
+        return f"for example dependent: [{', '.join(self.system.coordinates[k] for k in sorted(block.columns))}]"
+
+    def result(self) -> Constraints:
+        points, independent, pivots = self.pivots()
+        jacobian = [row.partials for row in self.rows]
+        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
+        shifts = [self.ring.substitute(row.velocity, still) for row in self.rows]
+        at_rest = {self.ring.index("acceleration", name): self.ring.zero for name in self.system.coordinates}
+        gammas = [self.ring.substitute(row.acceleration, at_rest) for row in self.rows]
+        sides = list(zip(shifts, gammas, strict=True))
+        found = self._embedding(jacobian, sides, pivots)
+        holonomic = sum(self.rows[i].name.holonomic for i in independent)
+        names, m = self.system.coordinates, range(len(self.rows))
+        return Constraints(
+            names=tuple(row.name for row in self.rows),
+            position=tuple(None if row.position is None else Formula(self.ring, row.position) for row in self.rows),
+            velocity=column(self.ring, [row.velocity for row in self.rows]),
+            jacobian=Matrix.of(self.ring, [list(row) for row in jacobian]),
+            acceleration=column(self.ring, gammas),
+            independent=tuple(independent),
+            redundant=tuple(self._redundant(i, independent, sides, found, points) for i in m if i not in independent),
+            position_rank=holonomic,
+            parameter_conditions=self._parameter_conditions(points, holonomic),
+            coordinates=names,
+            dependent=tuple(names[k] for k in pivots.columns),
+            integrability=self._integrability(found, shifts, holonomic, len(independent) - holonomic, points),
+            exact_points=points.exact,
+            pivots=pivots,
+            solved=None if found is None else self._whole(found),
+        )
+
+    def _embedding(
+        self,
+        jacobian: Sequence[Sequence[Polynomial]],
+        sides: Sequence[tuple[Polynomial, Polynomial]],
+        pivots: Pivots,
+    ) -> Embedding | None:
+        """The dependent velocities in closed form; None where they outgrow the budget."""
+        try:
+            return embedded(self.ring, jacobian, sides, pivots)
+        except NoClosedForm:
+            return None
+
+    def _integrability(
+        self, found: Embedding | None, shifts: Sequence[Polynomial], holonomic: int, imposed: int, points: _Points
+    ) -> Integrability | None:
+        if imposed <= 0:
+            return None
+        rheonomic = self._is_rheonomic(shifts)
+        if found is None:
+            return undecided(imposed, rheonomic)
+        try:
+            return integrability(self.scene, found, rheonomic, holonomic, points.rank)
+        except Failure:
+            return undecided(imposed, rheonomic)
+
+    def _ranked(self, jacobian: list[list[Any]]) -> Eliminated:
+        """Independent rows: holonomic ones count before velocity constraints, each kind in the order of the file."""
+        order = sorted(range(len(jacobian)), key=lambda i: not self.rows[i].name.holonomic)
+        done = eliminated([jacobian[i] for i in order], range(self.n))
+        pivots = tuple((order[i], column) for i, column in done.pivots)
+        return Eliminated(tuple(sorted(pivots)), done.rows, done.exact)
+
+    def _columns(self, rank: int) -> tuple[list[int], list[int]]:
+        """All coordinates, those preferred as dependent ones last, and those that the description wants dependent."""
+        names, wanted = self.system.coordinates, self.system.dependent
+        if len(wanted) > rank:
+            how = "depends" if rank == 1 else "depend"
+            message = f"{rank} of {len(names)} velocities {how} on the others, and 'dependent' names {len(wanted)}"
+            raise Unsound([Fault("dependent-set", message, hint="leave 'dependent' out to have them found")])
+        plain = [k for k, name in enumerate(names) if name not in self.ring.angles]
+        columns = [k for k in range(len(names)) if k not in plain] + plain
+        return columns, [names.index(name) for name in wanted]
+
+    def _check_velocities(self, points: _Points, independent: Sequence[int]) -> None:
+        """J q' + j = 0 must have a solution: at a point of the manifold what is left of a dependent row is zero."""
+        for one in points.states:
+            left = self.programs.tree.program.evaluate(self.programs.velocity, one.state.values, one.state.numbers)
+            wrong = tuple(self.rows[i].name for i, x in enumerate(left) if is_certain(x))
+            if wrong:
+                message = "this contradicts the other constraints: no velocities keep them all"
+                raise Unsound([Fault("contradictory-constraints", message, (row,)) for row in wrong])
+
+    def _is_rheonomic(self, shifts: Sequence[Polynomial]) -> bool:
+        """Whether time takes part: a shift, or t or something prescribed in J."""
+        timely = ("t", *(item.name for item in self.system.prescribed))
+        held = [x for row in self.rows for x in row.partials]
+        return any(not self.ring.vanishes(x) for x in shifts) or any(
+            self.ring.depends_on(x, name) for x in held for name in timely
+        )
+
+    def _whole(self, found: Embedding) -> Solved:
+        """Y (n x (n - r)), y0 and a0, with the rows of all coordinates."""
+        ring = self.ring
+        columns = [basis_vector(ring, found, place) for place in range(len(found.free))]
+        shift, acceleration = [ring.zero] * self.n, [ring.zero] * self.n
+        for k, x, y in zip(found.dependent, found.shift, found.acceleration, strict=True):
+            shift[k], acceleration[k] = x, y
+        return Solved(
+            Matrix.of(ring, [[y[k] for y in columns] for k in range(self.n)]),
+            column(ring, shift),
+            column(ring, acceleration),
+            Formula(ring, found.determinant),
+            found,
+        )
+
+    def _redundant(
+        self,
+        i: int,
+        independent: Sequence[int],
+        sides: Sequence[tuple[Polynomial, Polynomial]],
+        found: Embedding | None,
+        points: _Points,
+    ) -> Redundant:
+        """What a row follows from, and how that is known: J (Y u + y0) + j = 0 in the ring, or at the points only."""
+        proved = found is not None and self._follows(self.rows[i].partials, sides[i][0], found)
+        return Redundant(
+            self.rows[i].name,
+            tuple(self.rows[k].name for k in points.combined(independent, i)),
+            Sureness.PROVED if proved else Sureness.NUMERICAL,
+        )
+
+    def _follows(self, row: Sequence[Polynomial], side: Polynomial, found: Embedding) -> bool:
+        ring = self.ring
+        try:
+            left = [ring.dot(row, basis_vector(ring, found, place)) for place in range(len(found.free))]
+            moved = (ring.times(row[k], x) for k, x in zip(found.dependent, found.shift, strict=True))
+            left.append(ring.reduce(sum(moved, side)))
+            return all(ring.is_zero(x) is True for x in left)
+        except NoClosedForm:
+            return False
+
+    def _parameter_conditions(self, points: _Points, position_rank: int) -> int:
+        """How many relations between parameters phi = 0 demands: what its rank gains by the parameters."""
+        return self.manifold.rank_with_parameters(points.states[0]) - position_rank
+
+
+def _regular(jacobians: Sequence[Sequence[Sequence[Any]]]) -> Any:
+    """Whether a square block is regular at one of the points."""
+
+    def regular(rows: Sequence[int], columns: Sequence[int]) -> bool:
+        return any(
+            eliminated([[jacobian[i][k] for k in columns] for i in rows], range(len(columns))).rank == len(rows)
+            for jacobian in jacobians
+        )
+
+    return regular
+
+
+def _idle(system: System, rows: Sequence[Row], ring: Ring) -> list[Fault]:
+    """Constraints whose rows hold no velocity: their ends are on one rigid piece, or planar motion keeps them apart."""
+    faults = []
+    for number, constraint in enumerate(system.constraints):
+        own = [row for row in rows if row.name.constraint == number]
+        fixed = tuple(row.name for row in own if all(map(ring.vanishes, row.partials)))
+        name = RowName(number, 0, kind_name(constraint), is_holonomic(constraint), constraint.span)
+        if len(fixed) == len(own):
+            message = "no coordinate moves what this constraint ties: it is one rigid piece, or nothing is tied"
+            faults.append(Fault("rigid-constraint", message, (name,), "tie bodies that move against each other"))
+        elif fixed:
+            listed = ", ".join(str(row.component) for row in fixed)
+            message = f"no coordinate changes component {listed} of this constraint, and it is not zero"
+            faults.append(Fault("rigid-constraint", message, (name,)))
+    return faults
+
+
+def contradiction(ring: Ring, rows: Sequence[Row]) -> tuple[RowName, ...]:
+    """The rows of which a combination with rational coefficients says 1 = 0; none where there is no such."""
+    held = [row for row in rows if row.position is not None]
+    dicts = [row.position.to_dict() for row in held if row.position is not None]
+    monomials = sorted({monomial for one in dicts for monomial in one}, reverse=True)
+    if not monomials or any(monomials[-1]):  # the constant comes last
+        return ()
+    width, m = len(monomials), len(held)
+    entries = [
+        [*(one.get(monomial, 0) for monomial in monomials), *(int(i == k) for k in range(m))]
+        for i, one in enumerate(dicts)
+    ]
+    reduced, rank = fmpq_mat(m, width + m, [x for row in entries for x in row]).rref()
+    for i in range(rank):
+        row = [reduced[i, k] for k in range(width + m)]
+        if not any(row[: width - 1]) and row[width - 1] != 0:
+            return tuple(held[k].name for k in range(m) if row[width + k] != 0)
+    return ()

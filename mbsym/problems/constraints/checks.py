@@ -1,0 +1,176 @@
+"""The second routes of constrained systems: placements in inertial axes at exact states on the constraint manifold.
+
+What the rows are is taken from places alone: bodies are placed in inertial axes as series in time, and along each
+coordinate, so that f, f' and f'' and J come from positions without the recursion of the rows.  The multipliers' force
+is whatever is normal to all displacements that this J allows; so the equations hold if
+
+    Z^T (M q'' - f) = 0,     Z: null space of that J
+
+with d'Alembert's M q'' - f in inertial axes, at the accelerations that the equations give.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from flint import ctx
+
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
+from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+from mbsym.mechanics.constraints.ranks import eliminated
+from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
+from mbsym.mechanics.oracle import Oracle, State
+from mbsym.model.system import System, acceleration_name
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check, Pair, _verdict
+from mbsym.problems.constraints.motion import Embedded
+from mbsym.problems.constraints.result import Constraints
+
+STATES = 3
+
+#: The states at which constrained results are compared.
+At = Callable[[OnManifold], list[Pair]]
+
+
+def check_rows(system: System, ring: Ring, found: Constraints, programs: ConstrainedPrograms) -> Check:
+    """f, g, dg/dt and J of every row, closed and as a program, against places in inertial axes, and the embedding.
+
+    At states that keep the constraints; J (Y u + y0) + j = 0 there for any u.
+    """
+    n = len(found.coordinates)
+
+    def pairs(one: OnManifold) -> list[Pair]:
+        state = one.state
+        truth = oracle_rows(system, state)
+        carry = Carrier(ring, state.numbers, state.values)
+        compared: list[Pair] = []
+        zero = state.numbers.zero
+        for i, name in enumerate(found.names):
+            row: OracleRow = truth[name.constraint][max(name.component - 1, 0)]
+            position = found.position[i]
+            if row.position is not None and position is not None:
+                compared.append((f"{name.label}", carry(position.polynomial), row.position))
+            compared.append((f"rate of {name.label}", carry(found.velocity[i].polynomial), row.velocity))
+            speed = [state.values[acceleration_name(x)] for x in found.coordinates]
+            bent = sum(
+                (carry(found.jacobian[i, k].polynomial) * speed[k] for k in range(n)),
+                carry(found.acceleration[i].polynomial),
+            )
+            compared.append((f"second rate of {name.label}", bent, row.acceleration))
+            for k, other in enumerate(found.coordinates):
+                compared.append((f"{name.label} by {other}", carry(found.jacobian[i, k].polynomial), row.partials[k]))
+            for place, free in enumerate(found.free if found.solved is not None else ()):
+                assert found.solved is not None
+                basis = found.solved.transformation
+                work = sum((row.partials[k] * carry(basis[k, place].polynomial) for k in range(n)), zero)
+                compared.append((f"{name.label} along {free}", work, zero))
+        nodes = [x for row in programs.jacobian for x in row] + [*programs.velocity, *programs.acceleration]
+        values = programs.tree.program.evaluate(nodes, state.values, state.numbers)
+        m = len(found.names)
+        for i in range(m):
+            for k in range(n):
+                closed = carry(found.jacobian[i, k].polynomial)
+                compared.append((f"program of {found.names[i].label}", values[i * n + k], closed))
+            compared.append(
+                (f"program of {found.names[i].label}", values[m * n + m + i], carry(found.acceleration[i].polynomial))
+            )
+        return compared
+
+    routes = ("recursion along the coordinates", "places in inertial axes")
+    return compared_on_manifold("constraints", routes, system, ring, programs, pairs)
+
+
+def check_embedded(
+    system: System, ring: Ring, found: Constraints, embedded: Embedded, programs: ConstrainedPrograms
+) -> Check:
+    """The embedded equations against d'Alembert's principle in inertial axes, at accelerations that they give.
+
+    The accelerations solve the closed embedded equations; with them the forces of inertia and loads, from another
+    derivation, do no work along any displacement that the constraints allow.  Forces of constraints do none.
+    """
+    names = found.coordinates
+
+    def pairs(one: OnManifold) -> list[Pair]:
+        state = one.state
+        carry = Carrier(ring, state.numbers, state.values)
+        moved = accelerated(state, carry, found, embedded)
+        oracle = Oracle(system, moved)
+        residual = [oracle.residuals[name] for name in names]
+        truth = oracle_rows(system, moved)
+        rows = [truth[name.constraint][max(name.component - 1, 0)] for name in found.names]
+        zero = state.numbers.zero
+        compared: list[Pair] = [
+            (f"second rate of {name.label}", row.acceleration, zero)
+            for name, row in zip(found.names, rows, strict=True)
+        ]
+        for place, y in enumerate(_null_space([row.partials for row in rows], len(names), state.numbers)):
+            work = sum((a * b for a, b in zip(y, residual, strict=True)), zero)
+            compared.append((f"work along displacement {place + 1}", work, zero))
+        return compared
+
+    routes = ("embedded equations, closed form", "d'Alembert's principle in inertial axes")
+    return compared_on_manifold("constrained motion", routes, system, ring, programs, pairs)
+
+
+def accelerated(state: State, carry: Any, found: Constraints, embedded: Embedded) -> State:
+    """The state with q'' = Y u' + a0, u' from the embedded equations."""
+    k, n, solved = len(found.free), len(found.coordinates), found.solved
+    assert solved is not None
+    rows = [
+        [*(carry(embedded.mass_matrix[i, j].polynomial) for j in range(k)), carry(embedded.forcing[i].polynomial)]
+        for i in range(k)
+    ]
+    done = eliminated(rows, range(k))
+    if done.rank < k:
+        raise ZeroDivisionError("Y^T M Y is singular there")
+    speed = [state.numbers.zero] * k
+    for row, column in done.pivots:
+        speed[column] = done.rows[row][k]
+    accelerations = {
+        acceleration_name(name): sum(
+            (carry(solved.transformation[i, j].polynomial) * speed[j] for j in range(k)),
+            carry(solved.acceleration_shift[i].polynomial),
+        )
+        for i, name in zip(range(n), found.coordinates, strict=True)
+    }
+    return State(state.numbers, {**state.values, **accelerations})
+
+
+def _null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:
+    """A basis of {y: J y = 0}, from J alone."""
+    done = eliminated(rows, range(n))
+    owner = {column: row for row, column in done.pivots}
+    basis = []
+    for free in (k for k in range(n) if k not in owner):
+        y = [numbers.zero] * n
+        y[free] = numbers.one
+        for column, row in owner.items():
+            y[column] = -done.rows[row][free]
+        basis.append(y)
+    return basis
+
+
+def compared_on_manifold(
+    name: str, routes: tuple[str, str], system: System, ring: Ring, programs: ConstrainedPrograms, pairs: At
+) -> Check:
+    """Compares two routes at states that keep the constraints: rational ones, or certified enclosures."""
+    done, exact = 0, True
+    with ctx.workprec(PRECISION):
+        for one in Manifold(system, ring, programs).states(3 * STATES):
+            try:
+                outcome, detail = _verdict(pairs(one))
+            except ZeroDivisionError:
+                continue
+            if outcome == FAILED:
+                return Check(name, *routes, FAILED, detail, done)
+            if outcome == EXACT:
+                done += 1
+                exact = exact and one.exact
+            if done == STATES:
+                break
+    if done < STATES:
+        return Check(name, *routes, UNDECIDED, f"only {done} of {STATES} states on the constraints were found", done)
+    return Check(name, *routes, EXACT if exact else NUMERICAL, f"{done} states on the constraints", done)

@@ -1,0 +1,123 @@
+"""Frobenius' theorem, exactly: the distribution of the velocities that the constraints leave, and its Lie brackets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.constraints.embedding import Embedding, basis_vector
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.constraints.result import Integrability, Sureness
+
+#: A vector field on the coordinates and t: the components of the coordinates, then that of t.
+Field = tuple[Polynomial, ...]
+Rank = Callable[[Sequence[Field]], tuple[int, bool]]
+
+#: So many fields are bracketed at most, and so often.
+MOST_FIELDS, MOST_STEPS = 60, 12
+
+
+def integrability(
+    scene: Scene, found: Embedding, shift_matters: bool, position_rank: int, rank: Rank
+) -> Integrability | None:
+    """The growth of the distribution at generic points of the manifold; None where there are no velocity constraints.
+
+    ``rank`` gives the rank of fields at points of the manifold, and whether it is proved that it is no greater.  Raises
+    NoClosedForm where brackets outgrow the budget.
+    """
+    ring, n = scene.ring, len(scene.system.coordinates)
+    imposed = len(found.dependent) - position_rank
+    if imposed <= 0:
+        return None
+    fields = _fields(scene, found, shift_matters)
+    whole = n - position_rank + shift_matters
+    growth = [len(fields)]
+    layer, seen, bounded = list(fields), list(fields), True
+    reached, sure = rank(seen)
+    bounded = bounded and sure
+    for _ in range(MOST_STEPS):
+        if reached == whole:
+            break
+        new = [x for a in fields for b in layer if not is_nothing(ring, x := bracket(scene, a, b))]
+        before = reached
+        kept: list[Field] = []
+        for one in new:
+            more, sure = rank([*seen, one])
+            if more > reached:
+                kept.append(one)
+                seen.append(one)
+                reached = more
+            else:
+                bounded = bounded and sure
+            if reached == whole or len(seen) > MOST_FIELDS:
+                break
+        growth.append(reached)
+        if reached == before:
+            break
+        layer = kept
+    else:
+        bounded = False
+    # A rank that is reached is proved; that it goes no further only where the ring says so.
+    proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, found, shift_matters))
+    sureness = Sureness.PROVED if proved else Sureness.NUMERICAL
+    return Integrability(tuple(growth), whole - reached, imposed, sureness, shift_matters)
+
+
+def _is_involutive(scene: Scene, found: Embedding, shift_matters: bool) -> bool:
+    """Whether the ring proves Frobenius' condition: Y's columns and (y0, 1) commute.
+
+    Their components of the independent coordinates and of t are constants; so a bracket has none there, and is a
+    combination of the fields only if it is zero.
+    """
+    ring = scene.ring
+    fields = _fields(scene, replace(found, determinant=ring.one), shift_matters)
+    try:
+        return all(ring.is_zero(x) is True for a, b in combinations(fields, 2) for x in bracket(scene, a, b))
+    except Failure:
+        return False
+
+
+def _fields(scene: Scene, found: Embedding, shift_matters: bool) -> list[Field]:
+    """Y's columns and (y0, 1), each times the determinant, which leaves their span and clears the denominators."""
+    ring = scene.ring
+    fields = [[*basis_vector(ring, found, place), ring.zero] for place in range(len(found.free))]
+    if shift_matters:
+        drift = [ring.zero] * len(scene.system.coordinates)
+        for k, x in zip(found.dependent, found.shift, strict=True):
+            drift[k] = x
+        fields.append([*drift, ring.one])
+    return [tuple(ring.reduce(ring.times(found.determinant, x)) for x in field) for field in fields]
+
+
+def is_nothing(ring: Ring, field: Field) -> bool:
+    return all(map(ring.vanishes, field))
+
+
+def bracket(scene: Scene, a: Field, b: Field) -> Field:
+    """[a, b] = (Db) a - (Da) b, components in the ring."""
+    ring = scene.ring
+    return tuple(ring.reduce(along(scene, a, y) - along(scene, b, x)) for x, y in zip(a, b, strict=True))
+
+
+def along(scene: Scene, field: Field, x: Polynomial) -> Polynomial:
+    """The derivative of x along a field; what is prescribed moves with t."""
+    ring = scene.ring
+    total = ring.zero
+    for name, component in zip(scene.system.coordinates, field, strict=False):
+        if not ring.vanishes(component):
+            total = total + ring.times(component, ring.derivative(x, name))
+    clock = field[-1]
+    if not ring.vanishes(clock):
+        rate = ring.derivative(x, "t")
+        for item in scene.system.prescribed:
+            rate = rate + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
+        total = total + ring.times(clock, rate)
+    return ring.reduce(total)
+
+
+def undecided(imposed: int, rheonomic: bool) -> Integrability:
+    """Nothing is known: formulas outgrew their budget."""
+    return Integrability((), None, imposed, Sureness.UNDECIDED, rheonomic)

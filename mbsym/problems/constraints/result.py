@@ -1,0 +1,118 @@
+"""What is known of the constraints of a system, as values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.embedding import Embedding, Pivots
+from mbsym.mechanics.constraints.rows import RowName
+
+
+class Sureness(Enum):
+    """How a statement is known; the three words mean different things."""
+
+    PROVED = "proved"
+    NUMERICAL = "verified numerically"
+    UNDECIDED = "undecided"
+
+    def __and__(self, other: Sureness) -> Sureness:
+        """Of two statements together: that of the weaker one."""
+        order = (Sureness.PROVED, Sureness.NUMERICAL, Sureness.UNDECIDED)
+        return order[max(order.index(self), order.index(other))]
+
+
+@dataclass(frozen=True)
+class Integrability:
+    """Whether velocity constraints are integrable.
+
+    ``growth`` are the dimensions spanned by the fields, by them and their first brackets, and so on, the last one
+    repeating; of fields on (q, t) where ``rheonomic``.  ``kept`` is the number of relations between coordinates (and t)
+    that they imply besides those given, None where that is undecided.
+    """
+
+    growth: tuple[int, ...]
+    kept: int | None
+    constraints: int
+    sureness: Sureness
+    rheonomic: bool
+
+    @property
+    def word(self) -> str:
+        """``holonomic``: all are derivatives of relations; ``nonholonomic``: none, and no combination; ``partly``."""
+        if self.kept is None:
+            return "undecided"
+        if self.kept == self.constraints:
+            return "holonomic"
+        return "partly" if self.kept else "nonholonomic"
+
+
+@dataclass(frozen=True)
+class Redundant:
+    """A row that follows from rows before it; ``from_rows`` names those that its J is combined of."""
+
+    name: RowName
+    from_rows: tuple[RowName, ...]
+    sureness: Sureness
+
+
+@dataclass(frozen=True, repr=False)
+class Solved(Shown):
+    """q' = Y u + y0 and q'' = Y u' + a0: ``transformation`` Y (n x (n - r)), ``shift`` y0, ``acceleration_shift`` a0.
+
+    All regular where ``regular_where`` is not zero.
+    """
+
+    transformation: Matrix
+    shift: Column
+    acceleration_shift: Column
+    regular_where: Formula
+    embedding: Embedding
+
+    @property
+    def regular_everywhere(self) -> bool:
+        """Whether the dependent velocities can be solved for at every configuration."""
+        return bool(self.regular_where.polynomial.is_constant())
+
+
+@dataclass(frozen=True, repr=False)
+class Constraints(Shown):
+    """Rows that say something, with f, J (m x n), j = velocity at q' = 0, gamma = J' q' + j'.
+
+    ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``parameter_conditions``
+    is how many relations between the parameters the position constraints demand.  ``solved`` is None where the formulas
+    outgrow the budget; ``pivots`` say how a program does it.
+    """
+
+    names: tuple[RowName, ...]
+    position: tuple[Formula | None, ...]
+    velocity: Column
+    jacobian: Matrix
+    acceleration: Column
+    independent: tuple[int, ...]
+    redundant: tuple[Redundant, ...]
+    position_rank: int
+    parameter_conditions: int
+    coordinates: tuple[str, ...]
+    dependent: tuple[str, ...]
+    integrability: Integrability | None
+    exact_points: bool
+    pivots: Pivots
+    solved: Solved | None
+
+    @property
+    def velocity_rank(self) -> int:
+        """r: how many velocities depend on the others."""
+        return len(self.independent)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The coordinates whose velocities are independent."""
+        return tuple(name for name in self.coordinates if name not in self.dependent)
+
+    @property
+    def terms(self) -> int:
+        """Terms of its formulas."""
+        return self.jacobian.terms + sum(x.terms for x in (*self.velocity, *self.acceleration))

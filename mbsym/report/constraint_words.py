@@ -1,0 +1,97 @@
+"""What is said of constraints: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML).
+
+A sentence stands in English with ``[[name]]`` for what is filled in, as the templates of the LaTeX report have them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from mbsym.mechanics.constraints.rows import RowName
+from mbsym.problems.constraints import Constraints, Integrability, Sureness
+
+#: One sentence and what stands in its gaps.
+Said = tuple[str, dict[str, object]]
+
+
+@dataclass(frozen=True)
+class Writer:
+    """How a medium writes a list of coordinates, and a word in its language."""
+
+    names: Callable[[tuple[str, ...]], str]
+    word: Callable[[str], str] = str
+
+
+def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
+    """Counts, redundant rows, integrability, and what depends on what."""
+    n = len(found.coordinates)
+    yield (
+        "Coordinates: [[n]]; independent constraints on positions: [[h]], on velocities: [[r]] in all; degrees of "
+        "freedom: [[f]].",
+        {"n": n, "h": found.position_rank, "r": found.velocity_rank, "f": n - found.velocity_rank},
+    )
+    if not found.exact_points:
+        yield "The ranks were taken at certified enclosures of points that keep the constraints.", {}
+    for redundant in found.redundant:
+        yield (
+            "Redundant: [[row]] follows from [[others]] ([[sure]]).",
+            {
+                "row": label(redundant.name, write),
+                "others": ", ".join(label(one, write) for one in redundant.from_rows),
+                "sure": write.word(redundant.sureness.value),
+            },
+        )
+    if found.parameter_conditions:
+        yield (
+            "The constraints can be kept only where the parameters satisfy further relations; their number: [[k]].",
+            {"k": found.parameter_conditions},
+        )
+    if found.integrability is not None:
+        yield from _integrable(found.integrability, n - found.position_rank, write)
+    yield (
+        "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
+        {"dependent": write.names(found.dependent), "free": write.names(found.free)},
+    )
+
+
+def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator[Said]:
+    """Frobenius' verdict; its word falls with its sureness."""
+    growth = ", ".join(map(str, found.growth))
+    sure = write.word(found.sureness.value)
+    if found.kept is None:
+        yield "Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.", {}
+        return
+    if found.word == "holonomic":
+        yield (
+            "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
+            "configurations that can be reached have [[k]] dimensions.",
+            {"sure": sure, "k": dimension - found.kept},
+        )
+    elif found.word == "partly":
+        yield (
+            "The velocity constraints are integrable in part ([[sure]]): they keep [[kept]] further relations between "
+            "the coordinates; the fields and their Lie brackets span [[growth]] dimensions.",
+            {"sure": sure, "kept": found.kept, "growth": growth},
+        )
+    else:
+        # That the brackets span everything is reached at a point, and so proved.
+        yield (
+            "The system is nonholonomic ([[sure]]): no relation between the coordinates follows from the velocity "
+            "constraints; the fields and their Lie brackets span [[growth]] dimensions.",
+            {"sure": write.word(Sureness.PROVED.value), "growth": growth},
+        )
+
+
+def label(name: RowName, write: Writer) -> str:
+    """``rolling 2 (component 3)``."""
+    kind = f"{write.word(name.kind)} {name.constraint + 1}"
+    return f"{kind}, {write.word('component')} {name.component}" if name.component else kind
+
+
+def filled(said: Said) -> str:
+    """A sentence with its gaps filled, in English."""
+    text, values = said
+    for name, value in values.items():
+        text = text.replace(f"[[{name}]]", str(value))
+    return text
