@@ -115,7 +115,8 @@ def test_multipliers_agree_exactly(name: str) -> None:
     analysis = mbsym.load(HERE / f"{name}.yaml")
     for check in ("equilibrium", "perturbed motion"):
         found = analysis.check(check)
-        assert found is not None and found.outcome == EXACT, found
+        assert found is not None
+        assert found.outcome == EXACT, found
 
 
 def test_the_upright_disc() -> None:

@@ -49,9 +49,7 @@ def test_what_is_plain_is_plain(kind: str, monkeypatch: pytest.MonkeyPatch) -> N
     assert quick == [found(kind, u) for u in given]
 
 
-@pytest.mark.parametrize(
-    ("kind", "bound"), [(PEAK, 0), (PEAK, 1), (PEAK, 2), (DIP, 0), (DIP, 2), (TURN, 0), (TURN, 1)]
-)
+@pytest.mark.parametrize(("kind", "bound"), [(PEAK, 0), (PEAK, 1), (PEAK, 2), (DIP, 0), (DIP, 2), (TURN, 0), (TURN, 1)])
 def test_a_bound_that_is_none_is_noticed(kind: str, bound: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The control: a third of each bound that a kind uses."""
     given = steps()
