@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.analysis.regular import regular_at_zero
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.tree import Call, Expression, Name, children
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from mbsym.formulas.formula import Matrix
     from mbsym.problems.reduction import Reduced
 
+
+#: What stands for the description in commands that are advised.
+FILE = "FILE"
 
 #: A hint lists so many coordinates; of more it shows one.
 MOST_LISTED = 12
@@ -62,6 +66,8 @@ def _demand_motion(analysis: Analysis) -> None:
         hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in listed) + "}"
         if listed != names:
             hint += "; what is left out is 0 at rest"
+        if not regular_at_zero(analysis.system):
+            hint = "say with 'motion:' about which one; at rest with all coordinates 0 the description is singular"
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
 
@@ -94,10 +100,19 @@ def autonomous(analysis: Analysis) -> Linearisation:
     """
     found = analysis.first_approximation
     if found.varying:
-        hint = steady_order(analysis) or "choose coordinates in which the motion is steady, if there are any"
+        hint = steady_order(analysis) or "choose coordinates in which the motion is steady, if there are any" + (
+            "" if _drifting(analysis, found) else f"; where it is periodic in time: mbsym floquet {FILE}"
+        )
         why = NoResult(found.time_dependence, hint, "time-dependent", "time-dependent")
         raise Unavailable("linearisation", why)
     return found
+
+
+def _drifting(analysis: Analysis, found: Linearisation) -> bool:
+    """Whether coefficients vary with time other than through sines and cosines, so that they are not periodic."""
+    return any(
+        _unbounded(analysis.ring, entry.value.polynomial, name) for entry in found.varying for name in entry.among
+    )
 
 
 def judgeable(analysis: Analysis) -> Linearisation:
