@@ -18,15 +18,22 @@ if TYPE_CHECKING:
 USUAL, NARROWEST, WIDEST = "1e-10", 1e-100, 1e-3
 
 
+#: How long a proof may take unless asked for otherwise.
+SECONDS = "600"
+
+
 @dataclass(frozen=True)
 class Certifying:
-    """The width as it was typed; None where nothing is to be proved."""
+    """The width as it was typed, None where nothing is to be proved; and how many seconds that may take."""
 
     width: str | None
+    certify_seconds: str
 
     def added(self, request: Request, system: System | None, asked: Options) -> Request:
         """The request with what this group asks for."""
-        return replace(request, certify=asked.number("--certify", self.width, NARROWEST, WIDEST))
+        width = asked.number("--certify", self.width, NARROWEST, WIDEST)
+        seconds = asked.number("--certify-seconds", self.certify_seconds, 1e-3, 1e9)
+        return replace(request, certify=width, certify_seconds=seconds or request.certify_seconds)
 
 
 certify_options = group(
@@ -40,5 +47,12 @@ certify_options = group(
         metavar="[WIDTH]",
         help="Prove where the exact solution is, to this part of each size, and how far the run is from it.  "
         f"[default: {USUAL}]",
+    ),
+    click.option(
+        "--certify-seconds",
+        metavar="S",
+        default=SECONDS,
+        show_default=True,
+        help="How long the proof may take; ends early where a tenth of it shows that ten times as much would not do.",
     ),
 )

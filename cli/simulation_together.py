@@ -20,7 +20,7 @@ from mbsym_cli.options import Options
 COMMANDLINE = ParameterSource.COMMANDLINE
 
 #: What a plan hands on to the command that runs it.
-CARRIED = ("laws", "formats", "bodies", "animate", "out", "estimate")
+CARRIED = ("laws", "formats", "bodies", "animate", "out", "estimate", "certify_seconds")
 
 
 @dataclass(frozen=True)
@@ -100,6 +100,7 @@ NEEDED: tuple[Needed, ...] = (
     Needed("--members", "--vary", "write name=normal(0.3, 0.01) or name=uniform(0, 1)"),
     Needed("--seed", "--vary", "write name=normal(0.3, 0.01) or name=uniform(0, 1)"),
     Needed("--sampling", "--vary", "write name=normal(0.3, 0.01) or name=uniform(0, 1)"),
+    Needed("--certify-seconds", "--certify", "for example --certify 1e-10"),
     Needed("--axes", "--section", 'for example --section "q1 = 0 rising"'),
     Needed("--plan", "--accuracy", "for example --accuracy 1e-6"),
 )

@@ -95,15 +95,25 @@ class Share:
 
 @dataclass(frozen=True)
 class Bound:
-    """What the error of one quantity is at most, as far as the shares are known, beside what is tolerable."""
+    """What the error of one quantity is at most, as far as the shares are known, beside what is tolerable.
+
+    ``proved``: at every row integration and arithmetic together are at most this part of the quantity's largest value
+    there, by a certificate; None where there is none.  The model's share is no matter of it.
+    """
 
     quantity: str
     shares: tuple[Share, ...]
     target: float
+    proved: float | None = None
 
     @property
     def total(self) -> float:
         return sum(share.error for share in self.shares)
+
+    @property
+    def integrated(self) -> float:
+        """The shares that are no model's."""
+        return sum(share.error for share in self.shares if share.name != MODEL)
 
     @property
     def reached(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, floor, log10
+from math import ceil, floor, isfinite, log10
 from typing import Any
 
 from mbsym.expressions.counting import counted
@@ -18,7 +18,7 @@ from mbsym.report.unit_text import pretty
 WHY = {
     NO_STEP: "no step could be proved there: a singularity of the equations is near, or their balls grow too fast",
     TOO_WIDE: "neighbouring motions part too fast",
-    OUT_OF_TIME: "its time was over",
+    OUT_OF_TIME: "its time is too short",
     INTERRUPTED: "interrupted",
 }
 
@@ -50,7 +50,25 @@ def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator
             yield "of the run's events none is proved to be one of the exact solution"
     if not found.whole:
         reached = with_unit(f"{found.enclosure.reached:.6g}", pretty(time_unit(system)))
-        yield f"nothing is proved beyond t = {reached}: {WHY[found.ended]}"
+        yield f"nothing is proved beyond t = {reached}: {WHY[found.ended]}{_pace(found)}"
+
+
+def _pace(found: Certificate) -> str:
+    """How long the whole would take, where that is why it ended."""
+    enclosure = found.enclosure
+    if found.ended != OUT_OF_TIME or not isfinite(enclosure.whole_seconds):
+        return ""
+    steps = counted(len(enclosure.segments), "step", "steps")
+    whole = spelled(enclosure.whole_seconds)
+    return f", {steps} took {spelled(enclosure.seconds)}, at this pace all would take {whole}"
+
+
+def spelled(seconds: float) -> str:
+    """``40 s``, ``3 h``, ``2.1e+03 days``."""
+    for limit, unit, name in ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h")):
+        if seconds < limit:
+            return f"{seconds / unit:.2g} {name}"
+    return f"{seconds / 86400.0:.2g} days"
 
 
 def certificate_json(found: Certificate, names: list[str]) -> dict[str, Any]:

@@ -38,6 +38,7 @@ from mbsym.numerics.plan import (
     Refused,
     Share,
 )
+from mbsym.report.certificate import at_most
 
 if TYPE_CHECKING:
     from mbsym.expressions.condition import Condition
@@ -75,6 +76,8 @@ def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
     for place, bound in enumerate(plan.bounds):
         yield "" if place else "bound", bound_words(bound)
         yield "", " + ".join(share_words(share) for share in bound.shares)
+        if bound.proved is not None:
+            yield "", proved_words(bound)
     if not plan.reached:
         yield "warning", "the accuracy asked for is not reached"
     for item in plan.items:
@@ -100,6 +103,13 @@ def bound_words(bound: Bound) -> str:
         return f"{bound.quantity}: nothing is known, for no run could be had to measure by"
     of = "the largest kinetic energy" if bound.quantity == ENERGY else "its size"
     return f"{bound.quantity} within {bound.total:.1e} of {of} ({bound.how})"
+
+
+def proved_words(bound: Bound) -> str:
+    """What a certificate says of the shares that are no model's."""
+    assert bound.proved is not None
+    within = "" if bound.proved <= bound.integrated else ", which is wider than those shares"
+    return f"integration + arithmetic at most {at_most(bound.proved)} at every row (proved{within})"
 
 
 def share_words(share: Share) -> str:
@@ -205,6 +215,7 @@ def plan_json(plan: Plan, request: Request) -> dict[str, Any]:
                 "total": bound.total,
                 "how": bound.how,
                 "shares": [{"name": x.name, "error": x.error, "how": x.how} for x in bound.shares],
+                **({} if bound.proved is None else {"proved_at_rows": bound.proved}),
             }
             for bound in plan.bounds
         ],

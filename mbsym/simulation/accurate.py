@@ -15,7 +15,7 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
 from mbsym.numerics.pilot import finest
-from mbsym.numerics.plan import ENERGY, INTEGRATION, MODEL, Accuracy, Bound, Plan
+from mbsym.numerics.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
 from mbsym.numerics.plan_bounds import DOUBLED
 from mbsym.numerics.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
@@ -109,7 +109,7 @@ def simulate_accurately(
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
         found = simulate(scenario, settled, watch, stage)
-    plan = replace(plan, bounds=_raised(plan, found))
+    plan = replace(plan, bounds=tuple(_proved(bound, found) for bound in _raised(plan, found)))
     return replace(found, plan=plan, chosen=replace(found.chosen, why="chosen for the accuracy asked for"))
 
 
@@ -128,19 +128,22 @@ def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
             bounds.append(_with_error(bound, errors.get(bound.quantity, 0.0)))
             continue
         worst = max(others, key=lambda name: others[name])
-        quantity = worst if others[worst] > _integrated(bound) else bound.quantity
+        quantity = worst if others[worst] > bound.integrated else bound.quantity
         bounds.append(_with_error(replace(bound, quantity=quantity), others[worst]))
     return tuple(bounds)
 
 
-def _integrated(bound: Bound) -> float:
-    """The share of a bound that is no model's."""
-    return sum(share.error for share in bound.shares if share.name != MODEL)
+def _proved(bound: Bound, found: Simulation) -> Bound:
+    """The bound with what the certificate proves of the run's error at the rows, where all of them are enclosed."""
+    names = (*found.system.coordinates, *found.system.velocities)
+    if found.certificate is None or not found.certificate.whole or bound.quantity not in names:
+        return bound
+    return replace(bound, proved=found.certificate.error_of(names.index(bound.quantity)))
 
 
 def _with_error(bound: Bound, error: float) -> Bound:
     """The bound with so much more for the integration that it and the arithmetic hold twice the error."""
-    known = _integrated(bound)
+    known = bound.integrated
     if error <= known:
         return bound
     missing = DOUBLED * error - known

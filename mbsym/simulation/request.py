@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, isfinite
+from math import ceil, inf, isfinite
 from typing import BinaryIO
 
 from mbsym.expressions.parser import parse_expression
@@ -30,10 +30,10 @@ class Request:
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too, all parts in one, and no body is lumped into another; ``certify``: the exact solution is enclosed
-    so narrowly, as a part of each quantity's size; ``events``: what is watched for; ``model``: how much of the
-    mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run that it goes on from, whose
-    rows come first; ``store``: a file of nobody else's, open to be written and read, for the rows where they are very
-    many: the result then has some of them, and the table of all.
+    so narrowly, as a part of each quantity's size, within ``certify_seconds``; ``events``: what is watched for;
+    ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
+    that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
+    the rows where they are very many: the result then has some of them, and the table of all.
     """
 
     time: float
@@ -48,6 +48,7 @@ class Request:
     estimate: bool | None = None
     whole: bool = False
     certify: float | None = None
+    certify_seconds: float = inf
     events: Watch = Watch()
     model: Model = Model()
     longest: float | None = None
@@ -101,6 +102,7 @@ def wrong_with(request: Request) -> Iterator[str]:
     """What of it cannot be done, a sentence each."""
     positive = {"time": request.time, "every": request.every, "tolerance": request.tolerance, "step": request.step}
     positive["certify"] = request.certify
+    positive["certify_seconds"] = None if request.certify_seconds == inf else request.certify_seconds
     positive["max_step"] = request.longest
     for name, value in positive.items():
         if value is not None and not (isfinite(value) and value > 0):

@@ -98,7 +98,8 @@ def simulate(
     if request.certify is not None:
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
-            certificate = certified(dynamics, found.times, found.states, request.certify, watch=watch, happened=seen)
+            asked = (request.certify, request.certify_seconds)
+            certificate = certified(dynamics, found.times, found.states, *asked, watch, seen)
     return Simulation(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
         *(certificate, happened, given),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import time
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ import mpmath
 import pytest
 from click.testing import CliRunner, Result
 
+from mbsym.numerics.enclosure.enclose import OUT_OF_TIME, Enclosure
+from mbsym.report.certificate import spelled
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -83,3 +86,58 @@ def test_a_width_that_is_none(tmp_path: Path, width: str) -> None:
     assert done.exit_code == 2
     assert "--certify: error[" in done.output
     assert not (tmp_path / "out").exists()
+
+
+FREE = """
+mbsym: 1
+name: fast terms
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: -sin(1000*x)*cos(1300*t) - cos(1700*x + sin(1900*t))}
+initial: {x: 1}
+"""
+
+
+def test_a_proof_that_would_take_too_long_says_so_and_ends(tmp_path: Path) -> None:
+    """Fast terms want millions of steps: a tenth of the time shows it."""
+    begun = time.perf_counter()
+    done = simulated(tmp_path, FREE, "--time", "3000", "--samples", "3", "--no-estimate", "--certify", "1e-9",
+                     "--certify-seconds", "2")  # fmt: skip
+    assert done.exit_code == 3, done.output
+    assert time.perf_counter() - begun < 60
+    assert "its time is too short, " in done.stdout
+    assert "at this pace all would take" in done.stdout
+    found = record_of(tmp_path)["certificate"]
+    assert found["ended"] == "out_of_time"
+    assert found["reached"] < 3000
+
+
+def test_the_pace_is_that_of_the_steps_taken() -> None:
+    found = Enclosure((), 50, 2.0, OUT_OF_TIME, 3.0, 600.0)
+    assert found.whole_seconds == 900.0
+    assert Enclosure((), 50, 0.0, OUT_OF_TIME, 3.0, 600.0).whole_seconds == math.inf
+    assert [spelled(x) for x in (40.0, 600.0, 10800.0, 864000.0)] == ["40 s", "10 min", "3 h", "10 days"]
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
+def test_a_certificate_proves_shares_of_a_plan(accuracy: float, tmp_path: Path) -> None:
+    """x = cos t, as planned: what is said to be proved at the rows holds there, and is no thousand times too much."""
+    done = simulated(
+        tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--accuracy", str(accuracy), "--certify", "1e-12"
+    )
+    assert done.exit_code == 0, done.output
+    (bound,) = record_of(tmp_path)["plan"]["bounds"]
+    assert "at every row (proved" in done.stdout
+    exact = {"x": math.cos, "x_dot": lambda t: -math.sin(t)}[bound["quantity"]]
+    rows = [(float(row["t"]), float(row[bound["quantity"]])) for row in rows_of(tmp_path, "trajectory.csv")]
+    error = max(abs(value - exact(t)) for t, value in rows) / max(abs(value) for _, value in rows)
+    assert error * (1 - 1e-6) - 1e-15 <= bound["proved_at_rows"] <= error * 1.001 + 1e-11
+    assert bound["proved_at_rows"] <= bound["total"]
+
+
+def test_what_is_not_certified_is_not_called_proved(tmp_path: Path) -> None:
+    done = simulated(tmp_path, OSCILLATOR, "--time", "10", "--samples", "21", "--accuracy", "1e-6")
+    assert done.exit_code == 0, done.output
+    assert "at every row (proved" not in done.stdout
+    assert "proved_at_rows" not in record_of(tmp_path)["plan"]["bounds"][0]

@@ -249,6 +249,7 @@ ITEMS: dict[str, Item] = {
     "sampling": Item(("--sampling", "sobol"), lambda done: done.told["sampling"] == "sobol", ("vary at random",)),
     "sensitivity": Item(("--sensitivity", "alpha,l"), written("sensitivity.csv")),
     "certify": Item(("--certify", "1e-6"), lambda done: "certificate" in done.told),
+    "certify-seconds": Item(("--certify-seconds", "500"), lambda done: done.told["certificate"]["whole"], ("certify",)),
     "event": Item(("--event", "alpha = 1/10"), event),
     "stop": Item(("--stop", "psi > 1/2"), stopped),
     "section": Item(("--section", "alpha = 1/10 falling"), section),

@@ -61,6 +61,10 @@ class Certificate:
         """A proved bound of the run's error at the enclosed rows, each component as a part of its scale."""
         return self._largest(self.error)
 
+    def error_of(self, component: int) -> float:
+        """The same of one component."""
+        return float(np.max(self.error[component], initial=0.0) / self.scale[component]) * LARGER
+
     def _largest(self, values: Any) -> float:
         return float(np.max(np.max(values, axis=1, initial=0.0) / self.scale, initial=0.0)) * LARGER
 

@@ -33,6 +33,9 @@ LEAST = 1e-7
 #: A set that is wider than this part of a quantity's size, or so many times what was wanted, is given up.
 WIDE, MUCH_WIDER = 1e-3, 1e3
 
+#: After this part of its time an enclosure that would need so many times as much as it has is given up.
+FIRST_LOOK, HOPELESS = 0.1, 10.0
+
 #: Why an enclosure ends before the time asked for.
 NO_STEP, TOO_WIDE, OUT_OF_TIME, INTERRUPTED = "no step proved", "too wide", "out of time", "interrupted"
 
@@ -41,7 +44,8 @@ NO_STEP, TOO_WIDE, OUT_OF_TIME, INTERRUPTED = "no step proved", "too wide", "out
 class Enclosure:
     """Segments that follow each other from 0 to ``reached``; ``ended`` says why that is not the end ("": it is).
 
-    ``bits`` of the series; every component of the exact solution is within ``at(t)`` for t up to ``reached``.
+    ``end`` is the time asked for; ``bits`` of the series; every component of the exact solution is within ``at(t)`` for
+    t up to ``reached``.
     """
 
     segments: tuple[Segment, ...]
@@ -49,6 +53,12 @@ class Enclosure:
     reached: float
     ended: str
     seconds: float
+    end: float = inf
+
+    @property
+    def whole_seconds(self) -> float:
+        """How long the whole would take at this pace: an estimate."""
+        return self.seconds * self.end / self.reached if self.reached > 0 else inf
 
     def at(self, t: float) -> list[arb]:
         """Balls that contain the solution at t, n numbers; raises ValueError beyond ``reached``."""
@@ -105,7 +115,10 @@ def enclosed(
         missing = _missing(found, width, scales) if exact else 0
         finished = not missing or found.ended in (OUT_OF_TIME, INTERRUPTED) or bits >= MOST
         if finished:
-            return Enclosure(best.segments, best.bits, best.reached, best.ended, perf_counter() - began)
+            # A try with more bits that was cut short is why there is no more, however far an earlier one came.
+            cut = best.ended and found.ended in (OUT_OF_TIME, INTERRUPTED)
+            ended = found.ended if cut else best.ended
+            return Enclosure(best.segments, best.bits, best.reached, ended, perf_counter() - began, end)
         bits = min(MOST, bits + missing)
 
 
@@ -146,7 +159,7 @@ def _once(
                     ended = TOO_WIDE
                 elif found.radius < LEAST * end:
                     ended = NO_STEP
-                elif perf_counter() - began > seconds:
+                elif _late(perf_counter() - began, seconds, float(now.time) / end):
                     ended = OUT_OF_TIME if now.time < goal else ""
                 if ended:
                     break
@@ -156,7 +169,12 @@ def _once(
         except KeyboardInterrupt:
             ended = INTERRUPTED
         reached = float(segments[-1].end) if segments else 0.0
-    return Enclosure(tuple(segments), bits, reached, ended, perf_counter() - began)
+    return Enclosure(tuple(segments), bits, reached, ended, perf_counter() - began, end)
+
+
+def _late(taken: float, seconds: float, part: float) -> bool:
+    """Whether the time is over, or a tenth of it has shown that it is far too short."""
+    return taken > seconds or (taken > FIRST_LOOK * seconds and taken > HOPELESS * seconds * part)
 
 
 def _ball(value: Fraction | arb) -> arb:
