@@ -91,6 +91,17 @@ KNOW_SPEEDS = frozenset(
     )
 )
 
+#: What is told in generalised coordinates and velocities even where the equations are in speeds: the motion, deviations
+#: from it, their stability.
+IN_COORDINATES = frozenset(
+    (
+        *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
+        *("stability", "trials", "equilibria"),
+    )
+)
+#: The checks of these.
+CHECKED_IN_COORDINATES = ("equilibrium", "linearisation", "perturbed motion")
+
 
 class Problem(Derived["Analysis", T]):
     """A numbered problem: an attribute of Analysis that holds its result; ``module`` explains it."""
@@ -171,6 +182,8 @@ class Analysis(Stages):
         """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
         if self.system.constraints and name not in KNOW_CONSTRAINTS:
             compute = self._without_constraints
+        elif self.system.speeds and name in IN_COORDINATES:
+            compute = lambda: getattr(self.in_coordinates, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
         return super().result(name, compute)
@@ -211,6 +224,16 @@ class Analysis(Stages):
         from mbsym.mechanics.speeds import SpeedForm  # few systems have speeds of their own
 
         return SpeedForm(self.system, self.ring)
+
+    @cached_property
+    def in_coordinates(self) -> Analysis:
+        """The same system in generalised velocities, over the same ring.
+
+        Raises Unavailable where the speeds do not determine these on the unperturbed motion.
+        """
+        from mbsym.analysis import in_coordinates
+
+        return in_coordinates.analysis(self)
 
     def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
@@ -285,6 +308,10 @@ class Analysis(Stages):
 
     def check(self, name: str) -> Check | None:
         """The check of that name; None where the results do not allow one."""
+        if self.system.speeds and name in CHECKED_IN_COORDINATES:
+            return (
+                None if self.optional(name.replace("perturbed motion", "linearisation")) is None else self._there(name)
+            )
         if name not in self._checks:
             stage = self.run(f"check: {name}", lambda: second_routes.check(self, name))
             if stage.value is None:  # nothing to compare yet
@@ -292,6 +319,12 @@ class Analysis(Stages):
                 return None
             self._checks[name] = stage.value
         return self._checks[name]
+
+    def _there(self, name: str) -> Check | None:
+        """A check of what is told in coordinates; the closed equations there are one of its routes."""
+        if 3 in self.problems:
+            self.in_coordinates.optional("equations")
+        return self.in_coordinates.check(name)
 
     def take(self, found: Iterable[Check]) -> None:
         """Checks that were carried out on this analysis, or on a copy of it."""

@@ -112,6 +112,13 @@ class SpeedForm:
         declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
         return [declared.get(u.name, ring.context.gen(u.index)) for u in self.speeds]
 
+    @cached_property
+    def in_coordinates(self) -> list[Polynomial]:
+        """Every speed in (q, q', t), the angles that unit vectors replace among q."""
+        scene = Scene(self.system, self.ring, self._plain, self.ring)
+        declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
+        return [declared.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
+
     def _form(self, scene: Scene, speed: Speed) -> Polynomial:
         spin = scene.motions[speed.body].angular_velocity
         environment = dict(self._plain) | dict(zip(OMEGA, spin, strict=True))

@@ -277,6 +277,12 @@ class System(GuessesNames):
         return (*vectors, *(speed.name for speed in self.speeds))
 
     @property
+    def without_speeds(self) -> System:
+        """The same system in generalised coordinates and their derivatives, without its claims."""
+        bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
+        return replace(self, bodies=bodies, claims=(), abbreviations=())
+
+    @property
     def claimable(self) -> tuple[str, ...]:
         """What equations and rows of matrices are called by in claims."""
         return (*self.coordinates, *self.variables)

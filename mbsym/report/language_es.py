@@ -6,6 +6,7 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Los problemas 4 a 6 se dan en coordenadas y velocidades generalizadas. Cerca del movimiento éstas y el estado en cuasivelocidades (y vectores unitarios) son funciones suaves unas de otras, así que la estabilidad es la misma en ambas.",
     "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Ecuaciones de Kane (igualmente de Boltzmann y Hamel) en las cuasivelocidades $[[speeds]]$: lo que el movimiento necesita es lo que dan las cargas.",
     "Kinematic equations:": "Ecuaciones cinemáticas:",
     "No equation above depends on $[[names]]$, which follow by integration:": "Ninguna de estas ecuaciones depende de $[[names]]$, que se obtienen por integración:",

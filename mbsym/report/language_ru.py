@@ -8,6 +8,7 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Задачи 4--6 изложены в обобщённых координатах и скоростях. Вблизи движения они и состояние в квазискоростях (и единичных векторах) --- гладкие функции друг друга, поэтому устойчивость в тех и других одна и та же.",
     "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Уравнения Кейна (то же — уравнения Больцмана — Гамеля) в квазискоростях $[[speeds]]$: слева — то, чего требует движение, справа — то, что дают нагрузки.",
     "Kinematic equations:": "Кинематические уравнения:",
     "No equation above depends on $[[names]]$, which follow by integration:": "Ни одно из этих уравнений не зависит от $[[names]]$; они находятся интегрированием:",

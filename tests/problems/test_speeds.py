@@ -217,7 +217,34 @@ def test_planted_mistakes_are_found(tmp_path, monkeypatch, mistake):
     assert FAILED in outcomes
 
 
-def test_what_does_not_know_speeds_says_so(tmp_path):
-    found = load(tmp_path, GYROSTAT.format(told=SPEEDS) + "motion: {psi: 0}\n")
+def test_deviations_are_told_in_coordinates_where_these_are_regular(tmp_path):
+    """The spinning top stands upright: axes 3, 1, 3 are singular there, 1, 2, 3 are not; the verdict is Lagrange's."""
+    upright = "motion: {psi: 0, theta: 0, phi: {rate: w}}\n"
+    text = GYROSTAT.format(told=SPEEDS).replace("m: positive,", "m: positive, w: positive,") + upright
+    found = load(tmp_path, text)
     for problem in (4, 5, 6):
-        assert found.stage(problem).failure.code == "speeds"
+        assert found.stage(problem).failure.code == "singular-angles"
+    for told in (SPEEDS, POISSON):
+        top = GYROSTAT.format(told=told).replace("axes: [3, 1, 3]", "axes: [1, 2, 3]")
+        top = top.replace("[x0, y0, z0]", "[0, 0, z0]").replace("inertia: [A, B, C]", "inertia: [A, A, C]")
+        top = top.replace("    gyrostatic moment: [l1, l2, l3]\n", "").replace(
+            "m: positive,", "m: positive, w: positive,"
+        )
+        found = load(tmp_path, top + upright)
+        assert found.equilibrium.satisfied
+        (fast,) = [x for x in found.stability.subsystems if set(x.coordinates) == {"psi", "theta"}]
+        slow = expected(found, ["C**2*w**2 - 4*A*m*g*z0"])[0]  # any book on the sleeping top
+        assert str(slow.polynomial) in [str(x.condition.polynomial) for x in fast.theory.requirements]
+        assert [found.check(name).outcome for name in ("equilibrium", "linearisation", "perturbed motion")] == [
+            EXACT
+        ] * 3
+
+
+def test_a_motion_that_is_none_is_refused(tmp_path):
+    found = load(tmp_path, GYROSTAT.format(told=POISSON) + "motion: {theta: {value: pi/2}}\n")
+    assert not found.equilibrium.satisfied
+
+
+def test_what_does_not_know_speeds_says_so(tmp_path):
+    found = load(tmp_path, GYROSTAT.format(told=SPEEDS))
+    assert found.stage_of("told").failure.code == "speeds"

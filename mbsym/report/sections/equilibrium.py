@@ -25,6 +25,8 @@ def data(found: Equilibrium, system: System, write: Write) -> dict[str, Any]:
 
 def lines(found: Equilibrium, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
+    if analysis.system.speeds:
+        yield "problems 4 to 6 in generalised coordinates: near the motion smooth functions of the state in speeds"
     if found.satisfied:
         yield "the unperturbed motion satisfies the equations identically"
     elif found.impossible:
