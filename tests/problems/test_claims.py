@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
 
 import mbsym
+from mbsym.algebra import ring
 from mbsym.analysis import Analysis
 from mbsym.problems.claims import (
     DIFFERS,
@@ -310,10 +311,14 @@ def test_growing_abbreviations_end_in_a_reason_and_cost_the_others_nothing() -> 
     assert all(result.remark for result in found.claims if result.outcome == UNDECIDED)
 
 
-@pytest.mark.slow
-def test_many_costly_claims_are_bounded_together() -> None:
+def test_many_costly_claims_are_bounded_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sixteen of them fit into what all claims may cost together, at a quarter of the usual budget."""
+    monkeypatch.setattr(ring, "WORK_BUDGET", ring.WORK_BUDGET // 4)
     claim = "claim: first integral, equals: (theta_dot + cos(theta) + m + l + J + g)**16"
     found = analysed(*[claim] * 60)
-    assert {result.outcome for result in found.claims} <= {FAILS, UNDECIDED}
+    outcomes = [result.outcome for result in found.claims]
+    judged = outcomes.index(UNDECIDED)
+    assert 1 < judged < 40
+    assert outcomes == [FAILS] * judged + [UNDECIDED] * (60 - judged)
     assert found.ring.work < found.ring.work_budget
     assert str(found.energy.kinetic_energy) == "(m*l**2 + J)*theta_dot**2/2"

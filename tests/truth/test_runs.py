@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -62,17 +63,27 @@ def _damped(t: Any) -> tuple[Any, ...]:
 
 
 def _pushed(t: Any) -> tuple[Any, ...]:
-    """x'' + x = exp(-(t - 5)^2/w^2)/w, w = 1/10, by quadrature."""
-    w = mpmath.mpf(1) / 10
+    """x'' + x = exp(-(t - 5)^2/w^2)/w, w = 1/10, x(0) = 1: (cos t, -sin t) and Duhamel's integral.
 
-    def push(s: Any) -> Any:
-        return mpmath.exp(-(((s - 5) / w) ** 2)) / w
+    int_0^t exp(i (t - s)) exp(-(s - 5)^2/w^2)/w ds, u = (s - 5)/w, is exp(i (t - 5)) int exp(-u^2 - i w u) du; a square
+    is completed: sqrt(pi)/2 exp(i (t - 5) - w^2/4) (erf((t - 5)/w + i w/2) - erf(-5/w + i w/2)).
+    """
+    w, i = mpmath.mpf(1) / 10, mpmath.mpc(0, 1)
+    whole = mpmath.erf((t - 5) / w + i * w / 2) - mpmath.erf(-5 / w + i * w / 2)
+    felt = mpmath.sqrt(mpmath.pi) / 2 * mpmath.exp(i * (t - 5) - w * w / 4) * whole
+    return mpmath.cos(t) + felt.imag, -mpmath.sin(t) + felt.real
 
-    ends = sorted({mpmath.mpf(0), min(t, mpmath.mpf(4)), min(t, mpmath.mpf(5)), min(t, mpmath.mpf(6)), t})
-    if t == 0:
-        return mpmath.mpf(1), mpmath.mpf(0)
-    x = mpmath.cos(t) + mpmath.quad(lambda s: mpmath.sin(t - s) * push(s), ends)
-    return x, -mpmath.sin(t) + mpmath.quad(lambda s: mpmath.cos(t - s) * push(s), ends)
+
+@pytest.mark.parametrize("t", [3, 4.9, 5.05, 7, 10])
+def test_the_push_is_its_integral(t: float) -> None:
+    w = 0.1
+    ends = [0, *(end for end in (4, 5, 6) if end < t), t]
+
+    def felt(turn: Callable[[float], float]) -> float:
+        return float(mpmath.quad(lambda s: turn(t - s) * mpmath.exp(-(((s - 5) / w) ** 2)) / w, ends))
+
+    expected = math.cos(t) + felt(mpmath.sin), -math.sin(t) + felt(mpmath.cos)
+    assert [float(x) for x in _pushed(mpmath.mpf(t))] == pytest.approx(expected, abs=1e-13)
 
 
 MOTIONS = [
