@@ -11,6 +11,7 @@ from mbsym_cli.console import INTERRUPTED, complain
 from mbsym_cli.files import folder_for
 from mbsym_cli.simulation_certify import certify_options
 from mbsym_cli.simulation_choice import choice_options
+from mbsym_cli.simulation_closing import closing_options
 from mbsym_cli.simulation_command import simulated
 from mbsym_cli.simulation_continue import continue_options
 from mbsym_cli.simulation_events import watch_options
@@ -30,6 +31,7 @@ from mbsym_cli.simulation_request import Flags
 @certify_options
 @watch_options
 @continue_options
+@closing_options
 @output_options
 def command(file: Path, span: Span, way: Way, many: Many, output: Output, **further: Group) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
@@ -69,6 +71,9 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
     its method and tolerance unless others are given; the table holds the rows of both (in float64).  Steps begin anew
     there: the numbers are those of one run in one go within the tolerance, or, where that run ended at the end of a
     step of fixed length, but for rounding.
+
+    With constraints the initial state is the closest one to what is given that satisfies them; --fixed q1,q1_dot keeps
+    values.  Every row is led back to them; trajectory.csv has their drift.  A loop that cannot be closed: exit code 3.
 
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
     ...-partial.  Exit codes: 0 done, 1 not written, 2 wrong, 3 ended early or not accurate enough, 130 interrupted.

@@ -14,6 +14,7 @@ from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_choice import with_goal
+from mbsym_cli.simulation_closing import check_constrained
 from mbsym_cli.simulation_continue import going_on
 from mbsym_cli.simulation_inputs import read_laws
 from mbsym_cli.simulation_many import Many, read_many
@@ -33,7 +34,7 @@ def simulated(
     further: Mapping[str, Group],
 ) -> int:
     """The exit code of one command."""
-    system = read_description(file, "simulate")
+    system = read_description(file)
     asked = Options()
     context = click.get_current_context()
     typed = typed_options(context)
@@ -49,6 +50,7 @@ def simulated(
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, typed, asked)
     wanted = with_goal(further["choosing"], system, wanted, settings, typed, carried(context), asked)
+    check_constrained(system, wanted, many, asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)

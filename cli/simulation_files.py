@@ -48,6 +48,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """
     from mbsym.report.bodies_csv import bodies_parts
     from mbsym.report.certificate import enclosure_csv
+    from mbsym.report.constrained_run_words import drift_columns
     from mbsym.report.simulation_json import simulation_json
     from mbsym.report.trajectory_csv import trajectory_parts
 
@@ -56,7 +57,9 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     table: Hashed | None = None
     if "csv" in asked.formats:
         further = {kept.column: kept.values for kept in run.invariants}
-        units = {kept.column: kept.unit for kept in run.invariants}
+        units: dict[str, str | None] = {kept.column: kept.unit for kept in run.invariants}
+        drifts = drift_columns(run)
+        further, units = further | dict(drifts), units | dict.fromkeys(drifts, "")
         table = Hashed(trajectory_parts(run.trajectory, further, units))
         files[f"trajectory{mark}.csv"] = table
     if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:

@@ -14,6 +14,7 @@ from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, c
 from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
+from mbsym_cli.simulation_closing import not_closed
 from mbsym_cli.simulation_files import write_files
 from mbsym_cli.simulation_planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
 from mbsym_cli.simulation_request import Asked
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
     from mbsym.algebra.failures import Failure, SingularPoint
+    from mbsym.numerics.closing import NotClosed
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
@@ -66,6 +68,8 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         complain(file, f"error[singular]: singular at these values: {error}")
         complain(file, "nothing was written.")
         return BROKEN_DOWN
+    except NotClosed as error:
+        return not_closed(file, error, given.system)
     except Failure as error:
         complain(file, f"error[no-program]: there is no program for these equations: {error}")
         complain(file, "nothing was written.")

@@ -44,6 +44,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     from mbsym.numerics.breakdowns import least_pivot
     from mbsym.report.between_steps import passed_over, switch_line
     from mbsym.report.certificate import certificate_lines
+    from mbsym.report.constrained_run_words import constraint_lines
     from mbsym.report.events_words import events_lines
     from mbsym.report.plan_words import plan_lines
     from mbsym.report.simulation_words import (
@@ -84,6 +85,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     jacobians = f" and {counted(work.jacobians, 'Jacobian', 'Jacobians')}" if work.jacobians else ""
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
     yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
+    yield from constraint_lines(run)
     yield from events_lines(run)
     if switches := switch_line(found.passed):
         yield "switches", switches
@@ -103,10 +105,9 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
         yield "warning", text
     ratio, at = least_pivot(run.dynamics, found) if found.least_pivot is None else found.least_pivot
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
-        yield (
-            "warning",
-            f"at t = {with_unit(f'{at:.6g}', unit)} the mass matrix was nearly singular (a pivot fell to {ratio:.1e})",
-        )
+        what = "the mass matrix was" if run.closed is None else "the mass matrix was, or the constraints were,"
+        where = with_unit(f"{at:.6g}", unit)
+        yield "warning", f"at t = {where} {what} nearly singular (a pivot fell to {ratio:.1e})"
     spacing = float(chosen.times[1] - chosen.times[0])
     if chosen.frequency * spacing > pi / 2:
         yield "warning", "fewer than 4 samples a period of the fastest oscillation: figures deceive; raise --samples"
@@ -147,7 +148,14 @@ def _rest_line(found: Reduced) -> str:
 
 def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path]) -> str:
     """What happened, when, and in which state."""
-    from mbsym.numerics.methods.interface import BLOW_UP, SINGULAR, STEP_LIMIT, STUCK, UNDEFINED
+    from mbsym.numerics.methods.interface import (
+        BLOW_UP,
+        SINGULAR,
+        SINGULAR_CONSTRAINTS,
+        STEP_LIMIT,
+        STUCK,
+        UNDEFINED,
+    )
     from mbsym.numerics.methods.sides import OUTSIDE, SWITCHING
 
     names = [*found.system.coordinates, *found.system.velocities]
@@ -166,6 +174,10 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
             "a coordinate loses its meaning in this state: a distance has shrunk to zero (a collision, a fall to the "
             "centre), or angles are singular (a pole; other angles help); or a mass is zero. Start elsewhere or stop "
             "earlier"
+        ),
+        SINGULAR_CONSTRAINTS: (
+            "a mechanism in a singular position (links in line, branches that meet): the accelerations do not follow "
+            "from the constraints there; start beside it"
         ),
         STEP_LIMIT: "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau",
         UNDEFINED: "the model says nothing beyond this state; is the sign under a root or a logarithm right?",

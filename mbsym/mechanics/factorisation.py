@@ -14,37 +14,62 @@ from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import SingularPoint
 
 
+class Elimination:
+    """M = L^T D L, and what the elimination makes of right-hand sides on its way: L^-T b.
+
+    ``forward`` holds these, ``backward`` goes on from one of them (or from a combination) to M^-1 b.  For two of them,
+    a and b:  a^T M^-1 b = sum_k forward_a[k] forward_b[k] / pivots[k].  Raises SingularPoint for a pivot that is zero,
+    with the sentence ``singular``.
+    """
+
+    def __init__(
+        self,
+        algebra: Algebra,
+        matrix: Sequence[Sequence[Scalar]],
+        rights: Sequence[Sequence[Scalar]],
+        singular: str = "the mass matrix is singular everywhere: a coordinate moves no mass",
+    ) -> None:
+        n = len(matrix)
+        rows = [{j: matrix[i][j] for j in range(n) if not algebra.vanishes(matrix[i][j])} for i in range(n)]
+        self._zero, self._order = algebra.zero, elimination_order([set(row) for row in rows])
+        self.forward = [list(right) for right in rights]
+        pivots, self.inverses = [algebra.zero] * n, [algebra.zero] * n
+        self._factors: list[dict[int, Scalar]] = [{} for _ in range(n)]
+        for k in self._order:
+            row = rows[k]
+            if k not in row or algebra.vanishes(row[k]):
+                raise SingularPoint(singular)
+            pivots[k] = row.pop(k)
+            self.inverses[k] = algebra.reciprocal(pivots[k])
+            neighbours = sorted(row)
+            factors = self._factors[k] = {i: row[i] * self.inverses[k] for i in neighbours}
+            for place, i in enumerate(neighbours):
+                del rows[i][k]
+                for j in neighbours[: place + 1]:
+                    product = factors[i] * row[j]
+                    rows[i][j] = rows[i][j] - product if j in rows[i] else -product
+                    rows[j][i] = rows[i][j]
+                for values in self.forward:
+                    values[i] = values[i] - factors[i] * values[k]
+        self.pivots = tuple(pivots)
+
+    def backward(self, forward: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """M^-1 b from L^-T b."""
+        found = [self._zero] * len(forward)
+        for k in reversed(self._order):
+            value = forward[k] * self.inverses[k]
+            for i, factor in self._factors[k].items():
+                value = value - factor * found[i]
+            found[k] = value
+        return tuple(found)
+
+
 def solve(
     algebra: Algebra, matrix: Sequence[Sequence[Scalar]], right: Sequence[Scalar]
 ) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
     """(x, pivots) with M x = right; D_k belongs to coordinate k.  Raises SingularPoint for a pivot that is zero."""
-    n = len(right)
-    rows = [{j: matrix[i][j] for j in range(n) if not algebra.vanishes(matrix[i][j])} for i in range(n)]
-    order = elimination_order([set(row) for row in rows])
-    values, pivots, inverses = list(right), [algebra.zero] * n, [algebra.zero] * n
-    factors: list[dict[int, Scalar]] = [{} for _ in range(n)]
-    for k in order:
-        row = rows[k]
-        if k not in row or algebra.vanishes(row[k]):
-            raise SingularPoint("the mass matrix is singular everywhere: a coordinate moves no mass")
-        pivots[k] = row.pop(k)
-        inverses[k] = algebra.reciprocal(pivots[k])
-        neighbours = sorted(row)
-        factors[k] = {i: row[i] * inverses[k] for i in neighbours}
-        for place, i in enumerate(neighbours):
-            del rows[i][k]
-            for j in neighbours[: place + 1]:
-                product = factors[k][i] * row[j]
-                rows[i][j] = rows[i][j] - product if j in rows[i] else -product
-                rows[j][i] = rows[i][j]
-            values[i] = values[i] - factors[k][i] * values[k]
-    found = [algebra.zero] * n
-    for k in reversed(order):
-        value = values[k] * inverses[k]
-        for i, factor in factors[k].items():
-            value = value - factor * found[i]
-        found[k] = value
-    return tuple(found), tuple(pivots)
+    eliminated = Elimination(algebra, matrix, [right])
+    return eliminated.backward(eliminated.forward[0]), eliminated.pivots
 
 
 def elimination_order(pattern: Sequence[set[int]]) -> tuple[int, ...]:

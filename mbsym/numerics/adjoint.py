@@ -23,6 +23,7 @@ import numpy as np
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import gradient
 from mbsym.expressions.tree import Expression
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
@@ -90,6 +91,7 @@ def gradient_at_end(
 
     Raises Breakdown where the motion ends early, Failure where there is no program.
     """
+    refuse_constraints(scenario.system, "gradients")
     system = scenario.system
     states = (*system.coordinates, *system.velocities)
     free = [name for name in names if name not in states]

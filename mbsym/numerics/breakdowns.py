@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, SINGULAR, STUCK, UNDEFINED, Breakdown
+from mbsym.numerics.methods.interface import (
+    BLOW_UP,
+    LARGEST,
+    SINGULAR,
+    SINGULAR_CONSTRAINTS,
+    STUCK,
+    UNDEFINED,
+    Breakdown,
+)
 from mbsym.numerics.methods.kept import compiled_kernel
 
 if TYPE_CHECKING:
@@ -35,6 +43,9 @@ def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Break
     """What is wrong with the initial state itself: there the right-hand side must exist."""
     if not np.all(np.abs(initial) < LARGEST_START):
         return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST_START:g}", begin, initial)
+    lost = _lost_rank(dynamics, initial) if begin == 0 else ""
+    if lost:
+        return Breakdown(SINGULAR_CONSTRAINTS, lost, begin, initial)
     point = np.concatenate(([begin], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
@@ -46,6 +57,17 @@ def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Break
     if np.any(np.isnan(rates)):
         return Breakdown(UNDEFINED, "the accelerations at the initial state are no numbers", begin, initial)
     return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", begin, initial)
+
+
+def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
+    """What is said of an initial position in which constraints depend on each other that do not beside it."""
+    known = dynamics.constraints
+    if known is None:
+        return ""
+    rank, usual = len(known.independent(0.0, initial)), len(known.kept)
+    if rank == usual:
+        return ""
+    return f"of {usual} constraint rows that are independent beside this position, {rank} are independent in it"
 
 
 def _neighbours(state: Any, time: float) -> Any:
@@ -103,7 +125,11 @@ def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: flo
         usual = np.median(np.where(np.isfinite(elsewhere), elsewhere, 0.0), axis=1)
         ratios = np.where(usual > 0, pivots / usual, np.where(pivots > 0, np.inf, 0.0))
     ratio = float(np.min(ratios))
-    return f"a pivot of M is {ratio:.1e} of its usual size" if ratio < least else ""
+    if not ratio < least:
+        return ""
+    if dynamics.constraints is not None:
+        return f"a pivot of M or of J M^-1 J^T (constraints) is {ratio:.1e} of its usual size"
+    return f"a pivot of M is {ratio:.1e} of its usual size"
 
 
 def least_pivot(dynamics: Dynamics, found: Trajectory) -> tuple[float, float]:

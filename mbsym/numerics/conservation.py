@@ -22,9 +22,11 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.program import Node
 from mbsym.mechanics.energy_rate import EnergyRate
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import PRECISION
@@ -38,6 +40,9 @@ LARGEST_CHANGES, EVENLY, BESIDE = 4, 4, 2
 
 #: A run that changes a quantity by more than this part of its scale contradicts whatever states have said.
 CONTRADICTION = 1e-3
+
+#: A rate on constraints, in parts of its terms: beyond the first it is one, up to the second it is none.
+SEEN, UNSEEN = 1e-6, 1e-10
 
 #: Steps of polynomial arithmetic that a proof may cost.
 PROOF_STEPS = 1_000_000
@@ -62,6 +67,7 @@ class Doubt(Enum):
 
     CONTRADICTED = "its rate vanishes at the states looked at, and yet the run changes it"
     NOT_FINITE = "its rate has no value, or no narrow enclosure, at the states looked at"
+    TINY = "its rate is tiny beside its terms, but larger than roundings"
     NO_VALUES = "it has no finite value along this run"
 
 
@@ -108,8 +114,12 @@ def energy_standing(
     time of the run).  The balls are of the formula itself, so one without zero is a power, however small.
     """
     rate = dynamics.energy_rate
+    if dynamics.constraints is not None and not dynamics.constraints.steady:
+        return on_constraints(dynamics, [*dynamics.energy_power.outputs, *dynamics.constraint_power.outputs], points)
     if not rate.terms or not dynamics.energy_power.outputs or _vanishes(dynamics, rate):
         return Standing.PROVED, None
+    if dynamics.constraints is not None:
+        return on_constraints(dynamics, dynamics.energy_power.outputs, points)
     return judged(dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False, held=held)
 
 
@@ -150,8 +160,26 @@ def standing(
     slopes = gradient(program, code.outputs[output], [program.input(name) for name in dynamics.inputs])
     moving = zip(slopes[1:], rhs.outputs, strict=True)
     terms = [slopes[0], *(program.product(slope, rate) for slope, rate in moving)]
+    if dynamics.constraints is not None:
+        return on_constraints(dynamics, terms, points)
     whole = Code(program, dynamics.inputs, tuple(terms))
     return judged(dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True, held=held)
+
+
+def on_constraints(dynamics: Dynamics, terms: Sequence[Node], points: Any) -> tuple[Standing, Doubt | None]:
+    """Whether the sum of the terms vanishes at states of a run, which are on the constraints but for roundings.
+
+    Beside them, where balls would look, such a sum need not vanish: it is held against the size of its terms instead.
+    """
+    program = dynamics.right_hand_side.program
+    with np.errstate(all="ignore"):
+        found = arrays.kernel(Code(program, dynamics.inputs, tuple(terms)))(np.asarray(points, dtype=float))
+    if not np.all(np.isfinite(found)):
+        return Standing.UNDECIDED, Doubt.NOT_FINITE
+    rate, size = float(np.max(np.abs(np.sum(found, axis=0)))), float(np.max(np.sum(np.abs(found), axis=0)))
+    if rate > SEEN * size:
+        return Standing.CHANGING, None
+    return (Standing.VERIFIED, None) if rate <= UNSEEN * size else (Standing.UNDECIDED, Doubt.TINY)
 
 
 def judged(

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from mbsym.algebra.stable import stabilised
 from mbsym.expressions.table import Curve
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
-from mbsym.mechanics.forward_dynamics import forward_dynamics
+from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
@@ -33,6 +33,10 @@ from mbsym.numerics.kernels.cells import Cells
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, bound, substituted
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
+    from mbsym.numerics.constrained import Constraints
 
 
 class Dynamics:
@@ -52,7 +56,8 @@ class Dynamics:
 
     @cached_property
     def _programs(self) -> Programs:
-        return programs(self.system, self.ring, self.apart)
+        # M, f and energies of the tree: what constraints add to them is in ``constraints``.
+        return programs(self.system, self.ring, self.apart, open_tree=True)
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -62,12 +67,43 @@ class Dynamics:
         return Code(self._specialised, self.inputs, tuple(stabilised(self._specialised, nodes, thorough)))
 
     @cached_property
+    def constraints(self) -> Constraints | None:
+        """The constraints as numbers; None where there are none."""
+        if not self.system.constraints:
+            return None
+        from mbsym.numerics.constrained import Constraints
+
+        return Constraints(self.scenario, self.ring, self.apart, self.mass_matrix)
+
+    @property
+    def _solved(self) -> ForwardDynamics | ConstrainedDynamics:
+        if self.constraints is not None:
+            return self.constraints.dynamics
+        return forward_dynamics(self.system, self.ring, apart=self.apart)
+
+    @cached_property
     def right_hand_side(self) -> Code:
         """(t, q, q') -> (q', q''), 2n outputs."""
-        found = forward_dynamics(self.system, self.ring, apart=self.apart)
+        found = self._solved
         fresh = self._specialised
         accelerations = substituted(found.program, found.accelerations, fresh)
         return self._code([*(fresh.input(name) for name in self.system.velocities), *accelerations])
+
+    @cached_property
+    def correction(self) -> Code | None:
+        """(t, q, q') -> what leads a state back to the constraints, 2n outputs; None where there are none."""
+        if self.constraints is None:
+            return None
+        found = self.constraints.dynamics
+        nodes = [*found.position_correction, *found.velocity_correction]
+        return self._code(substituted(found.program, nodes, self._specialised))
+
+    @cached_property
+    def multipliers(self) -> Code:
+        """(t, q, q') -> lambda of the rows that are kept; J^T lambda are the generalised forces of the constraints."""
+        assert self.constraints is not None
+        found = self.constraints.dynamics
+        return self._code(substituted(found.program, found.multipliers, self._specialised))
 
     @cached_property
     def features(self) -> Features:
@@ -95,8 +131,11 @@ class Dynamics:
 
     @cached_property
     def pivots(self) -> Code:
-        """(t, q, q') -> the pivots of the factorised mass matrix; one that vanishes means a singular M."""
-        found = forward_dynamics(self.system, self.ring, apart=self.apart)
+        """(t, q, q') -> the pivots of the factorised mass matrix; one that vanishes means a singular M.
+
+        With constraints those of J M^-1 J^T follow; one of them vanishes where the constraints lose their rank.
+        """
+        found = self._solved
         return self._code(substituted(found.program, found.pivots, self._specialised))
 
     @cached_property
@@ -169,8 +208,19 @@ class Dynamics:
         return still.vanishes(kinetic)
 
     @cached_property
+    def constraint_power(self) -> Code:
+        """(t, q, q') -> -lambda_i j_i: what constraints that move add to dh/dt, row by row."""
+        assert self.constraints is not None
+        rows, still = self.constraints.dynamics, bound(self.scenario)
+        still.bound.update(dict.fromkeys(self.system.velocities, still.number(0)))
+        moving = substituted(rows.program, [row.velocity for row in rows.rows], still)
+        fresh = self._specialised
+        powers = zip(self.multipliers.outputs, substituted(still, moving, fresh), strict=True)
+        return Code(fresh, self.inputs, tuple(-fresh.product(force, speed) for force, speed in powers))
+
+    @cached_property
     def energy_rate(self) -> EnergyRate:
-        """dh/dt before numbers are put in."""
+        """dh/dt of the tree before numbers are put in: what constraints that move add is in ``constraint_power``."""
         return energy_rate(self.system, self.ring)
 
     @cached_property
@@ -220,6 +270,7 @@ class Frozen(Dynamics):
         self.inputs, self.size = whole.inputs, whole.size  # a state may go on behind (q, q')
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
+        self.__dict__["constraints"] = whole.constraints
 
     def take(self, sides: Sequence[int]) -> None:
         """These sides from now on."""

@@ -30,6 +30,7 @@ from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.symplectic import without_potential
@@ -94,6 +95,7 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
     Raises NotPeriodic where there is none, where its coefficients are constant or not seen to be periodic, or where the
     unperturbed motion is none at these values.
     """
+    refuse_constraints(dynamics.system, "multipliers of periodic motions")
     code, rests = jacobian_on_motion(dynamics)
     frequency = common_frequency(code)
     with ctx.workprec(bits):

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.flow import Flow
 from mbsym.numerics.methods.interface import Breakdown
@@ -94,6 +95,7 @@ def exponents(
 
     ``every``: how often the columns are made orthogonal again.  A motion that breaks down, or Ctrl-C, ends it early.
     """
+    refuse_constraints(dynamics.system, "Lyapunov exponents")
     flow = Flow(dynamics, tolerance, count)
     intervals = max(LEAST_INTERVALS, int(np.ceil(time / every)))
     ends = np.linspace(0.0, time, intervals + 1)

@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.flow import Flow
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
@@ -134,6 +135,7 @@ def periodic_orbit(
 
     Raises NotFound where Newton's method does not converge, or converges to rest (period and state say so).
     """
+    refuse_constraints(dynamics.system, "periodic motions")
     flow = Flow(dynamics, tolerance)
     known_time = not autonomous(dynamics)
     free_period = not (known_time or guess.keep_period)

@@ -65,7 +65,7 @@ def reduced(dynamics: Dynamics) -> Reduced | None:
 
     Accelerations at some states tell first what is pushed, so that nothing is proved where nothing rests.
     """
-    if all(dynamics.scenario.velocities) or dynamics.size < 2:
+    if all(dynamics.scenario.velocities) or dynamics.size < 2 or dynamics.constraints is not None:
         return None
     try:
         unpushed = _unpushed(dynamics)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.tree import Expression
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.ensemble import Ensemble, ensemble
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.parametrised import Parametrised
@@ -43,6 +44,7 @@ def simulate_many(
 
     Raises Unvaried for what cannot be varied, Failure where there is no program for the equations.
     """
+    refuse_constraints(scenario.system, "ensembles")
     request, system = asked.request, scenario.system
     values = drawn(system, asked.variations, asked.members, asked.seed, asked.sampling)
     names = [one.name for one in asked.variations]

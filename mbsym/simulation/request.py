@@ -33,7 +33,8 @@ class Request:
     so narrowly, as a part of each quantity's size, within ``certify_seconds``; ``events``: what is watched for;
     ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
     that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
-    the rows where they are very many: the result then has some of them, and the table of all.
+    the rows where they are very many: the result then has some of them, and the table of all;
+    ``fixed``: coordinates and velocities whose initial values stay when the initial state is made to satisfy constraints.
     """
 
     time: float
@@ -54,6 +55,7 @@ class Request:
     longest: float | None = None
     earlier: Earlier | None = None
     store: BinaryIO | None = None
+    fixed: tuple[str, ...] = ()
 
     @property
     def rows(self) -> int | None:

@@ -21,6 +21,8 @@ from mbsym.simulation.request import Request
 from mbsym.simulation.watching import Happened, SectionPoints
 
 if TYPE_CHECKING:
+    from mbsym.numerics.closing import Closed
+    from mbsym.numerics.constrained import Drift
     from mbsym.numerics.simulate import Trajectory
 
 
@@ -71,7 +73,8 @@ class Simulation:
     ``energy`` (T - U) and ``generalized_energy`` (T2 - T0 - U) are one quantity where nothing is prescribed;
     ``conservation`` is that of the latter and ``energy_conservation`` that of the former.  ``scenario`` is that of the
     model that was integrated, ``given`` the one that was described where that is another; ``plan`` is how an accuracy
-    that was asked for is reached.
+    that was asked for is reached.  With constraints ``closed`` says how the initial state was made to satisfy them, and
+    ``drift`` how far each row strays from them.
     """
 
     scenario: Scenario
@@ -88,6 +91,8 @@ class Simulation:
     happened: Happened | None = None
     given: Scenario | None = None
     plan: Plan | None = None
+    closed: Closed | None = None
+    drift: Drift | None = None
 
     def __repr__(self) -> str:
         rows = len(self.times)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.numerics import simulate as integration
@@ -35,6 +35,10 @@ from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import Request, wrong_with
 from mbsym.simulation.result import Chosen, Simulation
 from mbsym.simulation.watching import Watching
+
+if TYPE_CHECKING:
+    from mbsym.numerics.closing import Closed
+    from mbsym.numerics.constrained import Drift
 
 #: The error of a run shorter than this many seconds is estimated without being asked for.
 SOON_DONE = 2.0
@@ -63,6 +67,8 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     given, scenario = scenario, scenario_of(scenario, request.model)
+    closed = _closed(scenario, request)
+    scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
@@ -102,8 +108,33 @@ def simulate(
             certificate = certified(dynamics, found.times, found.states, *asked, watch, seen)
     return Simulation(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
-        *(certificate, happened, given),
+        *(certificate, happened, given, None, closed),
+        None if closed is None else drift_along(dynamics, found),
     )
+
+
+def _closed(scenario: Scenario, request: Request) -> Closed | None:
+    """The initial state on the constraints; None where there are none.
+
+    Raises NotClosed, and Constrained where something is asked for that leaves constraints out.
+    """
+    if not scenario.system.constraints:
+        return None
+    from mbsym.mechanics.constraints.refusal import refuse_constraints
+    from mbsym.numerics.closing import closed
+
+    if request.certify is not None:
+        refuse_constraints(scenario.system, "enclosures of the solution")
+    if request.model.linear:
+        refuse_constraints(scenario.system, "linearised equations in numbers")
+    return closed(scenario, request.fixed)
+
+
+def drift_along(dynamics: Dynamics, found: integration.Trajectory) -> Drift | None:
+    """How far the rows of a run stray from the constraints."""
+    from mbsym.numerics.constrained import drift_of
+
+    return drift_of(dynamics, found.times, found.states)
 
 
 def _trajectory(
@@ -115,7 +146,7 @@ def _trajectory(
     integrals: tuple[Any, ...],
 ) -> integration.Trajectory:
     """The run; its rows in memory, or in the file that the request has for them."""
-    if request.streams and request.store is not None:
+    if request.streams and request.store is not None and dynamics.constraints is None:
         from mbsym.numerics.streamed import streamed
 
         known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.tree import Expression
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.table import METHODS
@@ -60,6 +61,7 @@ def sensitivities(
 
     Raises ValueError for names by which nothing can be differentiated, Failure where there is no program.
     """
+    refuse_constraints(scenario.system, "sensitivities")
     augmented = sensitive(scenario, names, overrides)
     name = request.method if request.method not in ("auto", "midpoint", "midpoint4", "midpoint6") else "dop853"
     method = METHODS[name]

@@ -23,6 +23,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.leaving import TOGETHER, Leaving
+from mbsym.numerics.methods.led import LedRun, lead
 from mbsym.numerics.methods.narrow import BESIDE, along, met
 from mbsym.numerics.methods.passed import MOST_KEPT, Narrow, Passed
 from mbsym.numerics.methods.sides import Sides, endless, feature_kernel
@@ -52,6 +53,10 @@ class Landing:
         self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
     ) -> Run:
         """A run; raises what the method raises."""
+        run, led = self._started(dynamics, setting, scalar, initial, at), lead(dynamics, scalar)
+        return run if led is None else LedRun(run, led)
+
+    def _started(self, dynamics: Dynamics, setting: Setting, scalar: str, initial: Any, at: float) -> Run:
         smooth = dynamics.features.none or isinstance(dynamics, Frozen)
         if smooth and _longest(self.inner, setting) is None:
             return self.inner.start(dynamics, setting, scalar, initial, at)

@@ -25,6 +25,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.led import lead, refuse
 from mbsym.numerics.methods.stepping import Stepping
 
 #: SciPy warns below this relative tolerance and takes it instead.
@@ -44,6 +45,9 @@ class LibraryRun(Stepping):
         self.work = Work()
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE), "atol": tolerance}
+        self._led = lead(dynamics)
+        if method.traits.name == "lsoda":
+            refuse(dynamics, method.traits.name)  # ODEPACK keeps its history to itself
         if setting.longest is not None:
             self._options["max_step"] = setting.longest
         if method.traits.implicit:
@@ -125,6 +129,19 @@ class LibraryRun(Stepping):
         if failed or not solver.t > time:
             raise Breakdown(STUCK, str(message or "the time no longer advances"), time, state)
         self._dense = None
+        if self._led is not None:
+            self._kept_on(solver)
+
+    def _kept_on(self, solver: Any) -> None:
+        """The end of the step is led to the constraints, before the solver goes on from there."""
+        assert self._led is not None
+        with np.errstate(all="ignore"):
+            self._dense = solver.dense_output()  # between the old ends
+            solver.y = self._led(solver.t, solver.y)
+        if self._method.traits.name == "bdf":
+            solver.D[0] = solver.y  # the first of its differences is the state itself
+        else:
+            solver.f = self._rhs(solver.t, solver.y)
 
     def _guarded(self, action: Any) -> Any:
         """SciPy raises ValueError or LinAlgError where a matrix holds values that are not finite."""

@@ -10,7 +10,7 @@ each, however many there are.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import isfinite, log
 from typing import Any
@@ -76,9 +76,9 @@ OPERATIONS_AT_A_TIME = 20_000_000
 MISSED = 1e-9
 
 
-def mathematics(code: Code, scalar: Scalar) -> str:
-    """Declarations that the drivers need and the code has not made already."""
-    own = {code.program.instructions[number].operation for number in code.program.live(code.outputs)}
+def mathematics(codes: Iterable[Code], scalar: Scalar) -> str:
+    """Declarations that the drivers need and the codes have not made already."""
+    own = {code.program.instructions[number].operation for code in codes for number in code.program.live(code.outputs)}
     missing = [name for name in ("exp", "log", "sqrt") if not (name in own and scalar.type == "double")]
     return "".join(f"declare double @{name}(double) #1\n" for name in missing)
 
@@ -90,10 +90,13 @@ def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
         chosen, code = SCALARS[scalar], code_of(dynamics, "right_hand_side", scalar)
         size = 2 * dynamics.size
         march = adaptive_text if tableau.errors else fixed_text
-        text = march(tableau, size, chosen) + dense_text(tableau, size, chosen)
+        codes = {"rhs": code}
+        if dynamics.correction is not None:
+            codes["correct"] = code_of(dynamics, "correction", scalar)
+        text = march(tableau, size, chosen, len(codes) > 1) + dense_text(tableau, size, chosen)
         if tableau.errors:
-            text = mathematics(code, chosen) + text
-        return compiled({"rhs": code}, scalar, text, many=False)
+            text = mathematics(codes.values(), chosen) + text
+        return compiled(codes, scalar, text, many=False)
 
     return once(dynamics, ("runge-kutta", tableau.name, scalar), make)
 

@@ -49,6 +49,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel, once
+from mbsym.numerics.methods.led import refuse
 from mbsym.numerics.methods.midpoint_code import (
     ITERATIONS,
     JACOBIANS,
@@ -345,7 +346,8 @@ class Symplectic:
     def start(
         self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
     ) -> MidpointRun:
-        """A run in (q, p).  Raises Unusable where a load has no force function."""
+        """A run in (q, p).  Raises Unusable where a load has no force function, and with constraints."""
+        refuse(dynamics, self.name)
         loads = without_potential(dynamics.system)
         if loads:
             raise Unusable(

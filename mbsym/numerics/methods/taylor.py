@@ -33,6 +33,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import once
+from mbsym.numerics.methods.led import lead
 from mbsym.numerics.methods.stages import exact_number, initial_state
 from mbsym.numerics.methods.stepping import Stepping
 
@@ -152,6 +153,7 @@ class TaylorRun(Stepping):
         self._least = smallest
         self._dtype = SCALARS[scalar].dtype
         self._limit = setting.step_limit
+        self._led = lead(dynamics, scalar)
         self._cells = dynamics.cells if isinstance(dynamics, Frozen) else None
         self.order: int = self._taylor.order
         self.work = Work()
@@ -188,7 +190,7 @@ class TaylorRun(Stepping):
         taylor = self._taylor
         if taylor.time < until and self._start is None:
             self.one()
-        if taylor.time < until:
+        if taylor.time < until and self._led is None:
             self._far(until)
         while taylor.time < until:
             self.one()
@@ -225,6 +227,8 @@ class TaylorRun(Stepping):
         else:
             self._judge(outcome not in (self._success, self._bounded), step, now, before)
         self._start = now
+        if self._led is not None:
+            taylor.state[:] = self._led(taylor.time, np.array(taylor.state))
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:

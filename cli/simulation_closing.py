@@ -1,0 +1,107 @@
+"""Constraints for ``mbsym simulate``: ``--fixed``, what does not go with them, what is said where they stay open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mbsym.expressions.safe import quoted
+from mbsym.model.constraints import listed as constraints_listed
+from mbsym.source.scope import did_you_mean, listed
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, complain
+from mbsym_cli.option_groups import group
+from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.closing import NotClosed
+    from mbsym.simulation import Request
+    from mbsym_cli.simulation_many import Many
+    from mbsym_cli.simulation_request import Asked
+
+#: So many gaps are told one by one.
+MOST_GAPS = 8
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """As it was typed."""
+
+    fixed: str | None
+
+    def added(self, request: Request, system: System | None, asked: Options) -> Request:
+        """The request with the names; whatever is wrong with them joins the complaints of ``asked``."""
+        if self.fixed is None or system is None:
+            return request
+        if not system.constraints:
+            hint = "initial values stay as they are given; leave --fixed out"
+            asked.complain("--fixed", "idle-option", "there are no constraints that initial values would follow", hint)
+            return request
+        known = (*system.coordinates, *system.velocities)
+        names = tuple(dict.fromkeys(part.strip() for part in self.fixed.split(",") if part.strip()))
+        for name in names:
+            if name not in known:
+                hint = did_you_mean(name, known) or listed("these can be fixed", known)
+                asked.complain("--fixed", "unknown-name", f"there is nothing called {quoted(name)} to be fixed", hint)
+        return replace(request, fixed=tuple(name for name in names if name in known))
+
+
+closing_options = group(
+    "closing",
+    Fixed,
+    click.option(
+        "--fixed", metavar="NAMES", help="Initial values that stay while the others are fitted to the constraints."
+    ),
+)
+
+
+def check_constrained(system: System | None, wanted: Asked, many: Many, asked: Options) -> None:
+    """Complains about every option that does not know constraints yet."""
+    if system is None or not system.constraints:
+        return
+    from mbsym.numerics.methods.table import METHODS
+
+    request = wanted.request
+    told = constraints_listed(system.constraints)
+    options = {
+        "--vary": bool(many.vary),
+        "--sensitivity": many.sensitivity is not None,
+        "--certify": request.certify is not None,
+        "--linear": request.model.linear,
+        "--accuracy": wanted.goal is not None,
+    }
+    for option, there in options.items():
+        if there:
+            message = f"{option} does not take constraints into account yet ({told})"
+            asked.complain(option, "constraints", message, "without them this would be another system")
+    if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
+        hint = "these do: auto, dop853, rk45, rk4, taylor, radau, bdf"
+        message = f"{request.method} does not keep to constraints ({told})"
+        asked.complain("--method", "unsuitable-method", message, hint)
+
+
+def not_closed(file: Path, found: NotClosed, system: System) -> int:
+    """Says which state comes closest, and its gaps; the exit code."""
+    from mbsym.model.quantities import unit_of, with_unit
+    from mbsym.report.unit_text import pretty
+
+    complain(file, f"error[{found.code}]: {found}")
+    names = (*system.coordinates, *system.velocities)
+    shown = names if any(gap.velocity for gap in found.gaps) else system.coordinates
+    state = ", ".join(
+        f"{name} = {with_unit(f'{value:.6g}', pretty(unit_of(system, name)))}"
+        for name, value in zip(shown, found.state.tolist(), strict=False)
+    )
+    complain(file, f"  closest found: {state}")
+    for gap in sorted(found.gaps, key=lambda one: -one.size)[:MOST_GAPS]:
+        line = "" if gap.row.span is None else f" (line {gap.row.span.line})"
+        complain(file, f"  gap of {gap.row.label}{line}: {gap.size:.6g}{' (velocity)' if gap.velocity else ''}")
+    if found.fixed:
+        complain(file, f"  hint: fix fewer initial values than {', '.join(found.fixed)}, or change them")
+    else:
+        complain(file, "  hint: check lengths and the initial position; a start nearer to a closed one may succeed")
+    complain(file, "nothing was written.")
+    return BAD_INPUT if found.fixed else BROKEN_DOWN

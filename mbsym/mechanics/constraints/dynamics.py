@@ -1,0 +1,157 @@
+"""Accelerations of a constrained system as straight-line code, and the way back to the constraints.
+
+    M q'' = f + J^T lambda,      J q'' = -c,      c = J' q' + j'
+
+by M = L^T D L of the tree and the rows W = L^-T J^T that its elimination makes of J on the way:
+
+    S = J M^-1 J^T = W^T D^-1 W,      S lambda = -(c + J M^-1 f),      q'' = M^-1 (f + J^T lambda)
+
+S has the sparsity of the constraints (a chain of rods: three diagonals), so a chain costs O(n).  The same factors give
+the shortest way back to the constraints, measured by the kinetic energy (by M):
+
+    dq  = -M^-1 J_h^T (J_h M^-1 J_h^T)^-1 f_h          of the holonomic rows f_h(q, t) = 0
+    dq' = -M^-1 J^T   (J   M^-1 J^T  )^-1 (J q' + j)
+
+Rows that follow from others make S singular, so that the rows are named that are kept.  The pivots of S vanish where
+the rows that are kept lose their rank, as a four-bar does whose links are in line.
+
+Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 8; Hairer & Wanner, Solving Ordinary Differential
+Equations II, VII.1 (index 1), VII.2 (projection).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.articulation import articulation
+from mbsym.mechanics.bias_forces import bias_forces, forcing
+from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
+from mbsym.mechanics.factorisation import Elimination
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.variables import program_environment, ring_environment
+from mbsym.model.system import System
+
+DEPENDENT = "the constraints that are kept are dependent everywhere"
+
+#: How ``constraint_rows`` knows a row: the number of its constraint, and its component.
+Kept = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class ConstrainedDynamics:
+    """Nodes of ``program`` for n coordinates and m rows that are kept, the holonomic ones first.
+
+    ``accelerations`` (n), ``multipliers`` (m; generalised forces are J^T lambda), ``pivots`` of M (n) and of S (m),
+    ``position_correction`` and ``velocity_correction`` (n each).
+    """
+
+    program: Program
+    environment: Mapping[str, Node]
+    rows: tuple[Row, ...]
+    accelerations: tuple[Node, ...]
+    multipliers: tuple[Node, ...]
+    pivots: tuple[Node, ...]
+    position_correction: tuple[Node, ...]
+    velocity_correction: tuple[Node, ...]
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """All rows that say something, as nodes of ``program``: those that are dependent among them are still there.
+
+    ``holonomic`` rows come first.
+    """
+
+    program: Program
+    rows: tuple[Row, ...]
+
+    @property
+    def names(self) -> tuple[RowName, ...]:
+        return tuple(row.name for row in self.rows)
+
+
+def conditions(system: System, ring: Ring) -> Conditions:
+    """The rows of all constraints over a program, without those that are zero at sight."""
+    program = Program()
+    inputs = program_environment(system, program)
+    scene = scene_without_accelerations(system, ring, program, inputs)
+    rows = [row for row in constraint_rows(scene) if not row.is_trivial(program)]
+    return Conditions(program, holonomic_first(rows))
+
+
+def empty_rows(system: System, ring: Ring, rows: Sequence[Row]) -> frozenset[RowName]:
+    """Which of these rows say 0 = 0 whatever the motion, as the ring decides; none where it cannot."""
+    if not rows:
+        return frozenset()
+    try:
+        scene = Scene(system, ring, ring_environment(system, ring), ring)
+        return frozenset(row.name for row in constraint_rows(scene, kept_rows(rows)) if row.is_trivial(ring))
+    except Failure:
+        return frozenset()
+
+
+def holonomic_first(rows: Sequence[Row]) -> tuple[Row, ...]:
+    """The rows with a position before those that have velocities only; else in their order."""
+    return tuple(sorted(rows, key=lambda row: row.position is None))
+
+
+def constrained_dynamics(system: System, ring: Ring, kept: Sequence[Kept], apart: bool = False) -> ConstrainedDynamics:
+    """See the module; ``kept`` names the rows, which must be independent.
+
+    Raises SingularPoint where M is singular everywhere or the rows are dependent at sight, NoClosedForm as loads do.
+    """
+    program = Program()
+    inputs = program_environment(system, program)
+    scene = scene_without_accelerations(system, ring, program, inputs)
+    frames = articulation(scene, apart)
+    rows = holonomic_first(constraint_rows(scene, kept))
+    partials = [row.partials for row in rows]
+    holonomic = sum(row.position is not None for row in rows)
+    tree = Elimination(program, mass_matrix(frames), [forcing(frames, bias_forces(frames)), *partials])
+    free, *weighted = tree.forward
+
+    def paired(x: Sequence[Node], y: Sequence[Node]) -> Node:
+        """x^T D^-1 y."""
+        total = program.zero
+        for a, b, inverse in zip(x, y, tree.inverses, strict=True):
+            if not (program.vanishes(a) or program.vanishes(b)):
+                total = total + a * inverse * b
+        return total
+
+    shared = {(i, j): paired(weighted[i], weighted[j]) for i in range(len(rows)) for j in range(i + 1)}
+    compliance = [[shared[max(i, j), min(i, j)] for j in range(len(rows))] for i in range(len(rows))]
+
+    def answered(count: int, right: Sequence[Node]) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
+        """(x, pivots) with S x = -right over the first ``count`` rows."""
+        block = [row[:count] for row in compliance[:count]]
+        found = Elimination(program, block, [[-x for x in right]], DEPENDENT)
+        return found.backward(found.forward[0]), found.pivots
+
+    def carried(start: Sequence[Node], weights: Sequence[Node]) -> tuple[Node, ...]:
+        """M^-1 (b + J^T weights) from L^-T b."""
+        total = list(start)
+        for weight, column in zip(weights, weighted, strict=False):
+            total = [x if program.vanishes(y) else x + weight * y for x, y in zip(total, column, strict=True)]
+        return tree.backward(total)
+
+    still = [program.zero] * len(free)
+    needed = [row.acceleration + paired(column, free) for row, column in zip(rows, weighted, strict=True)]
+    multipliers, pivots = answered(len(rows), needed)
+    shift, _ = answered(holonomic, [row.position for row in rows[:holonomic]])
+    change, _ = answered(len(rows), [row.velocity for row in rows])
+    return ConstrainedDynamics(
+        program=program,
+        environment=inputs,
+        rows=rows,
+        accelerations=carried(free, multipliers),
+        multipliers=multipliers,
+        pivots=(*tree.pivots, *pivots),
+        position_correction=carried(still, shift),
+        velocity_correction=carried(still, change),
+    )

@@ -1,0 +1,287 @@
+"""Initial states made consistent with constraints: the closest one to what was given, and how far each value moved.
+
+    minimise (q - q0)^T M (q - q0)       subject to  f(q, 0) = 0                M of the given position
+    minimise (q' - q0')^T M (q' - q0')   subject to  J q' + j = 0               M of the position found
+
+The first by Newton's method on the constraints (each step the shortest) and then along them (Gauss-Newton), the second
+is linear.  Values that are fixed stay.  Dependent rows do no harm: least squares.  What was found in float64 is refined
+to ``PRECISION`` bits, residuals being computed in that many, so that every arithmetic begins on the constraints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.failures import Failure
+from mbsym.mechanics.constraints.rows import RowName
+from mbsym.numerics.constrained import Constraints
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.scenario import PRECISION, Scenario, rounded
+
+#: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
+STEPS, ALONG, REFINED = 200, 60, 40
+
+#: A gap of a row is closed below this part of the row's slope times the coordinates' sizes.
+CLOSED = 1e-11
+
+#: Below this part of itself (or of 1) a value has not moved but for roundings.
+MOVED = 1e-12
+
+#: Singular values of J M^-1/2 below this part of the largest count as zero.
+RANK = 1e-9
+
+
+@dataclass(frozen=True)
+class Move:
+    """A value of the initial state that was changed."""
+
+    name: str
+    given: float
+    found: float
+
+
+@dataclass(frozen=True)
+class Closed:
+    """``scenario`` begins on its constraints; ``moves`` are the values that had to be changed beyond roundings.
+
+    ``closest`` says whether the position is the closest one, or only one near it; ``fixed`` are the values that stayed.
+    """
+
+    scenario: Scenario
+    moves: tuple[Move, ...] = ()
+    closest: bool = True
+    fixed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Gap:
+    """What is left of a row: |f| of its constraint for positions, |g| for velocities, at the closest state."""
+
+    row: RowName
+    size: float
+    velocity: bool = False
+
+
+class NotClosed(Failure):
+    """No state near the given one satisfies the constraints: ``state`` (2n,) is the closest found, with ``gaps``."""
+
+    code = "not-closed"
+
+    def __init__(self, state: Any, gaps: Sequence[Gap], fixed: Sequence[str]) -> None:
+        worst = max(gaps, key=lambda gap: gap.size)
+        what = "velocities satisfy them" if worst.velocity else "position satisfies them"
+        held = f" with {', '.join(fixed)} fixed" if fixed else ""
+        text = f"the constraints cannot be closed at these values{held}: no {what} near what is given"
+        super().__init__(f"{text} (gap {worst.size:.6g} in {worst.row.label})")
+        self.state, self.gaps, self.fixed = state, tuple(gaps), tuple(fixed)
+
+
+def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
+    """The scenario with the closest initial state that its constraints allow; itself where there are none.
+
+    ``fixed`` names coordinates and velocities whose values must stay.  Raises NotClosed.
+    """
+    if not scenario.system.constraints:
+        return Closed(scenario)
+    constraints = Dynamics(scenario).constraints
+    assert constraints is not None
+    names = (*scenario.system.coordinates, *scenario.system.velocities)
+    search = _Search(
+        constraints, np.array([name not in fixed for name in names]), tuple(n for n in names if n in fixed)
+    )
+    start = np.array([float(x) for x in scenario.state])
+    exact = _Exact(constraints)
+    if exact.satisfied(scenario.state):
+        return Closed(scenario, fixed=search.fixed)
+    position, closest = search.position(start)
+    state = search.velocity(np.concatenate([position, start[search.n :]]))
+    found = exact.refined(scenario.state, state, search)
+    moves = [
+        Move(name, float(old), float(new))
+        for name, old, new in zip(names, scenario.state, found, strict=True)
+        if abs(old - new) > MOVED * (1 + abs(old))
+    ]
+    moved = {name for name, old, new in zip(names, scenario.state, found, strict=True) if old != new}
+    n = search.n
+    new = replace(
+        scenario,
+        positions=tuple(found[:n]),
+        velocities=tuple(found[n:]),
+        typed={name: value for name, value in scenario.typed.items() if name not in moved},
+    )
+    return Closed(new, tuple(moves), closest, search.fixed)
+
+
+class _Search:
+    """The way to the constraints in float64, with some values free."""
+
+    def __init__(self, constraints: Constraints, free: Any, fixed: tuple[str, ...]) -> None:
+        self.constraints, self.fixed = constraints, fixed
+        self.n, self.h = constraints.size, constraints.holonomic
+        self._free = free[: self.n], free[self.n :]
+
+    def rows(self, state: Any, velocity: bool) -> tuple[Any, Any, Any]:
+        """(f or g, A = J W, W): W (n, free) takes lengths measured by M to the free values."""
+        values = self.constraints.at(0.0, state)
+        free = self._free[velocity]
+        weights = np.zeros((self.n, int(np.sum(free))))
+        whole = self.constraints.weights(0.0, state)
+        masses = np.linalg.inv(whole @ whole.T)[np.ix_(free, free)]
+        if masses.size:
+            weights[free] = np.linalg.inv(np.linalg.cholesky((masses + masses.T) / 2)).T
+        rows = values.velocities if velocity else values.positions
+        return rows, values.partials[: len(rows)] @ weights, weights
+
+    def position(self, start: Any) -> tuple[Any, bool]:
+        """A position on the constraints, and whether it is the closest one to ``start``.  Raises NotClosed."""
+        if not self.h:
+            return start[: self.n].copy(), True
+        found = self._descended(start)
+        better, closest = self._along(found, start)
+        return better[: self.n], closest
+
+    def _descended(self, start: Any) -> Any:
+        """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed."""
+        found, damping = start.copy(), 0.0
+        f, rows, weights = self.rows(found, False)
+        for _ in range(STEPS):
+            if self._small(f, rows, found) and damping == 0.0:
+                break
+            step = weights @ _shortest(rows, -f, damping)
+            moved = found.copy()
+            moved[: self.n] += step
+            new, new_rows, new_weights = self.rows(moved, False)
+            if np.all(np.isfinite(new)) and np.linalg.norm(new) < np.linalg.norm(f):
+                found, f, rows, weights = moved, new, new_rows, new_weights
+                damping = 0.0 if damping < 1e-6 else damping / 10
+            elif self._small(f, rows, found):
+                break
+            else:
+                damping = max(1e-4, 10 * damping)
+                if damping > 1e12:
+                    break
+        if not self._small(f, rows, found):
+            gaps = [Gap(name, abs(float(x))) for name, x in zip(self.constraints.names, f, strict=False)]
+            raise NotClosed(found, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.n + 1]])
+        return found
+
+    def _along(self, found: Any, start: Any) -> tuple[Any, bool]:
+        """From a position on the constraints to the closest one to ``start``, as long as that leads closer."""
+        reached = found
+        for _ in range(ALONG):
+            f, rows, weights = self.rows(found, False)
+            back = np.linalg.lstsq(weights, start[: self.n] - found[: self.n], rcond=None)[0]
+            tangent = back - _shortest(rows, rows @ back)
+            moved = found.copy()
+            moved[: self.n] += weights @ (tangent + _shortest(rows, -f))
+            if not np.all(np.isfinite(moved)):
+                return reached, False
+            if np.linalg.norm(tangent) <= 1e-9 * (np.linalg.norm(back) + 1e-30) or not np.any(back):
+                return self._settled(moved, reached), True
+            found = moved
+            if self._small(f, rows, found):
+                reached = found
+        return self._settled(found, reached), False
+
+    def _settled(self, state: Any, otherwise: Any) -> Any:
+        """A few steps of Newton's method; ``otherwise`` where they do not end on the constraints."""
+        found = state.copy()
+        for _ in range(6):
+            f, rows, weights = self.rows(found, False)
+            found[: self.n] += weights @ _shortest(rows, -f)
+        f, rows, _ = self.rows(found, False)
+        return found if self._small(f, rows, found) else otherwise
+
+    def _small(self, f: Any, rows: Any, state: Any) -> bool:
+        partials = np.abs(self.constraints.at(0.0, state).partials[: len(f)])
+        slopes = self.constraints.slopes(partials, 1 + np.abs(state[: self.n]))
+        return bool(np.all(np.abs(f) <= CLOSED * slopes))
+
+    def velocity(self, state: Any) -> Any:
+        """The state with the closest velocities that satisfy J q' + j = 0.  Raises NotClosed."""
+        found = state.copy()
+        for _ in range(3):
+            g, rows, weights = self.rows(found, True)
+            found[self.n :] += weights @ _shortest(rows, -g)
+        g, _, _ = self.rows(found, True)
+        partials = np.abs(self.constraints.at(0.0, found).partials)
+        slopes = self.constraints.slopes(partials, 1 + np.abs(found[self.n :]))
+        if not np.all(np.abs(g) <= CLOSED * slopes):
+            gaps = [Gap(name, abs(float(x)), True) for name, x in zip(self.constraints.names, g, strict=True)]
+            raise NotClosed(found, gaps, self.fixed)
+        return found
+
+
+def _shortest(rows: Any, right: Any, damping: float = 0.0) -> Any:
+    """The shortest y with rows y = right in least squares; damped: the least |rows y - right|^2 + damping s^2 |y|^2."""
+    if not rows.size:
+        return np.zeros(rows.shape[1])
+    left, sizes, turned = np.linalg.svd(rows, full_matrices=False)
+    known = sizes > RANK * sizes[0]
+    inverse = np.where(known, sizes / np.where(known, sizes**2 + damping * sizes[0] ** 2, 1.0), 0.0)
+    found: Any = turned.T @ (inverse * (left.T @ right))
+    return found
+
+
+class _Exact:
+    """Residuals in many bits."""
+
+    def __init__(self, constraints: Constraints) -> None:
+        self._constraints = constraints
+        self._bits = PRECISION + 64
+        self._rows: Callable[[Sequence[arb]], list[arb]] = precise(constraints.code, self._bits)
+
+    def residuals(self, state: Sequence[Fraction]) -> list[arb]:
+        """f and g."""
+        h, r = self._constraints.holonomic, len(self._constraints)
+        with ctx.workprec(self._bits):
+            point = [arb(0), *(arb(fmpq(x.numerator, x.denominator)) for x in state)]
+            return [x.mid() for x in self._rows(point)[: h + r]]
+
+    def satisfied(self, state: Sequence[Fraction]) -> bool:
+        """Whether the state is on the constraints as far as its bits tell."""
+        values = self._constraints.at(0.0, [float(x) for x in state])
+        h, n = self._constraints.holonomic, self._constraints.size
+        sizes = 1 + np.abs(np.array([float(x) for x in state]))
+        partials, slopes_of = np.abs(values.partials), self._constraints.slopes
+        slopes = np.concatenate([slopes_of(partials[:h], sizes[:n]), slopes_of(partials, sizes[n:])])
+        with ctx.workprec(self._bits):
+            least = arb(2) ** (32 - PRECISION)
+            return all(abs(x) <= least * (1 + float(s)) for x, s in zip(self.residuals(state), slopes, strict=True))
+
+    def refined(self, given: Sequence[Fraction], state: Any, search: _Search) -> tuple[Fraction, ...]:
+        """The state with as many bits as numbers have; values that did not move keep what was given."""
+        found = [Fraction(x) for x in state.tolist()]
+        free = np.concatenate(search._free)
+        found = [new if moves else old for old, new, moves in zip(given, found, free, strict=True)]
+        h, n = self._constraints.holonomic, self._constraints.size
+        for _ in range(REFINED):
+            if self.satisfied(found):
+                break
+            rest = self.residuals(found)
+            point = np.array([float(x) for x in found])
+            for velocity, part in ((False, rest[:h]), (True, rest[h:])):
+                _, rows, weights = search.rows(point, velocity)
+                largest = max((abs(x) for x in part), default=arb(0))
+                if not part or not largest > 0:
+                    continue
+                # Residuals are beyond the range of roundings: they are scaled before they become floats.
+                right = np.array([-float(x / largest) for x in part])
+                scale = rounded(largest)
+                for k, change in enumerate(weights @ _shortest(rows, right)):
+                    found[k + n * velocity] += scale * Fraction(float(change))
+            found = [_short(x) for x in found]
+        return tuple(found)
+
+
+def _short(value: Fraction) -> Fraction:
+    """Rounded to ``PRECISION`` bits."""
+    with ctx.workprec(PRECISION):
+        return rounded(arb(fmpq(value.numerator, value.denominator)))

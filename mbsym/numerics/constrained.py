@@ -1,0 +1,261 @@
+"""Constraints of one scenario as numbers: their rows, which of them are kept, and how far a run strays from them.
+
+    f(t, q) = 0  (holonomic rows, which come first),      g = J(t, q) q' + j(t, q) = 0  (all rows)
+
+Rows that follow from others are left out of the equations, not of the drift: the rank is found by orthogonalisation
+with pivots (rows measured by the kinetic energy: J M^-1/2, each of length 1) at the initial position and at positions
+beside it on the constraints, since a rank may fall at single ones.
+
+    drift of positions    max over rows of |f_i| / sum_k |J_ik| s_k          s_k:  the size of q_k in the motion
+    drift of velocities   max over rows of |g_i| / sum_k |J_ik| s'_k         s'_k: that of q'_k
+
+The sums are the largest of the motion, and of the rows of one constraint: both drifts are free of units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsym.algebra.program import Program
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, conditions, constrained_dynamics, empty_rows
+from mbsym.mechanics.constraints.rows import Row, RowName
+from mbsym.model.constraints import listed
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import bound, substituted
+
+if TYPE_CHECKING:
+    from mbsym.numerics.dynamics import Dynamics
+
+#: A row of length 1 of which others leave no more than this follows from them.
+DEPENDENT = 1e-9
+
+#: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
+BESIDE, AWAY = 3, 0.05
+
+#: A correction of this size, beside the coordinates', ends Newton's iteration; so many steps of it at most.
+SETTLED, STEPS = 1e-13, 40
+
+
+@dataclass(frozen=True)
+class Values:
+    """At one point: f (h,), g (r,), J (r, n)."""
+
+    positions: Any
+    velocities: Any
+    partials: Any
+
+
+class Constraints:
+    """The rows of a scenario that say something, and the equations with those of them that are independent."""
+
+    def __init__(self, scenario: Scenario, ring: Ring, apart: bool, masses: Code) -> None:
+        self._scenario, self._ring, self._apart = scenario, ring, apart
+        found = conditions(scenario.system, ring)
+        self._listed(scenario, found.program, found.rows)
+        # A row that seems to say nothing at some place is looked at in the ring, which is dearer.
+        source = np.random.default_rng(3)
+        place = self.at(0.3, source.uniform(0.3, 0.9, 2 * len(scenario.system.coordinates)))
+        nothing = np.max(np.abs(place.partials), axis=1) <= 1e-10 * self.slopes(np.abs(place.partials), 1.0)
+        empty = empty_rows(scenario.system, ring, [row for row, none in zip(found.rows, nothing, strict=True) if none])
+        if empty:
+            self._listed(scenario, found.program, [row for row in found.rows if row.name not in empty])
+        self._masses = arrays.kernel(masses)
+
+    def _listed(self, scenario: Scenario, program: Program, rows: Sequence[Row]) -> None:
+        self.names: tuple[RowName, ...] = tuple(row.name for row in rows)
+        self.holonomic = sum(name.holonomic for name in self.names)
+        self.size = len(scenario.system.coordinates)
+        self.inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
+        nodes = [row.position for row in rows[: self.holonomic]]
+        nodes += [row.velocity for row in rows]
+        nodes += [slope for row in rows for slope in row.partials]
+        numbers = bound(scenario)
+        self.code = Code(numbers, self.inputs, tuple(substituted(program, nodes, numbers)))
+        self._kernel = arrays.kernel(self.code)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def at(self, t: float, state: Any) -> Values:
+        """f, g and J at one state (q, q')."""
+        return self._parted(self._kernel(np.concatenate(([t], np.asarray(state, dtype=float)))))
+
+    def along(self, times: Any, states: Any) -> Values:
+        """f (h, m), g (r, m), J (r, n, m) at states in columns."""
+        return self._parted(self._kernel(np.vstack([times, np.asarray(states, dtype=float)])))
+
+    def _parted(self, values: Any) -> Values:
+        h, r = self.holonomic, len(self.names)
+        shape = (r, self.size, *values.shape[1:])
+        return Values(values[:h], values[h : h + r], values[h + r :].reshape(shape))
+
+    def slopes(self, partials: Any, sizes: Any) -> Any:
+        """What rows are measured by: sum_k |J_ik| s_k, the largest of the rows that belong to one constraint.
+
+        ``partials`` are |J| of shape (r, n), all rows or the first of them.
+        """
+        own = np.sum(partials * sizes, axis=1)
+        numbers = np.array([name.constraint for name in self.names[: len(own)]])
+        return np.array([np.max(own[numbers == number]) for number in numbers])
+
+    def weights(self, t: float, state: Any) -> Any:
+        """M^-1/2 as the inverse of a triangular root C of M = C C^T, transposed: q = weights y has M-length |y|.
+
+        Where M is not positive definite, what moves no mass has the least mass there is.
+        """
+        n = self.size
+        masses = self._masses(np.concatenate(([t], np.asarray(state, dtype=float)))).reshape(n, n)
+        try:
+            return np.linalg.inv(np.linalg.cholesky(masses)).T
+        except np.linalg.LinAlgError:
+            values, vectors = np.linalg.eigh(masses)
+            positive = values[values > 1e-12 * values[-1]]
+            return vectors / np.sqrt(np.maximum(values, positive[0] if len(positive) else 1.0))
+
+    @cached_property
+    def kept(self) -> tuple[int, ...]:
+        """The numbers of the rows that are kept, in increasing order."""
+        state = np.array([float(x) for x in self._scenario.state])
+        best: list[int] = []
+        for position in self._places(state):
+            found = self.independent(0.0, position)
+            if len(found) > len(best):
+                best = found
+        return tuple(sorted(best))
+
+    @property
+    def redundant(self) -> tuple[RowName, ...]:
+        """The rows that follow from others, as far as positions near the initial one tell."""
+        return tuple(name for number, name in enumerate(self.names) if number not in self.kept)
+
+    @property
+    def freedom(self) -> int:
+        """Velocities that remain free: coordinates less independent rows."""
+        return self.size - len(self.kept)
+
+    def independent(self, t: float, state: Any) -> list[int]:
+        """Rows that are independent at a position: holonomic ones first, of them the most independent one next."""
+        rows = self.at(t, state).partials @ self.weights(t, state)
+        lengths = np.linalg.norm(rows, axis=1)
+        left = rows / np.where(lengths > 0, lengths, 1.0)[:, None]
+        left[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
+        found: list[int] = []
+        for group in (range(self.holonomic), range(self.holonomic, len(self.names))):
+            open_ = list(group)
+            while open_:
+                sizes = np.linalg.norm(left[open_], axis=1)
+                # Of rows that are as good as each other the first one, whatever the roundings.
+                place = int(np.argmax(sizes >= 0.5 * np.max(sizes)))
+                if sizes[place] <= DEPENDENT:
+                    break
+                number = open_.pop(place)
+                found.append(number)
+                one = left[number] / np.linalg.norm(left[number])
+                for _ in range(2):  # twice is enough
+                    left = left - np.outer(left @ one, one)
+        return found
+
+    def _places(self, state: Any) -> list[Any]:
+        """The initial position and some beside it, on the constraints as far as they can be led there."""
+        source, n, found = np.random.default_rng(5), self.size, [state]
+        for _ in range(BESIDE):
+            moved = state.copy()
+            moved[:n] += AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n])) * source.choice((-1, 1), n)
+            place = self.led(0.0, moved)
+            if place is not None:
+                found.append(place)
+        return found
+
+    def led(self, t: float, state: Any) -> Any | None:
+        """A state whose position is led to the constraints by Newton's method, each step the shortest; None if not."""
+        n, found = self.size, np.array(state, dtype=float)
+        for _ in range(STEPS):
+            values, weights = self.at(t, found), self.weights(t, found)
+            if not np.all(np.isfinite(values.partials)) or not np.all(np.isfinite(weights)):
+                return None
+            rows = values.partials[: self.holonomic] @ weights
+            step = weights @ np.linalg.lstsq(rows, -values.positions, rcond=1e-10)[0] if self.holonomic else np.zeros(n)
+            found[:n] += step
+            if np.max(np.abs(step), initial=0.0) <= SETTLED * (1 + np.max(np.abs(found[:n]))):
+                return found
+        return None
+
+    @cached_property
+    def dynamics(self) -> ConstrainedDynamics:
+        """The equations with the rows that are kept."""
+        chosen = tuple((self.names[k].constraint, self.names[k].component) for k in self.kept)
+        return constrained_dynamics(self._scenario.system, self._ring, chosen, self._apart)
+
+    @cached_property
+    def steady(self) -> bool:
+        """Whether J q' = 0 on all of them: no row moves by itself, so that constraint forces do no work."""
+        h, r = self.holonomic, len(self.names)
+        program = bound(self._scenario)
+        program.bound.update(dict.fromkeys(self._scenario.system.velocities, program.number(0)))
+        nodes = substituted(self.code.program, self.code.outputs[h : h + r], program)
+        return all(map(program.vanishes, nodes))
+
+    def told(self) -> str:
+        """``coincide 1, rolling 2``."""
+        return listed(self._scenario.system.constraints)
+
+
+@dataclass(frozen=True)
+class Drift:
+    """How far states stray from constraints: ``positions`` (m,) and ``velocities`` (m,), see the module.
+
+    ``worst`` names the rows of the largest drift of either, None where there is no such row.
+    """
+
+    positions: Any
+    velocities: Any
+    worst: tuple[RowName | None, RowName | None]
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """The largest drift of positions, and that of velocities."""
+        return float(np.max(self.positions, initial=0.0)), float(np.max(self.velocities, initial=0.0))
+
+
+def drift(constraints: Constraints, times: Any, states: Any, sizes: Any) -> Drift:
+    """The drift at states (2n, m); ``sizes`` (2n,) is what the coordinates and velocities are measured by."""
+    n, h = constraints.size, constraints.holonomic
+    values = constraints.along(times, states)
+    largest = np.max(np.abs(values.partials), axis=2)
+    scales = constraints.slopes(largest, sizes[:n]), constraints.slopes(largest, sizes[n:])
+    names = constraints.names
+    parts = [
+        np.abs(values.positions) / _positive(scales[0][:h])[:, None],
+        np.abs(values.velocities) / _positive(scales[1])[:, None],
+    ]
+    worst = [names[int(np.argmax(np.max(part, axis=1)))] if len(part) else None for part in parts]
+    found = [np.max(part, axis=0) if len(part) else np.zeros(len(times)) for part in parts]
+    return Drift(found[0], found[1], (worst[0], worst[1]))
+
+
+def _positive(scales: Any) -> Any:
+    return np.where(scales > 0, scales, 1.0)
+
+
+def drift_of(dynamics: Dynamics, times: Any, states: Any) -> Drift | None:
+    """The drift along a run, measured by its own sizes; None without constraints."""
+    if dynamics.constraints is None:
+        return None
+    from mbsym.numerics.sizes import scaled, sizes_of_scene
+
+    states = np.asarray(states, dtype=float)
+    own = np.max(np.abs(states), axis=1)
+    return drift(dynamics.constraints, times, states, scaled(own, sizes_of_scene(dynamics, times, states)))
+
+
+def labels(names: Sequence[RowName]) -> str:
+    """Rows by their names, for sentences."""
+    return "; ".join(name.label for name in names)
