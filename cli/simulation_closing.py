@@ -44,8 +44,8 @@ class Fixed:
         names = tuple(dict.fromkeys(part.strip() for part in self.fixed.split(",") if part.strip()))
         for name in names:
             if name not in known:
-                hint = did_you_mean(name, known) or listed("these can be fixed", known)
-                asked.complain("--fixed", "unknown-name", f"there is nothing called {quoted(name)} to be fixed", hint)
+                way = did_you_mean(name, known) or listed("these can be fixed", known)
+                asked.complain("--fixed", "unknown-name", f"there is nothing called {quoted(name)} to be fixed", way)
         return replace(request, fixed=tuple(name for name in names if name in known))
 
 

@@ -74,7 +74,7 @@ class Constraints:
         self.holonomic = sum(name.holonomic for name in self.names)
         self.size = len(scenario.system.coordinates)
         self.inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
-        nodes = [row.position for row in rows[: self.holonomic]]
+        nodes = [row.position for row in rows if row.position is not None]
         nodes += [row.velocity for row in rows]
         nodes += [slope for row in rows for slope in row.partials]
         numbers = bound(scenario)

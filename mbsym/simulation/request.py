@@ -34,7 +34,7 @@ class Request:
     ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
     that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
     the rows where they are very many: the result then has some of them, and the table of all;
-    ``fixed``: coordinates and velocities whose initial values stay when the initial state is made to satisfy constraints.
+    ``fixed``: coordinates and velocities whose initial values stay while others are fitted to constraints.
     """
 
     time: float

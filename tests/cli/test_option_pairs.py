@@ -489,4 +489,5 @@ def test_every_option_is_there() -> None:
     assert {max(one.opts, key=len) for one in command.params if one.param_type_name == "option"} - known == {
         "--time",
         "--debug",
+        "--fixed",  # of descriptions with constraints: tests/constrained/test_constrained_runs.py
     }

@@ -143,7 +143,7 @@ def constrained_dynamics(system: System, ring: Ring, kept: Sequence[Kept], apart
     still = [program.zero] * len(free)
     needed = [row.acceleration + paired(column, free) for row, column in zip(rows, weighted, strict=True)]
     multipliers, pivots = answered(len(rows), needed)
-    shift, _ = answered(holonomic, [row.position for row in rows[:holonomic]])
+    shift, _ = answered(holonomic, [row.position for row in rows[:holonomic] if row.position is not None])
     change, _ = answered(len(rows), [row.velocity for row in rows])
     return ConstrainedDynamics(
         program=program,

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Piece, Run, Unusable, Work
+from mbsym.numerics.methods.interface import Breakdown, Piece, Run, Unusable
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.passed import Passed, met_by
 
@@ -63,21 +63,8 @@ class LedRun:
 
     def __init__(self, inner: Run, led: Lead) -> None:
         self._inner, self._led = inner, led
-
-    @property
-    def time(self) -> float:
-        """That of the run."""
-        return self._inner.time
-
-    @property
-    def state(self) -> Any:
-        """The state at ``time``."""
-        return self._led(self._inner.time, self._inner.state)
-
-    @property
-    def work(self) -> Work:
-        """What the run has cost."""
-        return self._inner.work
+        self.time, self.work = inner.time, inner.work
+        self.state = led(inner.time, inner.state)
 
     @property
     def passed(self) -> Passed | None:
@@ -85,24 +72,34 @@ class LedRun:
         return met_by(self._inner)
 
     def advance(self, until: float) -> Any:
-        """The state at ``until``; raises Breakdown."""
-        return self._led(until, self._inner.advance(until))
+        """The state (q, q') at ``until``; raises Breakdown."""
+        self._inner.advance(until)
+        return self._arrived()
 
     def step(self, until: float | None = None) -> Piece:
         """The solution to the end of a step, or to ``until``; raises Breakdown."""
-        piece = self._inner.step(until)
-        return Piece(piece.start, piece.end, lambda times: self._led(times, piece.curve(times)))
+        piece, led = self._inner.step(until), self._led
+        self._arrived()
+        return Piece(piece.start, piece.end, lambda times: led(times, piece.curve(times)))
 
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at m increasing times; raises Breakdown with those that there are."""
+        at = np.asarray(times)
         try:
             found = self._inner.fill(times)
         except Breakdown as trouble:
             if trouble.filled is not None and trouble.filled.shape[1]:
-                trouble.filled = self._led(np.asarray(times)[: trouble.filled.shape[1]], trouble.filled)
+                trouble.filled = self._led(at[: trouble.filled.shape[1]], trouble.filled)
             raise
-        return self._led(np.asarray(times), found) if len(found.T) else found
+        self._arrived()
+        return self._led(at, found) if len(at) else found
 
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state."""
         self._inner.restart(time, state)
+        self._arrived()
+
+    def _arrived(self) -> Any:
+        self.time = self._inner.time
+        self.state = self._led(self.time, self._inner.state)
+        return self.state
