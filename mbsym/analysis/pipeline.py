@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.reduction import Reduced
+    from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")
 
@@ -275,6 +276,10 @@ class Analysis(Stages):
     linearisation = Problem[Linearisation](
         5, "linearisation", linearisation, approximation.autonomous, ("linearisation", "perturbed motion")
     )
+    state_space = Derived["Analysis", "StateSpace"](
+        lambda a: a._state_space(),
+        ("linearisation", "perturbed motion"),
+    )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable)
     balance = Derived["Analysis", Balance](lambda a: a._balance())
     stability = Problem[Stability](6, "stability", stability, lambda a: a._stability(), JUDGED, says=True)
@@ -359,6 +364,11 @@ class Analysis(Stages):
     def _balance(self) -> Balance:
         energies = self.optional("energy")
         return dissipation.balance(self.parameters_scene if energies is None else self.held_scene, energies, self.signs)
+
+    def _state_space(self) -> StateSpace:
+        from mbsym.problems.state_space import state_space  # few systems have inputs
+
+        return state_space(self.parameters_scene, self.expanded, self.linearisation, self.equilibrium)
 
     def _told(self) -> ToldSystem:
         return told_system(self.system, self.ring, self.terms)

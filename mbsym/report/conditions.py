@@ -177,8 +177,17 @@ class Shown:
         return None
 
 
-def provided(conditions: int) -> str:
-    """What the verdicts presume where problem 4 left so many conditions."""
+_HELD = (
+    "while the inputs are held at constant values",
+    "while the inputs are held at constant values for which the condition of problem 4 holds",
+    "while the inputs are held at constant values for which the conditions of problem 4 hold",
+)
+
+
+def provided(conditions: int, inputs: bool = False) -> str:
+    """What the verdicts presume where problem 4 left so many conditions, and where there are inputs."""
+    if inputs:
+        return _HELD[min(conditions, 2)]
     if conditions == 0:
         return ""
     return (

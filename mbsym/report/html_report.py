@@ -25,6 +25,7 @@ from mbsym.report.brief import brief
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
+from mbsym.report.first_order import first_order
 from mbsym.report.functions import moving
 from mbsym.report.html_description import (
     constraint_in_words,
@@ -107,8 +108,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         characteristic="Lambda" if "<mi>Λ</mi>" not in taken else "Delta",
         factors=factors,
         math_text=lambda words: Markup(mtext(words)),
-        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        provided=provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs)) if 6 in found else "",
         decided=_decided,
+        **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,
         claims=analysis.claims,
         checks=analysis.checks,
@@ -184,11 +186,9 @@ def _grade(word: str) -> str:
 
 def _motion(analysis: Analysis, names: MathNames) -> Markup:
     """The unperturbed motion, in formulas that may stand on several lines."""
-    items = analysis.system.motion
-    return Markup(", ").join(
-        shown.math(str(names[item.coordinate]), mo("="), expression(moving(item.value, item.rate), names))
-        for item in items
-    )
+    items = [(item.coordinate, moving(item.value, item.rate)) for item in analysis.system.motion]
+    items += [(one.name, one.held) for one in analysis.system.inputs]
+    return Markup(", ").join(shown.math(str(names[name]), mo("="), expression(value, names)) for name, value in items)
 
 
 def _decided(found: Stability) -> str:

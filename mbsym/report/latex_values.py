@@ -24,6 +24,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
+from mbsym.report.first_order import first_order
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
@@ -138,7 +139,8 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "variable": "\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         "characteristic": "\\Lambda" if "\\Lambda" not in taken else free_name("\\hat{\\Lambda}", taken),
         "factors": factors,
-        "provided": provided(len(analysis.equilibrium.conditions)) if verdicts is not None else "",
+        "provided": "" if verdicts is None else provided(len(analysis.equilibrium.conditions), bool(system.inputs)),
+        **first_order(analysis, found.get(5)),
         "DEPENDS": Word.DEPENDS,
         "ENERGY": ENERGY,
         "decided": decided,

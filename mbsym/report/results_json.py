@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.tree import text
@@ -16,15 +16,17 @@ from mbsym.model.quantities import energy_unit, unit_of, units_by_name
 from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.claims import claim_line, left_side
+from mbsym.report.first_order import first_order
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, FILE, withheld
-from mbsym.report.plain import Written
+from mbsym.report.plain import Written, matrix_text
 from mbsym.report.schemas import version
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
+    from mbsym.problems.state_space import StateSpace
 
 #: The version of ``schemas/results.json`` that the file follows.
 FORMAT = 1
@@ -59,6 +61,10 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     initial = _initial(system)
     if initial:
         found["initial"] = initial
+    if system.inputs:
+        found["inputs"] = [{"name": x.name, "meaning": x.meaning, "held": text(x.held)} for x in system.inputs]
+    if system.outputs:
+        found["outputs"] = [{"name": one.name, "value": text(one.value)} for one in system.outputs]
     unavailable: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
     long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
@@ -72,12 +78,21 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
             found[key] = section_of(PROBLEMS[number]).data(stage.value, system, write)
         else:
             unavailable[key] = _failure(stage.failure)
+    if 5 in stages and stages[5].failure is None:
+        told = first_order(analysis, stages[5].value)
+        if told["first_order"] is not None:
+            found["state_space"] = _state_space(told["first_order"], write)
     accepted = accepted_inertias(system)
     if accepted:
         found["accepted_inertias"] = [{"body": name, "violation": reason} for name, reason in accepted.items()]
     if system.claims:
         found["claims"] = [_claim(result, system) for result in analysis.claims]
     return found | {"unavailable": unavailable}
+
+
+def _state_space(found: StateSpace, write: Callable[[Formula], Written]) -> dict[str, Any]:
+    matrices = {name: matrix_text(getattr(found, name), write) for name in "ABCD"}
+    return {"states": list(found.states), **matrices}
 
 
 def _initial(system: System) -> dict[str, dict[str, str]]:

@@ -22,6 +22,7 @@ from mbsym.formulas.wolfram import (
 from mbsym.model.system import System
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
+from mbsym.report.first_order import first_order
 from mbsym.report.functions import prescribed_value
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
@@ -79,7 +80,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         initial=[f"{left} == {wolfram_expression(value, names)}" for left, value in _initial(analysis.system, names)],
         state=_in_order(analysis.system, names),
         numberless=[names[name] for name in _numberless(analysis.system)],
-        provided=provided(len(analysis.equilibrium.conditions)) if 6 in found else "",
+        **first_order(analysis, found.get(5)),
+        provided=provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs)) if 6 in found else "",
         checks=analysis.checks,
     )
 

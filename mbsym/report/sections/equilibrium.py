@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.tree import text
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.report.plain import Write, column_text, shortened
@@ -31,5 +32,8 @@ def lines(found: Equilibrium, analysis: Analysis) -> Iterator[str]:
         yield "the unperturbed motion satisfies the equations identically"
     elif found.impossible:
         yield "the unperturbed motion cannot satisfy the equations"
+    if analysis.system.inputs:
+        values = ", ".join(f"{one.name} = {text(one.held)}" for one in analysis.system.inputs)
+        yield f"with the inputs held at {values}"
     for condition in found.conditions:
         yield shortened(f"{condition} = 0", condition.terms)

@@ -15,10 +15,15 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
+#: B of at most so many terms stands in the terminal.
+SHORT = 12
+
+
 def data(found: Linearisation, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     return {
         **_five(found, write),
+        **({} if found.B is None else {"B": matrix_text(found.B, write)}),
         "subsystems": [{"coordinates": list(part.coordinates), **_five(part, write)} for part in found.subsystems],
         "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
         "notation": {item.name: text(item.value) for item in system.notation},
@@ -29,6 +34,12 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
     yield f"matrices that are not zero: {', '.join(present)}"
+    if found.B is not None:
+        yield (
+            f"B for {', '.join(found.inputs)}: {found.B}"
+            if found.B.terms <= SHORT
+            else f"B for {', '.join(found.inputs)}"
+        )
     if len(found.subsystems) > 1:
         yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
 

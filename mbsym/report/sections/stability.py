@@ -119,7 +119,7 @@ def _case(case: CaseStatement, shown: Shown) -> dict[str, Any]:
 
 def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    presumed = provided(len(analysis.equilibrium.conditions))
+    presumed = provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs))
     for part in found.subsystems:
         # Of a motion that is proved to be stable, conditions of something stronger would be misread.
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))

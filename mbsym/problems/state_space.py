@@ -1,0 +1,122 @@
+"""The first approximation in first-order form, for systems with inputs or outputs,
+
+    x' = A x + B v,    y - y0 = C x + D v,    x = (q - q0, q' - q0'),    v = u - u0,
+
+    A = [ 0, 1; -M^-1 (K + N), -M^-1 (D + G) ],    B = [ 0; M^-1 B ],    C = [ dy/dq, dy/dq' ],    D = dy/du
+
+in physical time and declared parameters, on the right the matrices of problem 5; u0 are the values at which the inputs
+are held, y0 those of the outputs on the unperturbed motion.  M^-1 is the adjugate over the determinant, exactly in the
+ring, part by part of what M couples.
+
+Source: Astrom & Murray, Feedback Systems, section 5.3 and example 5.4 (balance systems).
+
+Example:
+
+    >>> import mbsym
+    >>> pole = mbsym.load("systems/cart-pole.yaml").state_space
+    >>> print(pole.B[2, 0])
+    (m*l**2 + J)/(J*(M + m) + M*m*l**2)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.matrices import components, determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Matrix
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import unsteady
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.linearisation import Linearisation
+
+#: Coordinates that M couples with each other: the inverse of more is no formula to read.
+MOST_COUPLED = 6
+
+Rows = list[list[Polynomial]]
+
+
+@dataclass(frozen=True, repr=False)
+class StateSpace(Shown):
+    """A (2n x 2n), B (2n x m), C (p x 2n), D (p x m); ``states`` are q and q' by name, deviations from the motion."""
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+    @property
+    def terms(self) -> int:
+        """Terms of the four matrices."""
+        return self.A.terms + self.B.terms + self.C.terms + self.D.terms
+
+
+def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibrium: Equilibrium) -> StateSpace:
+    """A, B, C, D, with ``expanded`` the system over jets; where they are constant.
+
+    Raises NoClosedForm where M couples too many coordinates, or an entry of B, C or D varies with time; SingularPoint
+    where M is singular for all parameters.
+    """
+    ring, system = scene.ring, expanded.system
+    n, m = len(linear.coordinates), len(linear.inputs)
+    stiffness = _sum(ring, linear.K.polynomials, linear.N.polynomials, -1)
+    damping = _sum(ring, linear.D.polynomials, linear.G.polynomials, -1)
+    gains = [[] for _ in range(n)] if linear.B is None else [list(row) for row in linear.B.polynomials]
+    right = [[*stiffness[i], *damping[i], *gains[i]] for i in range(n)]
+    solved = _solved(ring, [list(row) for row in linear.M.polynomials], right)
+    upper = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
+    images = equilibrium.determined(scene)
+    slopes = [expanded.lower(one.value).first for one in system.outputs]
+    measured = [[ring.substitute(row.get(k, ring.zero), images) for k in range(2 * n + m)] for row in slopes]
+    found = StateSpace(
+        states=(*system.coordinates, *system.velocities),
+        inputs=linear.inputs,
+        outputs=tuple(one.name for one in system.outputs),
+        A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
+        B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
+        C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
+        D=Matrix.of(ring, [row[2 * n :] for row in measured]),
+    )
+    _check_steady(scene, found)
+    return found
+
+
+def _check_steady(scene: Scene, found: StateSpace) -> None:
+    for letter, matrix in (("B", found.B), ("C", found.C), ("D", found.D)):
+        among = {name for row in matrix.polynomials for x in row for name in unsteady(scene, x)}
+        if among:
+            raise NoClosedForm(f"{letter} of the first-order form varies with {', '.join(sorted(among))}")
+
+
+def _sum(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]], sign: int) -> Rows:
+    return [[ring.reduce((x + y) * sign) for x, y in zip(p, q, strict=True)] for p, q in zip(a, b, strict=True)]
+
+
+def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
+    """M^-1 R, row by row, for every block of M by its adjugate."""
+    n = len(mass)
+    found: Rows = [[] for _ in range(n)]
+    for block in components(n, lambda i, j: not mass[i][j].is_zero()):
+        if len(block) > MOST_COUPLED:
+            listed = f"the mass matrix couples {len(block)} coordinates, and its inverse is written for {MOST_COUPLED}"
+            raise NoClosedForm(f"{listed} at most", limit=Limit.TERMS)
+        own = [[mass[i][j] for j in block] for i in block]
+        inverse = ring.reciprocal(determinant(ring, own))
+        for place, i in enumerate(block):
+            row = [_cofactor(ring, own, k, place) for k in range(len(block))]
+            found[i] = [
+                ring.times(ring.dot(row, [right[j][column] for j in block]), inverse) for column in range(len(right[i]))
+            ]
+    return found
+
+
+def _cofactor(ring: Ring, rows: Rows, i: int, j: int) -> Polynomial:
+    minor = [[x for b, x in enumerate(row) if b != j] for a, row in enumerate(rows) if a != i]
+    value = determinant(ring, minor)
+    return value if (i + j) % 2 == 0 else -value
