@@ -96,6 +96,12 @@ SENTENCES = {
     ),
     "which problems 5 and 6 use in the form": "что в задачах 5 и 6 используется в виде",
     "Problem 5. First approximation": "Задача 5. Первое приближение",
+    "Inputs, functions of time that are chosen later": "Входы, функции времени, которые выбираются позже",
+    "Outputs": "Выходы",
+    "With the deviations $v$ of the inputs $([[inputs]])$ from the values at which they are held, the right side is $B v$ instead of zero.": "Если $v$ — отклонения входов $([[inputs]])$ от их постоянных значений, то справа вместо нуля стоит $B v$.",
+    "In first-order form, in physical time, with the state $x = (q, \\dot q)$ and the deviations $w$ of the outputs $([[outputs]])$:": "В форме уравнений первого порядка, в физическом времени, с состоянием $x = (q, \\dot q)$ и отклонениями $w$ выходов $([[outputs]])$:",
+    "In first-order form, in physical time, with the state $x = (q, \\dot q)$:": "В форме уравнений первого порядка, в физическом времени, с состоянием $x = (q, \\dot q)$:",
+    "There is no first-order form": "Формы уравнений первого порядка нет",
     "In physical time and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not written are "
     "zero.": (
         "В физическом времени и объявленных параметрах, $q = ([[q]])$ --- отклонения; ненаписанные элементы равны нулю."
@@ -327,12 +333,6 @@ WORDS = {
     "while the inputs are held at constant values": "пока входы сохраняют постоянные значения",
     "while the inputs are held at constant values for which the condition of problem 4 holds": "пока входы сохраняют постоянные значения, при которых выполнено условие задачи 4",
     "while the inputs are held at constant values for which the conditions of problem 4 hold": "пока входы сохраняют постоянные значения, при которых выполнены условия задачи 4",
-    "Inputs, functions of time that are chosen later": "Входы, функции времени, которые выбираются позже",
-    "Outputs": "Выходы",
-    "With the deviations $v$ of the inputs $([[inputs]])$ from the values at which they are held, the right side is $B v$ instead of zero.": "Если $v$ — отклонения входов $([[inputs]])$ от их постоянных значений, то справа вместо нуля стоит $B v$.",
-    "In first-order form, in physical time, with the state $x = (q, \\dot q)$ and the deviations $w$ of the outputs $([[outputs]])$:": "В форме уравнений первого порядка, в физическом времени, с состоянием $x = (q, \\dot q)$ и отклонениями $w$ выходов $([[outputs]])$:",
-    "In first-order form, in physical time, with the state $x = (q, \\dot q)$:": "В форме уравнений первого порядка, в физическом времени, с состоянием $x = (q, \\dot q)$:",
-    "There is no first-order form": "Формы уравнений первого порядка нет",
     "provided the condition of problem 4 holds": "при условии задачи 4",
     "provided the conditions of problem 4 hold": "при условиях задачи 4",
     ", decided exactly": ", точно",

@@ -50,7 +50,7 @@ MISTAKES = [
     ),
     Mistake(
         "columns of B in another order in both routes",
-        "problems.linearisation:_assemble",
+        "problems.linearisation:assemble",
         "for row in rows] for rows in whole]",
         "for row in rows] for rows in (*whole[:3], [row[::-1] for row in whole[3]])]",
         "driven",
@@ -58,7 +58,7 @@ MISTAKES = [
     ),
     Mistake(
         "an input torque without its reaction",
-        "mechanics.loads.applied:_torque_action",
+        "mechanics.loads.torque:_torque_action",
         "((load.body, given), (load.reaction_on, -given))",
         "((load.body, given),)",
         "driven",
@@ -66,7 +66,7 @@ MISTAKES = [
     ),
     Mistake(
         "the sign of an input torque",
-        "mechanics.loads.applied:_torque_action",
+        "mechanics.loads.torque:_torque_action",
         "scene.to_axes(torque, body)",
         "-scene.to_axes(torque, body)",
         "driven",
