@@ -13,6 +13,11 @@ from conftest import SHIPPED
 from jsonschema import Draft202012Validator
 
 import mbsym
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.llvm import kernel
+from mbsym.numerics.machine_code import machine_code
+from mbsym.numerics.parametrised import Parametrised
+from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -130,3 +135,44 @@ def test_python_returns_arrays() -> None:
     assert answers["theta1", "theta1"][0] == 1
     with pytest.raises(ValueError, match="no distribution"):
         mbsym.ensemble(PENDULUM, 1, {"theta1": ("gamma", 0, 1)}, members=50)
+
+
+TRIPLE = """
+mbsym: 1
+name: three links
+parameters: {m: positive, l1: positive, l2: positive, l3: positive, g: positive}
+bodies:
+  - {name: a, attached to: 0, rotation: {axes: [3], angles: [p]}, mass centre: [0, -l1, 0], mass: m}
+  - {name: b, attached to: a, connection point: [0, -l1, 0], rotation: {axes: [3], angles: [q]},
+     mass centre: [0, -l2, 0], mass: m}
+  - {name: c, attached to: b, connection point: [0, -l2, 0], rotation: {axes: [3], angles: [r]},
+     mass centre: [0, -l3, 0], mass: m}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+values: {m: 1, l1: 1, l2: 1e-6, l3: 1, g: 9.81}
+initial: {p: 1, q: 1/2, r: 1/3}
+"""
+
+
+def test_where_kernels_carry_pairs_ensembles_are_said_not_to(tmp_path: Path) -> None:
+    """And so it is: the accelerations of a member's program are those of the plain kernel, not of the one in pairs."""
+    (tmp_path / "triple.yaml").write_text(TRIPLE, encoding="utf-8")
+    done = CliRunner().invoke(main, ["extremes", str(tmp_path / "triple.yaml"), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    told = " ".join(done.stdout.split())
+    assert "carry" in told
+    assert "in pairs of numbers" in told
+    assert "Ensembles (mbsym simulate --vary) are computed with plain kernels" in told
+    given = scenario(mbsym.loads(TRIPLE).system)
+    dynamics, at = Dynamics(given), np.array([0.0, *map(float, given.state)])
+    plain, pairs = kernel(dynamics.right_hand_side)(at), kernel(machine_code(dynamics, "right_hand_side"))(at)
+    member = kernel(Parametrised(given, []).right_hand_side)(at)
+    assert np.any(plain != pairs)
+    assert np.array_equal(member, plain)
+
+
+def test_where_no_kernel_carries_pairs_nothing_is_said_of_ensembles(tmp_path: Path) -> None:
+    (tmp_path / "away.yaml").write_text(AWAY, encoding="utf-8")
+    done = CliRunner().invoke(main, ["extremes", str(tmp_path / "away.yaml"), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert "Ensembles" not in done.stdout
