@@ -11,6 +11,7 @@ from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, c
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
+from mbsym_cli.study import attempted
 from mbsym_cli.telling import told
 
 if TYPE_CHECKING:
@@ -30,38 +31,39 @@ def spread(
     options: Options,
 ) -> int:
     """Many motions; the exit code."""
-    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.ensemble import Ensemble
     from mbsym.numerics.variation import Unvaried
     from mbsym.report.ensemble_figure import fan_charts
     from mbsym.report.ensemble_tables import ensemble_csv, ensemble_json, members_csv, sentences
     from mbsym.simulation.ensembles import Spread, simulate_many
 
     request = Spread(wanted.request, varied.variations, varied.members, varied.seed, varied.sampling)
-    try:
+    texts: dict[str, str | bytes] = {}
+
+    def work() -> Ensemble:
         with progress(wanted.quiet, file.name, wanted.request.time) as watch:
             found = simulate_many(given, request, overrides, watch=watch)
         with status(wanted.quiet, "drawing"):
-            texts: dict[str, str | bytes] = {}
             if "csv" in wanted.formats:
-                texts |= {"ensemble.csv": ensemble_csv(found), "members.csv": members_csv(found)}
+                texts.update({"ensemble.csv": ensemble_csv(found), "members.csv": members_csv(found)})
             kinds = [kind for kind in wanted.formats if kind != "csv"]
-            texts |= fan_charts(found, kinds) if kinds and len(found.times) > 1 else {}
+            texts.update(fan_charts(found, kinds) if kinds and len(found.times) > 1 else {})
             files = list(texts)
             texts["ensemble.json"] = ensemble_json(found, varied.variations, varied.seed, varied.sampling, files)
             deliver(folder, texts, "ensemble")
+        return found
+
+    try:
+        found = attempted(file, work)
     except Unvaried as error:
         for name, text, hint in error.reasons:
             options.complain(f"--vary {name}", "bad-variation", text, hint or None)
         options.refused(file)
         return BAD_INPUT
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for these equations: {error}")
-        return FAILED
-    except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
-        return FAILED
     except MemoryError:
         complain(file, "out of memory; ask for fewer members")
+        return FAILED
+    if found is None:
         return FAILED
     if not wanted.quiet:
         told(file, given.system.name, sentences(found), folder, texts)
@@ -83,19 +85,17 @@ def answers(
     wanted: Asked,
 ) -> int:
     """The motion's derivatives by initial values and parameters; the exit code."""
-    from mbsym.algebra.failures import Failure
     from mbsym.report.sensitivity_csv import sensitivity_csv, sentences
-    from mbsym.simulation.sensitivities import sensitivities
+    from mbsym.simulation.sensitivities import Sensitivities, sensitivities
 
-    try:
+    def work() -> Sensitivities:
         with status(wanted.quiet, f"{file.name}: how it answers to changes"):
             found = sensitivities(given, wanted.request, names, overrides)
             deliver(folder, {"sensitivity.csv": sensitivity_csv(found)}, "sensitivity")
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for the derivatives: {error}")
-        return FAILED
-    except OSError as error:
-        complain(file, f"the derivatives cannot be written: {error}")
+        return found
+
+    found = attempted(file, work, None, "the derivatives", "derivatives")
+    if found is None:
         return FAILED
     if not wanted.quiet:
         told(file, f"{given.system.name}: derivatives", sentences(found), folder, ["sensitivity.csv"])

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, status
-from mbsym_cli.files import deliver, folder_for, obstacle
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, status
+from mbsym_cli.files import deliver, folder_for
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_inputs import read_held
+from mbsym_cli.study import attempted, leave, prevented
 from mbsym_cli.telling import told
 
 
@@ -35,11 +35,7 @@ def command(file: Path, settings: tuple[str, ...], out: Path | None, quiet: bool
     Example:
       mbsym floquet systems/shaken-pendulum.yaml --set nu=50
     """
-    try:
-        sys.exit(_command(file, folder_for(file, out), settings, quiet))
-    except KeyboardInterrupt:
-        complain(file, "interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
+    leave(file, lambda: _command(file, folder_for(file, out), settings, quiet))
 
 
 def _command(file: Path, folder: Path, settings: tuple[str, ...], quiet: bool) -> int:
@@ -47,29 +43,21 @@ def _command(file: Path, folder: Path, settings: tuple[str, ...], quiet: bool) -
     system = read_held(file, "floquet")
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
-    if asked.refused(None if system is None else file) or given is None:
-        return BAD_INPUT
-    reason = obstacle(folder)
-    if reason:
-        complain(file, f"the results cannot be written: {reason}")
-        return FAILED
-    from mbsym.algebra.failures import Failure
+    code = prevented(file, folder, system is not None, asked)
+    if code or given is None:
+        return code or BAD_INPUT
     from mbsym.numerics.dynamics import Dynamics
-    from mbsym.numerics.floquet import NotPeriodic, judged
+    from mbsym.numerics.floquet import Judged, NotPeriodic, judged
     from mbsym.report.floquet_files import floquet_json, sentences
 
-    try:
+    def work() -> Judged:
         with status(quiet, f"{file.name}: enclosing the monodromy matrix"):
             found = judged(Dynamics(given))
         deliver(folder, {"floquet.json": floquet_json(given.system, found)}, "floquet")
-    except NotPeriodic as error:
-        complain(file, f"there is no periodic first approximation to judge: {error}")
-        return FAILED
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for these equations: {error}")
-        return FAILED
-    except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        return found
+
+    found = attempted(file, work, {NotPeriodic: "there is no periodic first approximation to judge"})
+    if found is None:
         return FAILED
     if not quiet:
         told(file, given.system.name, sentences(found), folder, ["floquet.json"])

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import click
 
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, OutPath, complain
-from mbsym_cli.files import deliver, folder_for, obstacle
+from mbsym_cli.files import deliver, folder_for
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulation_inputs import read_held
+from mbsym_cli.study import attempted, leave, prevented
 from mbsym_cli.telling import told
 
 
@@ -48,11 +48,7 @@ def command(
       mbsym lyapunov systems/double-pendulum.yaml --time 500 --set theta1=2 --count 1
       mbsym lyapunov systems/spring-pendulum.yaml --time 1000
     """
-    try:
-        sys.exit(_command(file, folder_for(file, out), end, settings, (count, every, tolerance), quiet))
-    except KeyboardInterrupt:
-        complain(file, "interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
+    leave(file, lambda: _command(file, folder_for(file, out), end, settings, (count, every, tolerance), quiet))
 
 
 def _command(
@@ -70,30 +66,27 @@ def _command(
     time = asked.time(end)
     count = asked.whole("--count", texts[0], 1, 10**6 if system is None else 2 * len(system.coordinates))
     every, tolerance = asked.number("--every", texts[1]), asked.number("--tolerance", texts[2], 1e-14, 1e-2)
-    if time is not None and every is not None and time / every > 1e6:
-        asked.complain("--every", "too-large", f"{time / every:.3g} intervals are too many", "at most a million")
-    if asked.refused(None if system is None else file) or given is None or time is None or tolerance is None:
-        return BAD_INPUT
-    reason = obstacle(folder)
-    if reason:
-        complain(file, f"the results cannot be written: {reason}")
-        return FAILED
-    from mbsym.algebra.failures import Failure
+    if time is not None and every is not None:
+        _check_intervals(every, time, asked)
+    code = prevented(file, folder, system is not None, asked)
+    if code or given is None or time is None or tolerance is None:
+        return code or BAD_INPUT
+    from mbsym.numerics.lyapunov import Exponents
     from mbsym.report.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
     from mbsym.simulation.motions import lyapunov_exponents
 
-    try:
+    def work() -> Exponents:
         with progress(quiet, file.name, time) as watch:
             found = lyapunov_exponents(given, time, every, count, tolerance, watch)
-        files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
-        files |= lyapunov_figure(given.system, found, ("svg", "png")) if len(found.times) > 1 else {}
+        files["lyapunov.csv"] = lyapunov_csv(found)
+        files.update(lyapunov_figure(given.system, found, ("svg", "png")) if len(found.times) > 1 else {})
         files["lyapunov.json"] = lyapunov_json(given.system, found)
         deliver(folder, files, "lyapunov")
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for these equations: {error}")
-        return FAILED
-    except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        return found
+
+    files: dict[str, str | bytes] = {}
+    found = attempted(file, work)
+    if found is None:
         return FAILED
     if not quiet:
         told(file, given.system.name, sentences(found), folder, files)
@@ -101,3 +94,17 @@ def _command(
         complain(file, f"ended early: {found.ended}")
         return INTERRUPTED if found.ended.kind == "interrupted" else BROKEN_DOWN
     return OK
+
+
+def _check_intervals(every: float, time: float, asked: Options) -> None:
+    """Complains of too many intervals, and of too few for the statistics of means."""
+    from mbsym.numerics.lyapunov import LEAST_INTERVALS
+
+    if time / every > 1e6:
+        asked.complain("--every", "too-large", f"{time / every:.3g} intervals are too many", "at most a million")
+    if time / every < LEAST_INTERVALS * (1 - 1e-12):
+        told = (
+            f"--every {every:g} goes with a --time of {LEAST_INTERVALS * every:g} and more: {LEAST_INTERVALS} intervals"
+        )
+        hint = f"at most {time / LEAST_INTERVALS:.3g} here; with fewer nothing can be said of the uncertainty"
+        asked.complain("--every", "too-large", told, hint)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, OutPath, complain, status
-from mbsym_cli.files import deliver, folder_for, obstacle
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, status
+from mbsym_cli.files import deliver, folder_for
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_inputs import read_held
+from mbsym_cli.study import attempted, leave, prevented
 from mbsym_cli.telling import told
 
 #: What may be kept while the orbit is sought.
@@ -50,11 +50,7 @@ def command(
       mbsym orbit systems/double-pendulum.yaml --period 2.6 --set theta1=0.3 --set theta2=0.12
       mbsym orbit systems/spherical-pendulum.yaml --period 1.57 --turns psi=1 --set psi_dot=4 --set theta=0.9
     """
-    try:
-        sys.exit(_command(file, folder_for(file, out), period, settings, keep, turns, quiet))
-    except KeyboardInterrupt:
-        complain(file, "interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
+    leave(file, lambda: _command(file, folder_for(file, out), period, settings, keep, turns, quiet))
 
 
 def _command(
@@ -86,32 +82,25 @@ def _command(
             )
         whole = asked.whole("--turns", number or "nothing", -1000, 1000)
         turned[name.strip()] = whole or 0
-    if asked.refused(None if system is None else file) or given is None or length is None or kept is None:
-        return BAD_INPUT
-    reason = obstacle(folder)
-    if reason:
-        complain(file, f"the results cannot be written: {reason}")
-        return FAILED
-    from mbsym.algebra.failures import Failure
+    code = prevented(file, folder, system is not None, asked)
+    if code or given is None or length is None or kept is None:
+        return code or BAD_INPUT
     from mbsym.numerics.periodic import NotFound
     from mbsym.report.orbit_files import orbit_csv, orbit_json, sentences
-    from mbsym.simulation.motions import find_orbit
+    from mbsym.simulation.motions import PeriodicMotion, find_orbit
 
-    try:
+    def work() -> PeriodicMotion:
         with status(quiet, f"{file.name}: compiling") as say:
             found = find_orbit(
                 given, length, kept, turned, lambda k, size: say(f"{file.name}: step {k}, {size:.1e} left over")
             )
-        files: dict[str, str | bytes] = {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)}
+        files.update({"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)})
         deliver(folder, files, "orbit")
-    except NotFound as error:
-        complain(file, f"no periodic motion was found: {error}")
-        return FAILED
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for these equations: {error}")
-        return FAILED
-    except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        return found
+
+    files: dict[str, str | bytes] = {}
+    found = attempted(file, work, {NotFound: "no periodic motion was found"})
+    if found is None:
         return FAILED
     if not quiet:
         told(file, given.system.name, sentences(found), folder, files)
