@@ -68,7 +68,7 @@ def test_all_options_of_floquet_together(tmp_path: Path) -> None:
 def test_all_options_of_lyapunov_together(tmp_path: Path) -> None:
     common = ("lyapunov", SHIPPED / "double-pendulum.yaml", "--time", 5, "--quiet")
     how = ("--count", 2, "--every", "1/20", "--tolerance", "1e-6")
-    done = called(*common, *how, "--set", "theta1=1", "--out", tmp_path)
+    done = called(*common, *how, "--set", "theta1=1/2", "--out", tmp_path)
     assert (done.exit_code, done.stdout) == (0, ""), done.output
     rows = (tmp_path / "lyapunov.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) - 1 == 100
