@@ -1,27 +1,116 @@
-"""Square matrices as rows of scalars: symmetric and skew parts, determinants, parts of coupled indices."""
+"""Matrices over any algebra: sums and products, symmetric and skew parts, determinants, coupled indices."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
-from typing import Any
+from typing import Any, overload
 
-from mbsym.algebra.base import Algebra
+from mbsym.algebra.base import Algebra, Scalar
 
-Rows = Sequence[Sequence[Any]]
-
-
-def symmetric_part(algebra: Algebra, rows: Rows) -> list[list[Any]]:
-    """(A + A^T)/2, n x n."""
-    half, n = algebra.number(Fraction(1, 2)), range(len(rows))
-    return [[algebra.reduce(algebra.times(half, rows[i][j] + rows[j][i])) for j in n] for i in n]
+Rows = Iterable[Iterable[Scalar]]
 
 
-def skew_part(algebra: Algebra, rows: Rows) -> list[list[Any]]:
-    """(A - A^T)/2, n x n."""
-    half, n = algebra.number(Fraction(1, 2)), range(len(rows))
-    return [[algebra.reduce(algebra.times(half, rows[i][j] - rows[j][i])) for j in n] for i in n]
+class ScalarMatrix:
+    """A rectangular array over an algebra: entries [i, j] from 0; sums, A @ B, the transpose T, c A as ``A * c``.
+
+    Sums stay as they are; products are in the normal form of the algebra.  Shapes that do not fit raise ValueError.
+    ``mbsym.formulas.formula.Matrix`` is one over a ring as reports show it.
+    """
+
+    __slots__ = ("algebra", "rows")
+
+    def __init__(self, algebra: Algebra, rows: Rows) -> None:
+        self.algebra = algebra
+        self.rows = tuple(tuple(row) for row in rows)
+
+    @classmethod
+    def by_entry(cls, algebra: Algebra, rows: int, columns: int, entry: Callable[[int, int], Scalar]) -> ScalarMatrix:
+        """Entry [i, j] is entry(i, j)."""
+        return cls(algebra, [[entry(i, j) for j in range(columns)] for i in range(rows)])
+
+    def __repr__(self) -> str:
+        return f"ScalarMatrix({self.rows!r})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ScalarMatrix) and self.rows == other.rows
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __iter__(self) -> Iterator[tuple[Scalar, ...]]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[Scalar, ...]: ...
+
+    @overload
+    def __getitem__(self, place: tuple[int, int]) -> Scalar: ...
+
+    def __getitem__(self, place: int | tuple[int, int]) -> Any:
+        return self.rows[place] if isinstance(place, int) else self.rows[place[0]][place[1]]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return len(self.rows), len(self.rows[0]) if self.rows else 0
+
+    @property
+    def _size(self) -> str:
+        return " x ".join(map(str, self.shape))
+
+    @property
+    def T(self) -> ScalarMatrix:
+        return ScalarMatrix(self.algebra, list(zip(*self.rows, strict=True)))
+
+    def map(self, function: Callable[[Scalar], Scalar]) -> ScalarMatrix:
+        """function(x) of every entry."""
+        return ScalarMatrix(self.algebra, [[function(x) for x in row] for row in self.rows])
+
+    def _entrywise(self, other: ScalarMatrix, combined: Callable[[Scalar, Scalar], Scalar]) -> ScalarMatrix:
+        if self.shape != other.shape:
+            raise ValueError(f"matrices of {self._size} and {other._size}")
+        pairs = zip(self.rows, other.rows, strict=True)
+        return ScalarMatrix(self.algebra, [[combined(a, b) for a, b in zip(*pair, strict=True)] for pair in pairs])
+
+    def __add__(self, other: ScalarMatrix) -> ScalarMatrix:
+        return self._entrywise(other, operator.add)
+
+    def __sub__(self, other: ScalarMatrix) -> ScalarMatrix:
+        return self._entrywise(other, operator.sub)
+
+    def __neg__(self) -> ScalarMatrix:
+        return self.map(operator.neg)
+
+    def __mul__(self, factor: Scalar) -> ScalarMatrix:
+        return self.map(lambda x: self.algebra.times(factor, x))
+
+    def __matmul__(self, other: ScalarMatrix) -> ScalarMatrix:
+        if self.shape[1] != other.shape[0]:
+            raise ValueError(f"matrices of {self._size} and {other._size}")
+        dot, columns = self.algebra.dot, other.T.rows
+        return ScalarMatrix(self.algebra, [[dot(row, column) for column in columns] for row in self.rows])
+
+    def cut(self, rows: Sequence[int], columns: Sequence[int]) -> ScalarMatrix:
+        """The entries of some rows and columns."""
+        return ScalarMatrix(self.algebra, [[self.rows[i][j] for j in columns] for i in rows])
+
+
+def symmetric(matrix: ScalarMatrix) -> ScalarMatrix:
+    """(A + A^T)/2, in the normal form."""
+    return _half(matrix + matrix.T)
+
+
+def skew(matrix: ScalarMatrix) -> ScalarMatrix:
+    """(A - A^T)/2, in the normal form."""
+    return _half(matrix - matrix.T)
+
+
+def _half(matrix: ScalarMatrix) -> ScalarMatrix:
+    return (matrix * matrix.algebra.number(Fraction(1, 2))).map(matrix.algebra.reduce)
 
 
 def components(size: int, coupled: Callable[[int, int], bool]) -> list[list[int]]:
@@ -37,7 +126,7 @@ def components(size: int, coupled: Callable[[int, int], bool]) -> list[list[int]
     return [[i for i in range(size) if label[i] == first] for first in sorted(set(label))]
 
 
-def determinant(algebra: Algebra, rows: Rows) -> Any:
+def determinant(algebra: Algebra, rows: Sequence[Sequence[Scalar]]) -> Scalar:
     """Of a square matrix, without a division: minors of the first rows, each taken once."""
     n = len(rows)
     known: dict[int, Any] = {0: algebra.one}

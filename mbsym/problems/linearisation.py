@@ -6,14 +6,14 @@ with M and D symmetric, G skew (gyroscopic), K symmetric (potential), N skew (ci
 inputs from the values at which they are held, B = dQ/du (0 on the right where the system has no inputs).  Two routes:
 
 1. the nonlinear equations M(q) q'' = f are differentiated on the unperturbed motion: C = -df/dq', S = -df/dq,
-   B = df/du;
+   B = df/du, of which D and G are the symmetric and the skew part of C, K and N those of S;
 2. the Lagrangian is expanded to second order while it is built (quadratisation; Banshchikov & Vetrov, Problem 5):
-   with L2 = x'.M x'/2 + x'.B x - x.P x/2 the equations are
+   with L2 = x'.M x'/2 + x'.A x - x.P x/2 the equations are
 
-       M x'' + (dM/dt + B - B^T) x' + (dB/dt + P) x = (linear part of Q),
+       M x'' + (dM/dt + A - A^T) x' + (dA/dt + P) x = (linear part of Q),
 
    d/dt along the unperturbed motion, where prescribed quantities, steadily turning coordinates and t run: the
-   acceleration of a prescribed motion stands in dB/dt (a lift gives K = m l (g + a) through it).
+   acceleration of a prescribed motion stands in dA/dt (a lift gives K = m l (g + a) through it).
 
 Subsystems are the connected components of the coordinates under all five matrices.  With a time scale w the time is
 tau = w t: M stays, D and G are divided by w, K and N by w^2.
@@ -36,8 +36,8 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.elimination import Definition, combination
 from mbsym.algebra.jet import Jet, Jets
+from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
-from mbsym.algebra.matrices import skew_part, symmetric_part
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
@@ -52,8 +52,6 @@ from mbsym.problems.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
-
-Rows = list[list[Polynomial]]
 
 
 @dataclass(frozen=True, repr=False)
@@ -145,26 +143,25 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
 
     Raises NoClosedForm or SingularPoint.
     """
-    ring, names = scene.ring, scene.system.coordinates
-    n = len(names)
-    lagrangian = kinetic_energy(expanded) + force_function(expanded)
-    mass = [[_second(ring, lagrangian, n + i, n + j) for j in range(n)] for i in range(n)]
-    mixed = [[_second(ring, lagrangian, n + i, j) for j in range(n)] for i in range(n)]
-    velocity = [[mixed[i][j] - mixed[j][i] for j in range(n)] for i in range(n)]
-    position = [[-_second(ring, lagrangian, i, j) for j in range(n)] for i in range(n)]
-    for i in range(n):
-        for j in range(n):
-            velocity[i][j] = velocity[i][j] + rate_on_motion(scene, mass[i][j])
-            position[i][j] = position[i][j] + rate_on_motion(scene, mixed[i][j])
-    inputs = expanded.system.input_names
-    gains = [[ring.zero] * len(inputs) for _ in names]
-    for i, force in enumerate(applied_forces(expanded).values()):
-        gains[i] = [force.first.get(2 * n + k, ring.zero) for k in range(len(inputs))]
-        for j in range(n):
-            position[i][j] = position[i][j] - force.first.get(j, ring.zero)
-            velocity[i][j] = velocity[i][j] - force.first.get(n + j, ring.zero)
-    parts = (mass, velocity, position, gains)
-    return assemble(scene, equilibrium, parts, "quadratised Lagrangian", inputs)
+    ring, n, inputs = scene.ring, len(scene.system.coordinates), expanded.system.input_names
+    L = kinetic_energy(expanded) + force_function(expanded)
+    Q = list(applied_forces(expanded).values())
+
+    def second(rows: int, columns: int) -> ScalarMatrix:
+        return ScalarMatrix.by_entry(ring, n, n, lambda i, j: _second(ring, L, rows + i, columns + j))
+
+    def slopes(start: int, count: int) -> ScalarMatrix:
+        return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].first.get(start + j, ring.zero))
+
+    def rate(matrix: ScalarMatrix) -> ScalarMatrix:
+        return matrix.map(lambda x: rate_on_motion(scene, x))
+
+    x, v, u = 0, n, 2 * n  # where the deviations of coordinates, velocities and inputs begin
+    M, A, P = second(v, v), second(v, x), -second(x, x)
+    C = A - A.T + rate(M) - slopes(v, n)
+    S = P + rate(A) - slopes(x, n)
+    B = slopes(u, len(inputs))
+    return assemble(scene, equilibrium, (M, C, S, B), "quadratised Lagrangian", inputs)
 
 
 def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | None) -> Linearisation:
@@ -173,14 +170,17 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     Raises NoClosedForm or SingularPoint.
     """
     ring, names = scene.ring, scene.system.coordinates
-    at = unperturbed(scene)
-    mass = [[ring.substitute(x, at) for x in row] for row in equations.mass_matrix.polynomials]
-    forcing = [x.polynomial for x in equations.forcing]
-    velocity = [[-ring.substitute(ring.velocity_derivative(f, name), at) for name in names] for f in forcing]
-    position = [[-ring.substitute(ring.derivative(f, name), at) for name in names] for f in forcing]
-    inputs = scene.system.input_names
-    gains = [[ring.substitute(ring.derivative(f, name), at) for name in inputs] for f in forcing]
-    return assemble(scene, equilibrium, (mass, velocity, position, gains), "linearised equations", inputs)
+    at, inputs = unperturbed(scene), scene.system.input_names
+    f = [x.polynomial for x in equations.forcing]
+
+    def on_motion(rows: Sequence[Sequence[Polynomial]]) -> ScalarMatrix:
+        return ScalarMatrix(ring, rows).map(lambda x: ring.substitute(x, at))
+
+    M = on_motion(equations.mass_matrix.polynomials)
+    C = -on_motion([[ring.velocity_derivative(x, name) for name in names] for x in f])
+    S = -on_motion([[ring.derivative(x, name) for name in names] for x in f])
+    B = on_motion([[ring.derivative(x, name) for name in inputs] for x in f])
+    return assemble(scene, equilibrium, (M, C, S, B), "linearised equations", inputs)
 
 
 def quadratised(scene: Scene, whole: System | None = None) -> Scene:
@@ -218,7 +218,7 @@ def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
 def assemble(
     scene: Scene,
     equilibrium: Equilibrium | None,
-    whole: Sequence[Rows],
+    whole: tuple[ScalarMatrix, ScalarMatrix, ScalarMatrix, ScalarMatrix],
     route: str,
     inputs: tuple[str, ...],
     coordinates: tuple[str, ...] | None = None,
@@ -229,22 +229,22 @@ def assemble(
     """
     ring = scene.ring
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
-    parts = [[[ring.substitute(x, images) for x in row] for row in rows] for rows in whole]
+    M, C, S, B = (matrix.map(lambda x: ring.substitute(x, images)) for matrix in whole)
     scale = None
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))
     result = Linearisation(
         coordinates=coordinates or scene.system.coordinates,
-        M=Matrix.of(ring, parts[0]),
-        D=Matrix.of(ring, symmetric_part(ring, parts[1])),
-        G=Matrix.of(ring, skew_part(ring, parts[1])),
-        K=Matrix.of(ring, symmetric_part(ring, parts[2])),
-        N=Matrix.of(ring, skew_part(ring, parts[2])),
+        M=Matrix.of(ring, M.rows),
+        D=Matrix.of(ring, symmetric(C).rows),
+        G=Matrix.of(ring, skew(C).rows),
+        K=Matrix.of(ring, symmetric(S).rows),
+        N=Matrix.of(ring, skew(S).rows),
         time_scale=scale,
         subsystems=(),
         route=route,
         inputs=inputs,
-        B=Matrix.of(ring, parts[3]) if inputs else None,
+        B=Matrix.of(ring, B.rows) if inputs else None,
     )
     return replace(result, subsystems=_subsystems(scene, result), varying=_varying(scene, result))
 

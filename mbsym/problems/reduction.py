@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 from mbsym.algebra.failures import Constrained, SingularPoint
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula
@@ -129,7 +130,8 @@ def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> L
         )
     place = {i: j for j, i in enumerate(found.coordinates)}
     position = [[row[place[i]] if i in place else ring.zero for i in found.speeds] for row in equations.C]
-    parts = [list(map(list, equations.A)), list(map(list, equations.B)), position, list(map(list, equations.gains))]
+    a, b, c, d = (ScalarMatrix(ring, rows) for rows in (equations.A, equations.B, position, equations.gains))
+    parts = (a, b, c, d)
     inputs = found.scene.system.input_names
     whole = assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about.speeds)
     return replace(whole, constrained=about)

@@ -11,7 +11,7 @@ from itertools import combinations
 from flint import ctx, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.failures import Failure, NotRational
-from mbsym.algebra.matrices import skew_part, symmetric_part
+from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
@@ -152,12 +152,11 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     ring, names = found.ring, found.system.coordinates
     rates = dict(found.rates)
     mass = found.mass_matrix()
-    velocity = [
-        [-ring.substitute(ring.velocity_derivative(f, name), dict(rates)) for name in names] for f in found.forcing
-    ]
-    position = [[-ring.derivative(f, name) for name in names] for f in found.at_rest]
+    slopes = [[ring.velocity_derivative(f, name) for name in names] for f in found.forcing]
+    C = -ScalarMatrix(ring, slopes).map(lambda x: ring.substitute(x, dict(rates)))
+    S = -ScalarMatrix(ring, [[ring.derivative(f, name) for name in names] for f in found.at_rest])
     moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-    every = (x for rows_ in (mass, velocity, position) for row in rows_ for x in row)
+    every = (x for rows_ in (mass, C, S) for row in rows_ for x in row)
     varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, moving)))
     scene = found.scene
     try:
@@ -170,13 +169,7 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     law = balance.law
     if not law.bounded and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
         law = EnergyLaw.CONSERVED
-    parts = (
-        mass,
-        symmetric_part(ring, velocity),
-        skew_part(ring, velocity),
-        symmetric_part(ring, position),
-        skew_part(ring, position),
-    )
+    parts = (mass, symmetric(C).rows, skew(C).rows, symmetric(S).rows, skew(S).rows)
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]

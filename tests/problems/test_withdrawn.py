@@ -20,8 +20,8 @@ LIFT = TESTS / "cases" / "statements" / "lift.yaml"
 ACCELERATION = Mistake(
     "the acceleration of a prescribed motion",
     "problems.linearisation:by_quadratisation",
-    "position[i][j] + rate_on_motion(scene, mixed[i][j])",
-    "position[i][j]",
+    "P + rate(A)",
+    "P",
     "lift",
     (),
 )
