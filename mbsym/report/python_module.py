@@ -44,6 +44,11 @@ RESERVED = {
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
     "Parameters", "INTEGRALS", "UNITS", "with_unit",
 }  # fmt: skip
+#: What a module of a constrained system calls something besides.
+TIED = frozenset({
+    "constraints", "constraint_velocity", "constraint_jacobian", "constraint_acceleration", "multipliers",
+    "constraint_error", "consistent", "matrix", "jacobian", "right", "whole", "above", "error", "worst",
+})  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
 _WORD = re.compile("[a-z]+")
@@ -65,6 +70,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
     system, (code, no_code) = analysis.system, programs_of(analysis)
     writer = _Module(system)
+    tied = None
+    if system.constraints:
+        from mbsym.report.constrained_code import tied_code
+
+        tied, code, no_code = tied_code(analysis, writer)
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
@@ -91,6 +101,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=plain(no_code),
+        tied=tied,
         upper=upper,
         mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
         forcing=code and writer.function(code.program, code.forcing),
@@ -101,7 +112,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         integrals=conserved,
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
         slopes=_slopes(writer, known),
-        no_slopes=plain(known.no_slopes or known.no_forward),
+        no_slopes="" if tied else plain(known.no_slopes or known.no_forward),
         related=[item for item in ordered(parameters) if item.needs],
         names=writer.names,
         initial=initial_values(system, writer),
@@ -169,7 +180,7 @@ class _Module(Functions):
     """Turns nodes of a program into function bodies with names that Python lets us use."""
 
     def __init__(self, system: System) -> None:
-        reserved = RESERVED | words_of_inputs(system)
+        reserved = RESERVED | words_of_inputs(system) | (TIED if system.constraints else frozenset())
         super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
     def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
