@@ -46,6 +46,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     Files of an earlier simulation go with it: they would contradict simulation.json.  What stops the drawing, as Ctrl-C
     does, stops it only when the rest is delivered.
     """
+    from mbsym.model.quantities import unit_of
     from mbsym.report.bodies_csv import bodies_parts
     from mbsym.report.certificate import enclosure_csv
     from mbsym.report.constrained_run_words import drift_columns
@@ -56,8 +57,9 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     files: dict[str, Content] = {}
     table: Hashed | None = None
     if "csv" in asked.formats:
-        further = {kept.column: kept.values for kept in run.invariants}
-        units: dict[str, str | None] = {kept.column: kept.unit for kept in run.invariants}
+        further = run.speeds | {kept.column: kept.values for kept in run.invariants}
+        units: dict[str, str | None] = {name: unit_of(run.system, name) for name in run.speeds}
+        units |= {kept.column: kept.unit for kept in run.invariants}
         drifts = drift_columns(run)
         further, units = further | dict(drifts), units | dict.fromkeys(drifts, "")
         table = Hashed(trajectory_parts(run.trajectory, further, units))

@@ -90,8 +90,9 @@ def _alternative(place: _Place, choices: Sequence[Schema], sample: Any) -> Schem
 
 def _objects(place: _Place, a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Difference]:
     properties, other = place.schema.get("properties", {}), place.schema.get("additionalProperties")
-    if isinstance(a.get("coordinates"), list) and isinstance(b.get("coordinates"), list):
-        place = replace(place, labels=(a["coordinates"], b["coordinates"]))
+    for rows in ("coordinates", "speeds"):
+        if isinstance(a.get(rows), list) and isinstance(b.get(rows), list):
+            place = replace(place, labels=(a[rows], b[rows]))
     known = [key for key in properties if key in a or key in b]
     for key in [*known, *sorted({*a, *b} - {*known}, key=str)]:
         inner = properties.get(key, other if isinstance(other, Mapping) else {})

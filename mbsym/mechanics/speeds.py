@@ -119,6 +119,13 @@ class SpeedForm:
         declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
         return [declared.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
 
+    @cached_property
+    def variables_in_coordinates(self) -> dict[str, Polynomial]:
+        """Every declared speed and every component of a unit vector, by name, in (q, q', t)."""
+        named = dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
+        vectors = {self.ring.generators[k].name: x for k, x in self._cosines.items()}
+        return {name: vectors.get(name, named.get(name)) for name in self.system.variables}
+
     def _form(self, scene: Scene, speed: Speed) -> Polynomial:
         spin = scene.motions[speed.body].angular_velocity
         environment = dict(self._plain) | dict(zip(OMEGA, spin, strict=True))

@@ -278,7 +278,7 @@ class System(GuessesNames):
 
     @property
     def without_speeds(self) -> System:
-        """The same system in generalised coordinates and their derivatives, without its claims."""
+        """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
         return replace(self, bodies=bodies, claims=(), abbreviations=())
 

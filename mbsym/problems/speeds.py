@@ -71,19 +71,27 @@ class SpeedEquations(Equations):
         return tuple(found)
 
 
-def energy(form: SpeedForm, scene: Scene) -> Energy:
+@dataclass(frozen=True, repr=False)
+class SpeedEnergy(Energy):
+    """A2 and A1 belong to the ``speeds``, in their order."""
+
+    speeds: tuple[str, ...]
+
+
+def energy(form: SpeedForm, scene: Scene) -> SpeedEnergy:
     """T, split by powers of the speeds, and U."""
     ring = form.ring
     kinetic, potential = kinetic_energy(scene), force_function(scene)
     at_rest = {u.index: ring.zero for u in form.speeds}
     momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
-    return Energy(
+    return SpeedEnergy(
         kinetic_energy=Formula(ring, kinetic),
         A2=Matrix.of(ring, [[ring.derivative(p, u.name) for u in form.speeds] for p in momenta]),
         A1=column(ring, [ring.substitute(p, at_rest) for p in momenta]),
         A0=Formula(ring, ring.substitute(kinetic, at_rest)),
         force_function=Formula(ring, potential),
         cyclic=(),
+        speeds=tuple(u.name for u in form.speeds),
     )
 
 

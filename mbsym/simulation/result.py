@@ -114,6 +114,18 @@ class Simulation:
         """What was simulated."""
         return self.scenario.system
 
+    @cached_property
+    def speeds(self) -> dict[str, Any]:
+        """The speeds and components of unit vectors that the description declares, by name, each of shape (m,).
+
+        Of a trajectory that went to a file part by part there are none.  Raises Failure where they have no formulas.
+        """
+        if self.given is None or not self.given.system.speeds or self.trajectory.table is not None:
+            return {}
+        from mbsym.numerics.speed_columns import speed_columns  # few systems have speeds of their own
+
+        return speed_columns(self.given, self.times, self.trajectory.states)
+
     @property
     def times(self) -> Any:
         """The times of the samples, shape (m,)."""
@@ -198,4 +210,6 @@ class Simulation:
         for kept in self.invariants:
             if kept.column == name:
                 return kept.values
+        if name in self.speeds:
+            return self.speeds[name]
         raise KeyError(name)

@@ -67,6 +67,8 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     given, scenario = scenario, scenario_of(scenario, request.model)
+    if scenario.system.speeds:  # what is integrated are coordinates and their derivatives
+        scenario = replace(scenario, system=scenario.system.without_speeds)
     closed = _closed(scenario, request)
     scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):

@@ -91,7 +91,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
     """
     about = title(claim, derived.system)
-    if derived.system.speeds:
+    if derived.system.speeds and not claim.is_numerical:
         from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
 
         return in_speeds.examined(derived, claim, about)

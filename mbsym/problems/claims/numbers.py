@@ -99,14 +99,26 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
 def _both(derived: Derived, claim: Claim) -> tuple[Any, Any]:
     """The claimed and the derived number as balls of the working precision.  Raises KeyError where a number lacks."""
     state = _state(derived.system, claim)
-    return _number(Symbols.of(derived), state, claim.equals), _derived_number(derived, claim, state)
+    printed = _number(Symbols.of(derived), _with_speeds(derived, state), claim.equals)
+    return printed, _derived_number(derived, claim, state)
 
 
 def _derived_number(derived: Derived, claim: Claim, state: State) -> Any:
     """The derived quantity at the state."""
+    state = _with_speeds(derived, state)
     if claim.of_expression is not None:
         return _value(derived, Symbols.of(derived), state, claim.of_expression)
     return Carrier(derived.ring, state.numbers, state.values)(derived_quantity(derived, claim))
+
+
+def _with_speeds(derived: Derived, state: State) -> State:
+    """The state with speeds, unit vectors and their derivatives, where the system has such variables."""
+    if not derived.system.speeds:
+        return state
+    from mbsym.mechanics.oracle import Oracle
+    from mbsym.mechanics.speed_states import completed  # few systems have speeds of their own
+
+    return completed(Oracle(derived.system, accelerated(derived.system, state, derived.programs)))
 
 
 def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> ClaimResult | None:

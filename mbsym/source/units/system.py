@@ -13,6 +13,7 @@ from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Re
 from mbsym.model.loads import (
     Load,
 )
+from mbsym.model.speeds import OMEGA
 from mbsym.model.system import Body, Point, System, Vector
 from mbsym.model.units import (
     BASES,
@@ -54,7 +55,7 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
     inference = Inference({name: Form(found.dimension) for name, found in known.items()})
     _System(system, Dimensions(inference, _form_of(system), complain)).check()
     names = (*system.coordinates, *system.parameter_names, *(one.name for one in system.prescribed))
-    names = (*names, *system.input_names, *(one.name for one in system.outputs))
+    names = (*names, *system.variables, *system.input_names, *(one.name for one in system.outputs))
     more = (*(one.name for one in system.notation), *(one.name for one in system.abbreviations))
     follows = ((name, inference.dimension(name)) for name in (*names, *more))
     inferred = tuple((name, found) for name, found in follows if found is not None)
@@ -65,11 +66,17 @@ def _form_of(system: System) -> Callable[[str], Form]:
     """The dimension of a name, that of its rates included."""
     rates = {f"{name}_dot": (name, 1) for name in system.coordinates}
     rates |= {f"{name}_ddot": (name, 2) for name in system.coordinates}
+    rates |= {f"{name}_dot": (name, 1) for name in system.variables}
+    vectors = {name for body in system.bodies for vector in body.orientation for name in vector.components}
 
     def form(name: str) -> Form:
         if name == "t":
             return Form(TIME)
+        if name in OMEGA:
+            return Form(RATE)
         name, order = rates.get(name, (name, 0))
+        if name in vectors:
+            return Form(times(NONE, TIME, -order))
         return Form(times(NONE, TIME, -order), ((name, Fraction(1)),))
 
     return form
@@ -179,6 +186,8 @@ class _System:
         for row in body.inertia.tensor if body.inertia else ():
             self.vector(row, INERTIA, "a moment of inertia")
         self.vector(body.gyrostatic_moment, times(INERTIA, RATE), "a gyrostatic moment")
+        for speed in body.speeds:
+            self.expect(speed.form, self.of(speed.name), f"'{speed.name}'")
         for shape in body.shapes:
             self.vector(shape.at, LENGTH, "a place")
             for size in shape.size:

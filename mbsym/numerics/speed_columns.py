@@ -1,0 +1,43 @@
+"""Speeds and components of unit vectors along a trajectory of coordinates and generalised velocities.
+
+    u = S(q, t) q' + s0(q, t),      e = the columns of the direction cosines R(q)
+
+as the straight-line program of their closed formulas (``mbsym.mechanics.speeds``).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.program import Program
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import bound, substituted
+
+
+def speed_columns(scenario: Scenario, times: Any, states: Any) -> dict[str, Any]:
+    """By name the values, of shape (m,), at times (m,) and states (2n, m); empty where a system has no speeds.
+
+    Raises Failure where the speeds have no closed formulas.
+    """
+    system = scenario.system
+    if not system.speeds:
+        return {}
+    ring = ring_of(system)
+    form = SpeedForm(system, ring)
+    formulas = form.variables_in_coordinates
+    program = Program()
+    carry = Carrier(ring, program, program_environment(system, program))
+    fresh = bound(scenario)
+    nodes = substituted(program, [carry(x) for x in formulas.values()], fresh)
+    inputs = ("t", *system.coordinates, *system.velocities)
+    kernel = kernels({"speeds": Code(fresh, inputs, tuple(nodes))})["speeds"]
+    with np.errstate(all="ignore"):
+        found = kernel(np.vstack([times, np.asarray(states, dtype=float)]))
+    return dict(zip(formulas, found, strict=True))
