@@ -39,14 +39,17 @@ TETHER = {
     **dict.fromkeys(("m_A", "m_B", "m1", "m2"), "kg"),
 }
 FIXED = {"g": "m/s^2", "x0": "m", "y0": "m", "z0": "m", "lx": "N*m*s", "lz": "kg*m^2/s"}
+SMALL = dict.fromkeys(("epsilon", "delta1", "delta2"), "1")
 UNITS = {
     "cart-pendulum": {"m0": "kg", "m1": "kg", "l0": "m", "l1": "m", "g": "m/s^2", "F": "N", "x": "m", "q1": "rad"},
     "cart-pole": {"M": "kg", "m": "kg", "J": MOMENTS, "l": "m", "c": "N*s/m", "gamma": "N*m*s", "F": "N", "p": "m"},
     "clebsch": {**BODY, "R": "m", "N": "1/s^2", "M": "kg", "W": "rad/s", "c": "rad"},
+    "clebsch-poisson": {**BODY, "R": "m", "N": "1/s^2", "M": "kg", "W": "rad/s", "c": "rad"},
     "double-pendulum": {"m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad"},
     "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
     "gyrostat": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
+    "gyrostat-poisson": {**FIXED, **SMALL, "R": "m", "M": "kg", "A0": MOMENTS, "C": MOMENTS, "psi": "rad"},
     "heavy-top": {"A": MOMENTS, "C": MOMENTS, "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s"},
     "orbital-gyrostat": {**ORBIT, **BODY, "m": "kg", "h1": "N*m*s", "h2": "N*m*s", "h3": "N*m*s", "h": MOMENTS},
     "satellite": {**ORBIT, "M2": "kg", "m": "kg", "m0": "kg", "l": "m", "r": "m", "Jx": MOMENTS, "Jy": MOMENTS},
