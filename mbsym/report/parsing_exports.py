@@ -54,7 +54,7 @@ def modelica(text: str) -> None:
     found = re.fullmatch(r"model (\w+)[^\n]*\n(.*)\nequation\n(.*)end \1;\n", plain, re.DOTALL)
     if found is None:
         raise SyntaxError("the model is not whole", ("", 1, 0, None))
-    declared = re.findall(r"^  (?:parameter )?Real (\w+)", found[2], re.MULTILINE)
+    declared = re.findall(r"^  (?:parameter |input )?Real (\w+)", found[2], re.MULTILINE)
     if len(set(declared)) < len(declared):
         raise SyntaxError("a name is declared twice", ("", 1, 0, None))
     known = {*declared, "time", "der", *_FUNCTIONS}

@@ -160,7 +160,9 @@ def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
             for item in model.ordered
             if item.needs
         ],
-        "slopes": solved(analysis).slopes is not None,
+        # With inputs a directional derivative would be one by these, too.
+        "slopes": solved(analysis).slopes is not None and not system.inputs,
+        "inputs": [(item.name, item.start.replace("NaN", "NAN")) for item in variables if item.causality == "input"],
         "token": token,
     }  # fmt: skip
     shared = rendered("exports/fmi.h.j2", {}, **values)
@@ -186,10 +188,10 @@ def _refused() -> list[tuple[str, list[tuple[str, str]]]]:
 
 
 def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
-    """Time, x, x', parameters, energies: their places are their value references."""
+    """Time, x, x', parameters, energies, inputs: their places are their value references."""
     system = analysis.system
     names_ = [*system.coordinates, *system.velocities]
-    taken = {*names_, *system.parameter_names}
+    taken = {*names_, *system.parameter_names, *system.input_names}
     yield Variable(free_name("time", taken), 0, "", "independent", "continuous")
     n, numbers = len(system.coordinates), _numbers(model)
     for place, (name, value) in enumerate(_starts(model, numbers)):
@@ -208,20 +210,23 @@ def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
     jacobi = "T2 - T0 - U: the energy where nothing moves as prescribed"
     for place, (name, words) in enumerate((("energy", "T - U"), ("generalized_energy", jacobi))):
         yield Variable(free_name(name, taken), first + place, words, "local", "continuous", "calculated")
+    for place, one in enumerate(system.inputs):
+        start = _start(one.held, numbers, "0.0")
+        yield Variable(one.name, first + 2 + place, one.meaning, "input", "continuous", start=start)
 
 
 def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Variable], list[Unit]]:
     """The variables with their units, and every unit once."""
-    orders = {name: (name, 0) for name in (*system.coordinates, *system.parameter_names)}
+    orders = {name: (name, 0) for name in (*system.coordinates, *system.parameter_names, *system.input_names)}
     orders |= {rate: (name, 1) for name, rate in zip(system.coordinates, system.velocities, strict=True)}
     orders |= {f"der({known})": (name, order + 1) for known, (name, order) in orders.items()}
     time, energy = time_and_energy(system)
     found, units = [], dict[str, Unit]()
-    last = len(variables) - 2  # the energies
+    energies = range(len(variables) - len(system.inputs) - 2, len(variables) - len(system.inputs))
     for place, item in enumerate(variables):
         if item.causality == "independent":
             unit = time
-        elif place >= last:
+        elif place in energies:
             unit = energy
         else:
             unit = variable_unit(system, *orders[item.name])

@@ -1,7 +1,8 @@
 """What every export holds, as text of a language but for its syntax: values, initial state, function bodies.
 
 A language is how it writes operations, numbers and names; its template says how functions and arrays look.  All
-functions are functions of (t, x, p) with the state x = (q, q') and the parameters p in the order of the description.
+functions are functions of (t, x, p) with the state x = (q, q') and the parameters p in the order of the description;
+of (t, x, p, u) where the system has inputs u.
 """
 
 from __future__ import annotations
@@ -79,6 +80,16 @@ class Export:
     lacking: tuple[str, ...]
     names: dict[str, str] = field(compare=False)
     tables: tuple[Tabulated, ...] = ()
+
+    @property
+    def driven(self) -> str:
+        """What stands behind (t, x, p in arguments: the inputs, where there are any."""
+        return ", u" if self.system.inputs else ""
+
+    @property
+    def held(self) -> str:
+        """The values of the inputs on the unperturbed motion, as the description writes them."""
+        return ", ".join(f"{one.name} = {text(one.held)}" for one in self.system.inputs)
 
     @property
     def type_name(self) -> str:
