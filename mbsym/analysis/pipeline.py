@@ -70,9 +70,10 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
-        *("claims", "checks"),
-        *("reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
+        *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
+        *("judgeable", "balance", "stability"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
+        *("check: equilibrium", "check: perturbed motion"),
     )
 )
 
@@ -363,6 +364,10 @@ class Analysis(Stages):
 
     def _balance(self) -> Balance:
         energies = self.optional("energy")
+        if self.system.constraints:
+            from mbsym.problems.constrained_balance import ConstrainedBalance
+
+            return ConstrainedBalance(self.scene, energies, self.signs, {}, about=self.reduced.about)
         return dissipation.balance(self.parameters_scene if energies is None else self.held_scene, energies, self.signs)
 
     def _state_space(self) -> StateSpace:

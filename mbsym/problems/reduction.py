@@ -13,15 +13,18 @@ Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mbsym.algebra.failures import Constrained, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.elimination import Row, echelon
 from mbsym.mechanics.constraints.expansion import Expansion
 from mbsym.mechanics.constraints.perturbed import Projected, felt
 from mbsym.mechanics.kinematics import Scene
@@ -50,6 +53,18 @@ class Reduction(Shown):
     assumed: tuple[Formula, ...]
     holonomic: bool
     family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
+
+    def dimension(self, speeds: Sequence[int], signs: Signs) -> int:
+        """In how many dimensions the motions of the family differ in these speeds and their coordinates, at least."""
+        rows: list[Row] = []
+        for k in speeds:
+            for line in self.family[k]:
+                rows.append({p: x.polynomial for p, x in enumerate(line)})
+        if not rows or not rows[0]:
+            return 0
+        ring = self.family[0][0][0].ring
+        found = echelon(ring, signs, rows, range(len(rows[0])))
+        return len(found.pivots) - len(found.assumed)
 
 
 @dataclass(frozen=True)

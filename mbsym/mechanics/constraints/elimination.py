@@ -40,7 +40,7 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
     found: dict[int, Row] = {}
     assumed: list[Polynomial] = []
     while True:
-        best = _best(signs, pending, columns)
+        best = _best(ring, signs, pending, columns)
         if best is None:
             return Echelon(found, tuple(pending), tuple(assumed))
         rank, column, chosen = best
@@ -57,7 +57,7 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
 _NUMBER, _SURE, _OPEN = range(3)
 
 
-def _best(signs: Signs, rows: Sequence[Row], columns: Sequence[int]) -> tuple[int, int, int] | None:
+def _best(ring: Ring, signs: Signs, rows: Sequence[Row], columns: Sequence[int]) -> tuple[int, int, int] | None:
     """(how sure, column, number of the row) of the next pivot."""
     open_one = None
     for column in columns:
@@ -66,7 +66,8 @@ def _best(signs: Signs, rows: Sequence[Row], columns: Sequence[int]) -> tuple[in
             if x.is_constant():
                 return _NUMBER, column, number
         for number, x in sorted(entries, key=lambda entry: len(entry[1])):
-            if signs.never_zero(x):
+            numerator, _ = ring.fraction(x)  # what the denominator holds has been divided by before
+            if numerator.is_constant() or signs.never_zero(numerator):
                 return _SURE, column, number
             open_one = open_one or (_OPEN, column, number)
     return open_one

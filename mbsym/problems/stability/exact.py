@@ -13,6 +13,7 @@ from flint import fmpq, fmpq_mat, fmpq_poly
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.roots import RootCount, count_roots, rational
+from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
@@ -45,6 +46,8 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     a = _first_order(m, d + g, k + n)
     characteristic = tuple(a.charpoly().coeffs())
     roots = count_roots(characteristic)
+    if system.nonholonomic is not None:
+        return PointVerdict(nonholonomic.at_rationals(system.nonholonomic, a), characteristic, roots)
     if not system.cyclic or roots.right:
         verdict = _judge(system, (m, d, g, k, n))
         if system.turned and not roots.right and not (_no(d) and _no(n)):

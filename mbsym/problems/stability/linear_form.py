@@ -9,6 +9,25 @@ from mbsym.problems.stability.theorems import Fact
 
 
 @dataclass(frozen=True)
+class NonholonomicForm:
+    """What is known of one subsystem of a nonholonomic system.
+
+    ``idle`` are indices of coordinates that do not occur in the nonlinear equations, their columns in K + N vanish;
+    ``family``: in so many dimensions the steady motions of the subsystem lie near the given one.  ``drifts``: the whole
+    system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders.
+    """
+
+    idle: tuple[int, ...] = ()
+    family: int = 0
+    drifts: bool = False
+    open_names: tuple[str, ...] = ()
+
+    def zeros(self, power: int) -> int:
+        """How many roots are zero, of ``power`` of the determinant, besides those of idle coordinates."""
+        return power - len(self.idle)
+
+
+@dataclass(frozen=True)
 class LinearSystem:
     """One subsystem: n x n matrices M, D, G, K, N of polynomials in the parameters.
 
@@ -19,7 +38,8 @@ class LinearSystem:
     have no entries, because forces of higher order act on them.  ``turned``: (p, q) of the factor p lambda^2 + q, q/p
     the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
     shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.  ``names`` of the coordinates
-    are for sentences.
+    are for sentences.  ``nonholonomic``: the five matrices are no more than the split of two, and say nothing about
+    energy.
     """
 
     M: Matrix
@@ -32,6 +52,7 @@ class LinearSystem:
     turned: tuple[Polynomial, ...] = ()
     driven: tuple[int, ...] = ()
     names: tuple[str, ...] = ()
+    nonholonomic: NonholonomicForm | None = None
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -54,6 +75,8 @@ class LinearSystem:
     @property
     def facts(self) -> frozenset[Fact]:
         """What the pattern of zeros shows, and what is presumed: M > 0, as the matrix of a kinetic energy."""
+        if self.nonholonomic is not None:
+            return frozenset({Fact.MASS_POSITIVE})
         zero = [
             fact
             for matrix, fact in ((self.D, Fact.UNDAMPED), (self.G, Fact.NOT_GYROSCOPIC), (self.N, Fact.POTENTIAL))
@@ -76,6 +99,8 @@ CONSERVATIVE = "conservative"
 
 def kind_of(system: LinearSystem) -> str:
     """Words for the acting forces: conservative, gyroscopic conservative, dissipative, circulatory, ..."""
+    if system.nonholonomic is not None:
+        return "nonholonomic"
     damped, gyroscopic = not is_zero(system.D), not is_zero(system.G)
     words = ["gyroscopic"] if gyroscopic else []
     if damped:

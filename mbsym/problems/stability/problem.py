@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from flint import arb, ctx, fmpq
@@ -23,13 +24,16 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.model.system import rational
+from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
+from mbsym.problems.reduction import Reduction
+from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
@@ -97,7 +101,7 @@ class SubsystemStability(Shown):
     def _open(self, requirements: Sequence[Requirement]) -> Iterator[tuple[str, Formula, str]]:
         for wanted in requirements:
             condition = wanted.condition
-            if wanted.always:
+            if wanted.always or wanted.unwritten:
                 continue
             if condition.kind == "inequality":
                 yield wanted.label, self._formula(condition.polynomial), wanted.relation
@@ -148,7 +152,7 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = (
-            _enclosed(scene, linear, part, values, balance)
+            _enclosed(scene, linear, part, values, balance, found.theory.zero_power)
             if found.theory.at_point is None
             else found.theory.at_point.verdict
             for part, found in zip(prepared, judged, strict=True)
@@ -187,13 +191,20 @@ def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[s
 
 
 def _enclosed(
-    scene: Scene, linear: Linearisation, part: _Prepared, values: Mapping[str, Fraction], balance: Balance
+    scene: Scene,
+    linear: Linearisation,
+    part: _Prepared,
+    values: Mapping[str, Fraction],
+    balance: Balance,
+    zero_power: int,
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
     there = balance.at(values)
     constant = not any(name in there.driven for name in part.coordinates)  # the momenta of cyclic coordinates
     cyclic = part.system.cyclic if constant else ()
     matrices = _matrices_at(scene, linear, part.coordinates, values)
+    if part.system.nonholonomic is not None:
+        return nonholonomic.enclosed(part.system.nonholonomic, matrices, zero_power, PRECISION)
     return enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
 
 
@@ -218,6 +229,11 @@ class _Prepared:
     known: Signs
     system: LinearSystem
 
+    @cached_property
+    def zero_power(self) -> int:
+        """The power of lambda that the determinant has for a factor."""
+        return analyse(self.system, self.known).zero_power
+
     def at(self, there: Balance) -> LinearSystem:
         """The system with what is known of energy and momenta at parameter values."""
         driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
@@ -228,10 +244,31 @@ def _prepared_parts(
     scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
 ) -> tuple[_Prepared, ...]:
     """Every subsystem, ready to be judged."""
-    elimination, spin = _elimination(scene), free_spin(scene.system)
-    return tuple(
+    elimination = _elimination(scene)
+    spin = None if scene.system.constraints else free_spin(scene.system)
+    prepared = tuple(
         _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
         for part in linear.subsystems
+    )
+    if linear.constrained is None or linear.constrained.holonomic:
+        return prepared
+    return tuple(
+        replace(
+            part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, linear.constrained, signs))
+        )
+        for part in prepared
+    )
+
+
+def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs) -> NonholonomicForm:
+    """What is known of a subsystem of a nonholonomic system besides its matrices."""
+    closed = isinstance(balance, ConstrainedBalance) and balance.closed
+    at = [about.speeds.index(name) for name in part.coordinates]
+    return NonholonomicForm(
+        idle=tuple(i for i, name in enumerate(part.coordinates) if name in about.idle),
+        family=about.dimension(at, signs),
+        drifts=bool(about.idle),
+        open_names=() if closed else about.idle,
     )
 
 
@@ -297,7 +334,7 @@ class ExactVerdicts:
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                found.append(_enclosed(self.scene, self.linear, part, values, self.balance))
+                found.append(_enclosed(self.scene, self.linear, part, values, self.balance, part.zero_power))
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)

@@ -46,6 +46,11 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "disturbed motion tends to a steady spin about an axis near by, and every variable that does not change "
         "when everything is turned in space tends to its value there."
     ),
+    Because.STEADY_DECAYS: (
+        "All roots have negative real parts but the zero ones, which are as many as the family of steady motions that "
+        "the description gives has dimensions: a disturbed motion tends to a steady motion near by, and coordinates on "
+        "which no equation depends may end elsewhere."
+    ),
     Because.MINIMUM: "K > 0: the (changed) potential energy has a strict minimum.",
     Because.MINIMUM_AND_DISSIPATION: (
         "K > 0 and D >= 0: the energy does not grow, and the (changed) potential energy has a strict minimum."
@@ -72,6 +77,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.IMAGINARY_SIMPLE: "All roots are imaginary and simple; the forces are not potential.",
     Because.IMAGINARY_BESIDES_TURNED: (
         "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
+    ),
+    Because.IMAGINARY_NONHOLONOMIC: (
+        "No root has a positive real part, but some are imaginary; the theorems on energy and on gyroscopic "
+        "stabilisation are not about nonholonomic systems."
     ),
     Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem that was tried covers both.",
     Because.HIGHER_ORDER: HIGHER_ORDER,
@@ -101,6 +110,14 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "Besides the turned steady spins there are zero or multiple imaginary roots."
     ),
     Because.CYCLIC_ZERO_ROOTS: "Cyclic coordinates give zero roots, and no theorem decides about the rest.",
+    Because.NOT_CLOSED: (
+        "The coordinates {} drop out of the first approximation, but are not shown to drop out of the nonlinear "
+        "equations: terms of higher order decide."
+    ).format,
+    Because.MORE_ZERO_ROOTS: (
+        "Zero roots, besides those of coordinates that drop out: {}; dimensions of the family of steady motions that "
+        "the description gives: {}. Terms of higher order decide."
+    ).format,
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: {}.".format,
     Because.ALSO_ELSEWHERE: "This is so at {} = 0, and elsewhere in samples.".format,

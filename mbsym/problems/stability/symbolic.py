@@ -41,10 +41,19 @@ from mbsym.algebra.characteristic import (
     subdiscriminants,
 )
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.failures import NoClosedForm, TooLargeError
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
+from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
-from mbsym.problems.stability.linear_form import CONSERVATIVE, LinearSystem, add, is_potential, is_zero, kind_of
+from mbsym.problems.stability.linear_form import (
+    CONSERVATIVE,
+    LinearSystem,
+    NonholonomicForm,
+    add,
+    is_potential,
+    is_zero,
+    kind_of,
+)
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
     Case,
@@ -190,7 +199,9 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
         remarks=tuple(remarks),
         turned=turned is not None,
     )
-    if zero_power:
+    if system.nonholonomic is not None:
+        cases, reduced = _cases_of_roots(system.nonholonomic, found, known), None
+    elif zero_power:
         cases, reduced = _cases_with_zero_roots(system, found, known)
     else:
         cases, reduced = _cases(system, found, known), None
@@ -241,17 +252,10 @@ def _requirements(
             continue
         place = Place.NECESSARY if even else Place.ASYMPTOTIC
         strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
-        reduced = [
-            Requirement(
-                label + suffix,
-                value,
-                known.condition(value),
-                place=place,
-                strict=strict,
-                coefficients=p if " " in label or label == "discriminant" else (),
-            )
-            for label, value in wanted
-        ]
+        reduced = [_required(known, label, suffix, value, p, (place, strict)) for label, value in wanted]
+        left_out = ", ".join(one.label for one in reduced if one.unwritten)
+        if left_out:
+            remarks.append(f"Not written out, but in the coefficients, because of their length: {left_out}.")
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
     if even and not is_potential(system):
         requirements += _simple(system, factors, known, remarks)
@@ -262,6 +266,20 @@ def _requirements(
             "(equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
+
+
+def _required(
+    known: Signs, label: str, suffix: str, value: Polynomial, p: Coefficients, places: tuple[Place, Place]
+) -> Requirement:
+    """One condition on the coefficients p; one that outgrows the budget stays what it is made of."""
+    place, strict = places
+    made = p if " " in label or label == "discriminant" else ()
+    try:
+        return Requirement(
+            label + suffix, value, known.condition(value), place=place, strict=strict, coefficients=made
+        )
+    except NoClosedForm:
+        return replace(unwritten(p[0]), label=label + suffix, place=place, strict=strict, coefficients=made)
 
 
 def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
@@ -372,6 +390,18 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         Case((), negative[-1:], odd_degree),
         *unstable,
     )
+
+
+def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
+    """Of a nonholonomic system: by the roots alone."""
+    unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
+    if found.variable == "lambda^2" and found.factors:
+        best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
+        if zeros == 0:
+            best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
+        return Case(found.requirements, (), best), *unstable
+    wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+    return Case(wanted, (), nonholonomic.all_left(form, zeros)), *unstable
 
 
 def _semidefinite(system: LinearSystem, known: Signs) -> frozenset[Fact]:

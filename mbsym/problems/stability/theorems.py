@@ -9,7 +9,9 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
 * Kelvin-Chetaev: K > 0, D > 0, N = 0: asymptotically stable; D > 0, N = 0, det K != 0, K not > 0: unstable;
   D = N = 0 and det K < 0: unstable, whatever G is.
 * Lyapunov's first method: all roots to the left, or one to the right.
-* Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.
+* Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.  Of nonholonomic systems
+  it is, with Lyapunov's first method, all there is: their first approximation has no Hamiltonian structure, and the
+  theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V; Karapetyan).
 * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
   in a system of one coordinate, where the converse holds.
 * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
@@ -45,6 +47,8 @@ class Fact(Enum):
     ROOT_RIGHT = "Re lambda > 0 for some root"
     #: The roots of the first approximation that are not to the left are those of steady spins about other directions.
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
+    #: The zero roots are as many as the steady motions near by have dimensions, all others are to the left.
+    LEFT_BUT_STEADY = "Re lambda < 0 for every root but the zero ones of a family of steady motions"
     #: No root to the right, and those on the imaginary axis are semisimple and not zero.
     BOUNDED = "the first approximation is stable"
     #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
@@ -106,6 +110,7 @@ THEOREMS = (
     _theorem(KELVIN_CHETAEV, Ground.DECAYS, Because.COMPLETE, *_PLAIN, Fact.DAMPING_POSITIVE, Fact.STIFFNESS_POSITIVE),
     _theorem(LYAPUNOV, Ground.DECAYS, Because.LEFT, Fact.ROOTS_LEFT),
     _theorem(MALKIN, Ground.DECAYS, Because.TURNED_DECAYS, Fact.LEFT_BUT_TURNED),
+    _theorem(MALKIN, Ground.DECAYS, Because.STEADY_DECAYS, Fact.LEFT_BUT_STEADY),
     _theorem(LAGRANGE, Ground.ENERGY, Because.MINIMUM, *_MINIMUM, Fact.UNDAMPED, Fact.NOT_GYROSCOPIC),
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM, *_MINIMUM, Fact.UNDAMPED),
     _theorem(

@@ -9,7 +9,7 @@ and the word is read off these two by one table, ``LAW``.  So combination is com
 and never gives a stronger verdict than any part has.  Why each ground carries over:
 
 * DECAYS: the roots of the whole are those of its parts (Lyapunov's first method; with zero roots of cyclic coordinates
-  and those of turned spins, Lyapunov-Malkin).
+  and those of turned spins or of a family of steady motions, Lyapunov-Malkin).
 * ENERGY: K of the whole is positive definite if K of every part is, and there is one energy, that of the whole system.
   So a damped part beside an undamped one is stable if both have K > 0 and **one energy** of both does not grow, which
   is to be said (``one_energy``); if stability of the damped part rests on its roots alone, nothing covers both, and
@@ -35,6 +35,7 @@ class Flaw(Enum):
 
     CYCLIC = auto()  # cyclic coordinates may drift
     TURNED = auto()  # a turned spin does not come back
+    STEADY = auto()  # a disturbed steady motion may tend to another one of its family
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
     UNSTABLE = auto()
@@ -56,6 +57,7 @@ class Row:
 
 _DRIFT = frozenset({Flaw.CYCLIC})
 _SOUND = frozenset({Flaw.CYCLIC, Flaw.TURNED})
+_FAMILY = frozenset({Flaw.STEADY})
 
 #: The first row that fits gives the word.  Every combination of grounds and flaws fits one.
 LAW = (
@@ -66,6 +68,7 @@ LAW = (
     Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
     Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
@@ -78,6 +81,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
     Word.ASYMPTOTIC: ({Ground.DECAYS}, set()),
     Word.ASYMPTOTIC_BUT_CYCLIC: ({Ground.DECAYS}, {Flaw.CYCLIC}),
     Word.ASYMPTOTIC_BUT_TURNED: ({Ground.DECAYS}, {Flaw.TURNED}),
+    Word.ASYMPTOTIC_BUT_STEADY: ({Ground.DECAYS}, {Flaw.STEADY}),
     Word.STABLE: ({Ground.ENERGY, Ground.UNDAMPED}, set()),
     Word.STABLE_BUT_CYCLIC: ({Ground.ENERGY, Ground.UNDAMPED}, {Flaw.CYCLIC}),
     Word.GYROSCOPIC: ({Ground.UNDAMPED}, set()),
@@ -198,6 +202,8 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     if gyroscopic and every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.MASS_POSITIVE}:
         grounds[Ground.UNDAMPED] = ()
     flaws = {Flaw.TURNED} if Fact.LEFT_BUT_TURNED in every else set()
+    if Fact.LEFT_BUT_STEADY in every:
+        flaws.add(Flaw.STEADY)
     if flaws:  # the energy of a free spin has its minimum at given angular momentum only
         grounds = {ground: names for ground, names in grounds.items() if ground is Ground.DECAYS}
     row = row_of({*grounds}, flaws)

@@ -13,6 +13,8 @@ class Word(StrEnum):
     ASYMPTOTIC_BUT_TURNED = "asymptotically stable but for a rotation of space"
     #: With cyclic coordinates nothing better can hold: they drift.
     ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable but for a drift of cyclic coordinates"
+    #: Steady motions of a family are near one another: what is disturbed may end in another one.
+    ASYMPTOTIC_BUT_STEADY = "asymptotically stable but for a change of the steady motion"
     STABLE = "stable"
     STABLE_BUT_CYCLIC = "stable but for a drift of cyclic coordinates"
     GYROSCOPIC = "gyroscopically stabilised only"
@@ -28,8 +30,13 @@ class Word(StrEnum):
 
     @property
     def asymptotic(self) -> bool:
-        """Whether it says that disturbed motions come back, be it but for drift or rotation."""
-        return self in (Word.ASYMPTOTIC, Word.ASYMPTOTIC_BUT_TURNED, Word.ASYMPTOTIC_BUT_CYCLIC)
+        """Whether it says that disturbed motions come back, be it but for drift, rotation, another speed."""
+        return self in (
+            Word.ASYMPTOTIC,
+            Word.ASYMPTOTIC_BUT_TURNED,
+            Word.ASYMPTOTIC_BUT_CYCLIC,
+            Word.ASYMPTOTIC_BUT_STEADY,
+        )
 
     @property
     def stable(self) -> bool:

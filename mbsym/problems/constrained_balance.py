@@ -1,0 +1,152 @@
+"""What the energy and the momenta of cyclic coordinates do where there are constraints.
+
+Ideal constraints do no work in displacements that they allow at an instant; so the balance of the energy is that of the
+open tree if every velocity row is homogeneous, J q' = 0: then the actual velocity is such a displacement.  With a part
+j(q, t) besides (a wall that moves, a table that turns) constraint forces take power from outside, and nothing is
+claimed.  The momentum of a cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint
+forces do not act on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from flint import fmpq_mat
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.constraints.rows import Row, said_rows
+from mbsym.problems.dissipation import Balance, EnergyLaw
+from mbsym.problems.reduction import Reduction
+
+#: A row is looked for among others in a table of no more entries than this.
+MOST_ENTRIES = 4_000_000
+
+
+@dataclass(frozen=True)
+class ConstrainedBalance(Balance):
+    """The balance of the open tree, as far as it holds under constraints; ``about`` says what they leave free."""
+
+    about: Reduction | None = None
+
+    @cached_property
+    def law(self) -> EnergyLaw:
+        """The law of the energy."""
+        free = Balance(self.scene, self.energy, self.signs, self.fixed, self.somewhere)
+        moving = [] if self.about is None else [name for name, _ in self.about.rates]
+        moving += [entry.coordinate for entry in self.scene.system.motion if not self.scene.lower(entry.rate).is_zero()]
+        if self._rows is None or not self._homogeneous or self._touched & set(moving):
+            return EnergyLaw.UNKNOWN
+        return free.law
+
+    @cached_property
+    def ignorable(self) -> tuple[str, ...]:
+        """The cyclic coordinates that no constraint touches."""
+        return tuple(name for name in self.absent if name not in self._touched)
+
+    @cached_property
+    def absent(self) -> tuple[str, ...]:
+        """The coordinates that occur neither in L nor in any other force of the open tree."""
+        return Balance(self.scene, self.energy, self.signs, self.fixed, self.somewhere).ignorable
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether no equation of the speeds depends on the coordinates that drop out, in all orders.
+
+        Each of them is absent from the open tree's equations and from the rows, or shifting it is a symmetry together
+        with a constant linear map of the others (a plane turned about its normal: yaw, and x and y with it).
+        """
+        if self.about is None or self._rows is None or self.energy is None:
+            return False
+        try:
+            return all(self._absent_everywhere(name) or self._symmetric(name) for name in self.about.idle)
+        except Failure:
+            return False
+
+    def _absent_everywhere(self, name: str) -> bool:
+        entries = [x for row in self._rows or () for x in _entries(row)]
+        return name in self.absent and not any(self.ring.depends_on(x, name) for x in entries)
+
+    def _symmetric(self, name: str) -> bool:
+        """Whether rational numbers W_ij and S_rk exist with which, i and j being dependent coordinates that drop out,
+
+            dT/d(name) + sum W_ij q'_j dT/dq'_i = 0,    dg_r/d(name) + sum W_ij q'_j dg_r/dq'_i = sum S_rk g_k,
+
+        where neither the force function nor any other force knows the name or these i, nor f the name.  The shift is
+        then a symmetry that leaves the independent speeds as they are, so that no equation of theirs depends on it.
+        """
+        ring, about, energies, rows = self.ring, self.about, self.energy, self._rows
+        assert about is not None
+        assert energies is not None
+        assert rows is not None
+        turned = [x for x in about.idle if x in about.dependent_speeds and x != name and self._absent_everywhere(x)]
+        forces = [energies.force_function.polynomial, *(self._forces or {}).values()]
+        forces += [row.position for row in rows if row.position is not None]
+        moved = [self._forces[x] for x in turned] if self._forces else []
+        if self._forces is None or any(not x.is_zero() for x in moved):
+            return False
+        speeds = [ring.generator("velocity", x) for x in turned]
+        if any(ring.depends_on(x, name) for x in forces):
+            return False
+        if any(not ring.velocity_derivative(x, y).is_zero() for x in forces for y in turned):
+            return False
+        functions = [energies.kinetic_energy.polynomial, *(row.velocity for row in rows)]
+        equations = []
+        for number, f in enumerate(functions):
+            slopes = [ring.velocity_derivative(f, x) for x in turned]
+            maps = [ring.times(speed, slope) for slope in slopes for speed in speeds]
+            combined = [
+                (g if number == r + 1 else ring.zero) for r in range(len(rows)) for g in (row.velocity for row in rows)
+            ]
+            equations.append((ring.derivative(f, name), [*maps, *combined]))
+        return _solvable(equations)
+
+    @property
+    def ring(self) -> Ring:
+        return self.scene.ring
+
+    @cached_property
+    def _rows(self) -> tuple[Row, ...] | None:
+        if not self.scene.motions:
+            return None
+        try:
+            return said_rows(self.scene)
+        except Failure:
+            return None
+
+    @cached_property
+    def _homogeneous(self) -> bool:
+        still = {self.ring.index("velocity", name): self.ring.zero for name in self.scene.system.coordinates}
+        return all(self.ring.substitute(row.velocity, still).is_zero() for row in self._rows or ())
+
+    @cached_property
+    def _touched(self) -> set[str]:
+        """The coordinates that a row depends on, or on whose velocity it does."""
+        names = self.scene.system.coordinates
+        rows = self._rows or ()
+        found = {name for row in rows for name, x in zip(names, row.partials, strict=True) if not x.is_zero()}
+        return found | {name for row in rows for x in _entries(row) for name in names if self.ring.depends_on(x, name)}
+
+
+def _entries(row: Row) -> list[Polynomial]:
+    return [row.velocity, *row.partials, *([] if row.position is None else [row.position])]
+
+
+def _solvable(equations: Sequence[tuple[Polynomial, Sequence[Polynomial]]]) -> bool:
+    """Whether rational numbers c_k exist with  p + sum c_k p_k = 0  in every equation (p, (p_1, p_2, ...))."""
+    lines: list[list[Any]] = []
+    for value, unknowns in equations:
+        columns = [x.to_dict() for x in (*unknowns, value)]
+        monomials = sorted({monomial for column in columns for monomial in column})
+        lines += [[column.get(monomial, 0) for column in columns] for monomial in monomials]
+        if len(lines) * len(columns) > MOST_ENTRIES:
+            return False
+    if not lines:
+        return True
+    width = len(lines[0])
+    whole = fmpq_mat(len(lines), width, [x for line in lines for x in line])
+    known = fmpq_mat(len(lines), width - 1, [x for line in lines for x in line[:-1]])
+    return bool(whole.rank() == known.rank())

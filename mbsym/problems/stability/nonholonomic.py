@@ -1,0 +1,83 @@
+"""Verdicts on steady motions of nonholonomic systems: by their roots, and by nothing else.
+
+The first approximation has no Hamiltonian structure: where no force does work its roots need not be symmetric about
+the imaginary axis (a bicycle, a sleigh), K > 0 proves nothing, and gyroscopic stabilisation has no meaning.  What holds
+is Lyapunov's first method; and, as steady motions come in families, along which roots are zero, the theorem of Lyapunov
+and Malkin: with as many zero roots as the family has dimensions and all others to the left, the motion is stable, and
+what is disturbed tends to a steady motion near by.
+
+Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapter V; A. V. Karapetyan, J. Appl.
+Math. Mech. 44 (1980) 295; I. G. Malkin, Theory of Stability of Motion, section 34.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from flint import acb_poly, arb_mat, ctx, fmpq_mat
+
+from mbsym.algebra.roots import count_roots
+from mbsym.problems.stability.linear_form import NonholonomicForm
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded, undecided
+
+#: What is concluded where roots are imaginary and simple.
+OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
+
+
+def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
+    """The verdict where all roots are to the left but ``zeros`` of them, those of idle coordinates not counted."""
+    if form.open_names:
+        return undecided(Because.NOT_CLOSED, ", ".join(form.open_names))
+    if zeros == 0 == form.family and not form.drifts:
+        return concluded({Fact.ROOTS_LEFT})
+    if zeros == form.family:
+        return concluded({Fact.LEFT_BUT_STEADY})
+    return undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
+
+
+def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
+    """The exact verdict; ``first_order`` is the rational matrix of (x, x')' = A (x, x')."""
+    size = first_order.nrows()
+    kept = [i for i in range(size) if i not in form.idle]
+    entries = first_order.tolist()
+    reduced = fmpq_mat(len(kept), len(kept), [entries[i][j] for i in kept for j in kept])
+    roots = count_roots(reduced.charpoly().coeffs())
+    if roots.right:
+        return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))
+    if roots.left + roots.zero == roots.degree:
+        return all_left(form, roots.zero)
+    blocks = count_roots(reduced.minpoly().coeffs())
+    if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
+        return undecided(Because.JORDAN_BLOCK)
+    if roots.zero > form.family:
+        return undecided(Because.MORE_ZERO_ROOTS, roots.zero, form.family)
+    return concluded({Fact.BOUNDED}, *OPEN)
+
+
+def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int) -> Verdict:
+    """The verdict with entries in balls, M, D, G, K, N; ``zero_power`` of the determinant is known in symbols."""
+    with ctx.workprec(bits):
+        size = len(matrices[0])
+        m, d, g, k, n = (arb_mat(size, size, [x for row in rows for x in row]) for rows in matrices)
+        try:
+            position, velocity = m.solve(k + n), m.solve(d + g)
+        except ZeroDivisionError:
+            return undecided(Because.MASS_SINGULAR)
+        first = arb_mat(2 * size, 2 * size)
+        for i in range(size):
+            first[i, size + i] = 1
+            for j in range(size):
+                first[size + i, j], first[size + i, size + j] = -position[i, j], -velocity[i, j]
+        rest = acb_poly(first.charpoly().coeffs()[zero_power:])
+        try:
+            roots = rest.complex_roots() if rest.degree() > 0 else []
+        except ValueError:
+            return undecided(Because.NOT_ENCLOSED)
+    if any(root.real > 0 for root in roots):
+        return concluded({Fact.ROOT_RIGHT})
+    if all(root.real < 0 for root in roots):
+        return all_left(form, form.zeros(zero_power))
+    return undecided(Because.NEAR_BORDER)
