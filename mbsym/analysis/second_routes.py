@@ -109,19 +109,19 @@ def _equilibrium(analysis: Analysis) -> Check | None:
     found, closed = analysis.optional("equilibrium"), _closed(analysis)
     if found is None:
         return None
-    if closed is not None:
-        return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
     if analysis.system.constraints:
         from mbsym.problems.reduction_check import check_reduced_motion
 
         about = analysis.reduced.about
         return check_reduced_motion(analysis.system, analysis.ring, found.residuals, about, dependent(analysis))
+    if closed is not None:
+        return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
     return perturbation.check_motion(analysis.system, analysis.ring, found.residuals, dependent(analysis))
 
 
 def _linearisation(analysis: Analysis) -> Check | None:
     linear, closed = analysis.optional("linearisation"), _closed(analysis)
-    if linear is None or closed is None:
+    if linear is None or closed is None or linear.constrained is not None:
         return None
     return comparison.check_linearisation(analysis.ring, linear, linearised(analysis, closed))
 

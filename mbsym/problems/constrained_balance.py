@@ -19,6 +19,7 @@ from flint import fmpq_mat
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.constraints.rows import Row, said_rows
+from mbsym.mechanics.motion import turning
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.reduction import Reduction
 
@@ -36,9 +37,8 @@ class ConstrainedBalance(Balance):
     def law(self) -> EnergyLaw:
         """The law of the energy."""
         free = Balance(self.scene, self.energy, self.signs, self.fixed, self.somewhere)
-        moving = [] if self.about is None else [name for name, _ in self.about.rates]
-        moving += [entry.coordinate for entry in self.scene.system.motion if not self.scene.lower(entry.rate).is_zero()]
-        if self._rows is None or not self._homogeneous or self._touched & set(moving):
+        moving = set(self.scene.system.coordinates) - self._resting
+        if self._rows is None or not self._homogeneous or self._touched & moving:
             return EnergyLaw.UNKNOWN
         return free.law
 
@@ -54,10 +54,11 @@ class ConstrainedBalance(Balance):
 
     @cached_property
     def closed(self) -> bool:
-        """Whether no equation of the speeds depends on the coordinates that drop out, in all orders.
+        """Whether the steady motion may be shifted along every coordinate that drops out, and is a steady motion again.
 
         Each of them is absent from the open tree's equations and from the rows, or shifting it is a symmetry together
-        with a constant linear map of the others (a plane turned about its normal: yaw, and x and y with it).
+        with a constant linear map of the others (a plane turned about its normal: yaw, and x and y with it).  So the
+        zero root of each belongs to a family of steady motions.
         """
         if self.about is None or self._rows is None or self.energy is None:
             return False
@@ -71,18 +72,30 @@ class ConstrainedBalance(Balance):
         return name in self.absent and not any(self.ring.depends_on(x, name) for x in entries)
 
     def _symmetric(self, name: str) -> bool:
-        """Whether rational numbers W_ij and S_rk exist with which, i and j being dependent coordinates that drop out,
+        """Whether rational numbers W_ij and S_rk exist with which, i and j being absent coordinates,
 
             dT/d(name) + sum W_ij q'_j dT/dq'_i = 0,    dg_r/d(name) + sum W_ij q'_j dg_r/dq'_i = sum S_rk g_k,
 
         where neither the force function nor any other force knows the name or these i, nor f the name.  The shift is
-        then a symmetry that leaves the independent speeds as they are, so that no equation of theirs depends on it.
+        then a symmetry.  If it leaves the independent speeds as they are (the i are dependent), no equation of theirs
+        depends on the name; else it does, and the name has to rest if what is shifted is to be steady.
         """
+        return self._maps(name, True) or (name in self._resting and self._maps(name, False))
+
+    @cached_property
+    def _resting(self) -> set[str]:
+        """The coordinates that do not move on the unperturbed motion."""
+        moving = {name for name, _ in self.about.rates} if self.about is not None else set()
+        return {name for name in self.scene.system.coordinates if name not in moving} - set(turning(self.scene))
+
+    def _maps(self, name: str, dependent: bool) -> bool:
+        """The symmetry of ``_symmetric`` with all i and j ``dependent``, or any."""
         ring, about, energies, rows = self.ring, self.about, self.energy, self._rows
         assert about is not None
         assert energies is not None
         assert rows is not None
-        turned = [x for x in about.idle if x in about.dependent_speeds and x != name and self._absent_everywhere(x)]
+        turned = [x for x in about.idle + about.dependent_speeds if x != name and self._absent_everywhere(x)]
+        turned = [x for x in dict.fromkeys(turned) if x in about.dependent_speeds or not dependent]
         forces = [energies.force_function.polynomial, *(self._forces or {}).values()]
         forces += [row.position for row in rows if row.position is not None]
         moved = [self._forces[x] for x in turned] if self._forces else []

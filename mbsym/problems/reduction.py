@@ -55,10 +55,14 @@ class Reduction(Shown):
     family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
 
     def dimension(self, speeds: Sequence[int], signs: Signs) -> int:
-        """In how many dimensions the motions of the family differ in these speeds and their coordinates, at least."""
+        """In how many dimensions the motions of the family differ in these speeds and their coordinates, at least.
+
+        Coordinates that drop out are not counted.
+        """
         rows: list[Row] = []
         for k in speeds:
-            for line in self.family[k]:
+            values, rates = self.family[k]
+            for line in (rates,) if self.speeds[k] in self.idle else (values, rates):
                 rows.append({p: x.polynomial for p, x in enumerate(line)})
         if not rows or not rows[0]:
             return 0

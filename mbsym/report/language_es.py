@@ -191,6 +191,7 @@ SENTENCES = {
 WORDS = {
     str(Word.ASYMPTOTIC): "asintóticamente estable",
     str(Word.ASYMPTOTIC_BUT_TURNED): "asintóticamente estable salvo una rotación del espacio",
+    str(Word.ASYMPTOTIC_BUT_STEADY): "asintóticamente estable salvo el paso a un movimiento estacionario cercano",
     str(
         Word.ASYMPTOTIC_BUT_CYCLIC
     ): "asintóticamente estable respecto a las demás variables; las coordenadas cíclicas pueden alejarse",

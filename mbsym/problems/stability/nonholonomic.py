@@ -13,9 +13,10 @@ Math. Mech. 44 (1980) 295; I. G. Malkin, Theory of Stability of Motion, section 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
-from flint import acb_poly, arb_mat, ctx, fmpq_mat
+from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra.roots import count_roots
 from mbsym.problems.stability.linear_form import NonholonomicForm
@@ -71,13 +72,32 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
             first[i, size + i] = 1
             for j in range(size):
                 first[size + i, j], first[size + i, size + j] = -position[i, j], -velocity[i, j]
-        rest = acb_poly(first.charpoly().coeffs()[zero_power:])
-        try:
-            roots = rest.complex_roots() if rest.degree() > 0 else []
-        except ValueError:
-            return undecided(Because.NOT_ENCLOSED)
-    if any(root.real > 0 for root in roots):
-        return concluded({Fact.ROOT_RIGHT})
-    if all(root.real < 0 for root in roots):
-        return all_left(form, form.zeros(zero_power))
-    return undecided(Because.NEAR_BORDER)
+        right = _to_the_right([arb(x) for x in first.charpoly().coeffs()[zero_power:]])
+    if right is None:
+        return undecided(Because.NEAR_BORDER)
+    if right:
+        return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (right,)))
+    return all_left(form, form.zeros(zero_power))
+
+
+def _to_the_right(coefficients: Sequence[arb]) -> int | None:
+    """How many roots have a positive real part, by Routh's scheme, the other ones a negative one.
+
+    None where a ball leaves the sign of a leading element open: sharper than balls around the roots themselves, whose
+    radius is that of their isolation.
+    """
+    upper, lower = list(coefficients[::-1][::2]), list(coefficients[::-1][1::2])
+    signs = []
+    for _ in coefficients:
+        if not (upper[0] > 0 or upper[0] < 0):
+            return None
+        signs.append(bool(upper[0] > 0))
+        if not lower:
+            break
+        if not (lower[0] > 0 or lower[0] < 0):
+            return None
+        ratio = upper[0] / lower[0]
+        padded = [*lower[1:], arb(0)]
+        following = [x - ratio * y for x, y in zip(upper[1:], padded, strict=False)]
+        upper, lower = lower, following
+    return sum(a != b for a, b in pairwise(signs))

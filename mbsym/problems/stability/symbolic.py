@@ -275,9 +275,7 @@ def _required(
     place, strict = places
     made = p if " " in label or label == "discriminant" else ()
     try:
-        return Requirement(
-            label + suffix, value, known.condition(value), place=place, strict=strict, coefficients=made
-        )
+        return Requirement(label + suffix, value, known.condition(value), place=place, strict=strict, coefficients=made)
     except NoClosedForm:
         return replace(unwritten(p[0]), label=label + suffix, place=place, strict=strict, coefficients=made)
 

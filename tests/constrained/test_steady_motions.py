@@ -1,0 +1,172 @@
+"""Verdicts on motions of constrained systems against what is known of them; each is tried where it must be denied."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import mbsym
+from mbsym.analysis.pipeline import Analysis
+from mbsym.problems.dissipation import EnergyLaw
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.word import Word
+from mbsym.source import read
+
+HERE = Path(__file__).parent
+
+
+def described(text: str) -> Analysis:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    return Analysis(system)
+
+
+def changed(name: str, *changes: tuple[str, str]) -> Analysis:
+    text = (HERE / name).read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return described(text)
+
+
+#: Weave 4.292382536341..., capsize 6.024262015388... (Meijaard et al. 2007; tests/references/bicycle_whipple.json).
+SPEEDS = [
+    ("4", Word.UNSTABLE),
+    ("4.292382536341", Word.UNSTABLE),
+    ("4.292382536342", Word.ASYMPTOTIC_BUT_STEADY),
+    ("6.024262015388", Word.ASYMPTOTIC_BUT_STEADY),
+    ("6.024262015389", Word.UNSTABLE),
+    ("10", Word.UNSTABLE),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("speed", "word"), SPEEDS)
+def test_the_bicycle_is_stable_between_weave_and_capsize(speed: str, word: Word) -> None:
+    found = changed(
+        "bicycle.yaml", ("v: {sign: positive, value: 5,", f"v: {{sign: positive, value: {speed},")
+    ).stability
+    assert found.numerical is not None
+    assert found.numerical.word is word
+    theorem = "Lyapunov-Malkin" if word is Word.ASYMPTOTIC_BUT_STEADY else "Lyapunov's first method"
+    assert found.numerical.theorem == theorem
+
+
+@pytest.mark.slow
+def test_the_bicycle_has_its_conditions_in_symbols() -> None:
+    """A polynomial of degree 4 in lambda; of the Hurwitz determinant there is the form in its coefficients."""
+    roll_and_steer, speed = mbsym.load(HERE / "bicycle.yaml").stability.subsystems
+    assert roll_and_steer.coordinates == ("roll", "steer")
+    assert len(roll_and_steer.characteristic) == 5
+    assert max(x.terms for x in roll_and_steer.characteristic) < 300
+    assert {"a0", "a1", "a3"} <= {label for label, _, _ in roll_and_steer.conditions}
+    assert speed.coordinates == ("rear",)
+
+
+def test_a_sleigh_is_stable_forwards_and_unstable_backwards() -> None:
+    """(J + m a^2) omega' = -m a v omega (Neimark & Fufaev, chapter II): v > 0 it is."""
+    found = mbsym.load(HERE / "sleigh.yaml").stability
+    assert found.verdict.word is Word.DEPENDS
+    conditions = [(str(x), relation) for part in found.subsystems for _, x, relation in part.conditions]
+    assert conditions == [("v", ">")]
+    assert found.numerical is not None
+    assert (found.numerical.word, found.numerical.theorem) == (Word.ASYMPTOTIC_BUT_STEADY, "Lyapunov-Malkin")
+    backwards = changed("sleigh.yaml", ("value: 3", "value: -3")).stability.numerical
+    assert backwards is not None
+    assert backwards.word is Word.UNSTABLE
+
+
+def test_a_family_that_is_not_given_leaves_the_zero_root_open() -> None:
+    """The speed as a number: then nothing says that other speeds are steady, too."""
+    found = changed(
+        "sleigh.yaml",
+        ("x: {rate: v}", "x: {rate: 3}"),
+        ("  v: {sign: real, value: 3, meaning: speed along the edge}\n", ""),
+    )
+    verdict = found.stability.verdict
+    assert verdict.word is Word.UNDECIDED
+    assert verdict.because(Because.MORE_ZERO_ROOTS)
+
+
+def test_a_sleigh_on_a_slope_says_nothing_of_a_heading_that_matters() -> None:
+    """A force along x: the heading is felt in terms of higher order at least, and there is no family of motions."""
+    force = "loads:\n  - force: {body: sleigh, point: [a, 0, 0], components: [F, 0, 0], axes: 0}\nconstraints:"
+    found = changed("sleigh.yaml", ("constraints:", force), ("parameters:", "parameters:\n  F: {sign: real, value: 1}"))
+    assert not found.equilibrium.satisfied
+
+
+def test_the_upright_disc_rolls_above_its_critical_spin() -> None:
+    """w^2 > g/(3 r) is necessary; imaginary roots prove nothing more, and a zero root is that of turning discs."""
+    found = mbsym.load(HERE / "disc.yaml").stability
+    conditions = [(str(x), relation) for part in found.subsystems for _, x, relation in part.conditions]
+    assert conditions == [("3*r*w**2 - g", ">")]
+    assert found.verdict.word is Word.DEPENDS
+    fast = changed(
+        "disc.yaml",
+        ("w: real", "w: {sign: real, value: 10}"),
+        ("m: positive, r: positive, g: positive", "m: 1, r: 1, g: 10"),
+    )
+    slow = changed(
+        "disc.yaml",
+        ("w: real", "w: {sign: real, value: 1}"),
+        ("m: positive, r: positive, g: positive", "m: 1, r: 1, g: 10"),
+    )
+    assert fast.stability.numerical is not None
+    assert fast.stability.numerical.word is Word.UNDECIDED
+    assert slow.stability.numerical is not None
+    assert slow.stability.numerical.word is Word.UNSTABLE
+
+
+LINKS = """
+mbsym: 1
+name: Parallelogram
+parameters: {{m: positive, l: positive, g: positive, d: positive}}
+bodies:
+  - {{name: left, attached to: 0, rotation: {{axes: [3], angles: [a]}}, mass: 0}}
+  - {{name: coupler, attached to: left, connection point: [0, {end}, 0], rotation: {{axes: [3], angles: [b]}}, mass: m,
+     mass centre: [d/2, 0, 0], inertia about: mass centre, inertia: [0, 0, m*d**2/12]}}
+  - {{name: right, attached to: 0, connection point: [d, 0, 0], rotation: {{axes: [3], angles: [c]}}, mass: 0}}
+loads:
+  - uniform gravity: {{vector: [0, -g, 0]}}
+constraints:
+  - coincide: [{{body: coupler, point: [d, 0, 0]}}, {{body: right, point: [{x}, {end}, 0]}}]
+dependent: [b, c]
+motion: {{a: 0, b: 0, c: 0}}
+"""
+
+
+def test_theorems_on_energy_hold_where_constraints_are_holonomic() -> None:
+    hanging = described(LINKS.format(end="-l", x="0")).stability.verdict
+    assert (hanging.word, hanging.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
+    standing = described(LINKS.format(end="l", x="0")).stability.verdict
+    assert standing.word is Word.UNSTABLE
+
+
+TIED = """
+mbsym: 1
+name: Two pendulums, tied
+parameters: {{m: positive, l: positive, g: positive}}
+bodies:
+  - {{name: first, attached to: 0, rotation: {{axes: [3], angles: [a]}}, mass: m, mass centre: [0, -l, 0]}}
+  - {{name: second, attached to: 0, rotation: {{axes: [3], angles: [c]}}, mass: m, mass centre: [0, -l, 0]}}
+loads:
+  - uniform gravity: {{vector: [0, -g, 0]}}
+constraints:
+  - {tie}
+motion: {{a: 0, c: 0}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("tie", "law"),
+    [
+        ("relation: c = 2*a", EnergyLaw.CONSERVED),
+        ("relation: c = a*(2 + sin(t))", EnergyLaw.UNKNOWN),
+        ("velocity: c_dot = 2*a_dot", EnergyLaw.CONSERVED),
+        ("velocity: c_dot = 2*a_dot + a", EnergyLaw.UNKNOWN),
+    ],
+)
+def test_constraints_that_move_take_power(tie: str, law: EnergyLaw) -> None:
+    """With J q' + j = 0 and j != 0 constraint forces do work: nothing is claimed about the energy."""
+    assert described(TIED.format(tie=tie)).balance.law is law
