@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import Failure
+from mbsym.analysis import constrained
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.problems import integrals
 from mbsym.problems.checks import EXACT, NUMERICAL
@@ -22,6 +23,8 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     Raises Failure where formulas outgrow a limit; the reason names then what is conserved nevertheless, if the
     straight-line program from which that is read has passed its check.
     """
+    if analysis.system.constraints:
+        return constrained.integrals_of(analysis)
     if analysis.speed_form is not None:
         from mbsym.problems import speed_integrals
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.integrals import Integral
 
 #: The checks of what only constrained systems have.
 CHECKS = ("constraints", "constrained motion")
@@ -67,3 +68,17 @@ def motion_check(analysis: Analysis) -> Check | None:
     from mbsym.problems.constraints.checks import check_embedded
 
     return check_embedded(analysis.system, analysis.ring, closed.constraints, closed.embedded, programs_of(analysis))
+
+
+def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
+    """What the constrained motion keeps."""
+    from mbsym.problems.constraints.integrals import integrals
+
+    return integrals(analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
+
+
+def integrals_check(analysis: Analysis, found: tuple[Integral, ...]) -> Check:
+    """Their rates along the motion with multipliers."""
+    from mbsym.problems.constraints.checks import check_integrals
+
+    return check_integrals(analysis.system, analysis.ring, found, analysis.constraints, programs_of(analysis))

@@ -71,7 +71,7 @@ KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability"),
+        *("judgeable", "balance", "stability", "integrals"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         *("check: equilibrium", "check: perturbed motion"),
     )
@@ -289,7 +289,7 @@ class Analysis(Stages):
         "first integrals",
         integrals,
         conserved.first_integrals,
-        ("equations of motion", "first integrals"),
+        ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
     )
 

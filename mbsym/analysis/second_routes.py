@@ -139,6 +139,8 @@ def _perturbed(analysis: Analysis) -> Check | None:
 
 def _integrals(analysis: Analysis) -> Check | None:
     found = analysis.optional("integrals")
+    if found and analysis.system.constraints:
+        return constrained.integrals_check(analysis, found)
     return perturbation.check_integrals(analysis.oracles, analysis.programs, found) if found else None
 
 

@@ -23,11 +23,12 @@ from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
-from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
 from mbsym.model.system import System, acceleration_name
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check, Pair, _verdict
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints
+from mbsym.problems.integrals import Integral
 
 STATES = 3
 
@@ -113,6 +114,41 @@ def check_embedded(
 
     routes = ("embedded equations, closed form", "d'Alembert's principle in inertial axes")
     return compared_on_manifold("constrained motion", routes, system, ring, programs, pairs)
+
+
+def check_integrals(
+    system: System, ring: Ring, found: Sequence[Integral], tied: Constraints, programs: ConstrainedPrograms
+) -> Check:
+    """dI/dt along the motion, by series in time, with the accelerations of the equations with multipliers."""
+
+    def pairs(one: OnManifold) -> list[Pair]:
+        state = with_multipliers(one.state, tied, programs)
+        moving = Oracle(system, state)
+        carry = Carrier(ring, TaylorSeries(state.numbers, moving.in_time), moving.in_time)
+        return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in found]
+
+    routes = ("dI/dt along the motion with multipliers", "zero")
+    return compared_on_manifold("first integrals", routes, system, ring, programs, pairs)
+
+
+def with_multipliers(state: State, tied: Constraints, programs: ConstrainedPrograms) -> State:
+    """The state with the accelerations of  M q'' - J^T lambda = f,  J q'' = -gamma,  J of the independent rows."""
+    program, n, m = programs.tree.program, len(tied.coordinates), len(tied.independent)
+    rows = [programs.jacobian[i] for i in tied.independent]
+    nodes = [x for row in programs.tree.mass_matrix for x in row] + [x for row in rows for x in row]
+    nodes += [*programs.tree.forcing, *(programs.acceleration[i] for i in tied.independent)]
+    values = program.evaluate(nodes, state.values, state.numbers)
+    mass, jacobian = values[: n * n], values[n * n : n * n + m * n]
+    right, gamma = values[n * n + m * n : n * n + m * n + n], values[n * n + m * n + n :]
+    zero = state.numbers.zero
+    whole = [[*mass[i * n : i * n + n], *(-jacobian[k * n + i] for k in range(m)), right[i]] for i in range(n)]
+    whole += [[*jacobian[k * n : k * n + n], *[zero] * m, -gamma[k]] for k in range(m)]
+    done = eliminated(whole, range(n + m))
+    if done.rank < n + m:
+        raise ZeroDivisionError("the equations with multipliers are singular there")
+    solved = {column: done.rows[row][n + m] for row, column in done.pivots}
+    moved = {acceleration_name(name): solved[k] for k, name in enumerate(tied.coordinates)}
+    return State(state.numbers, {**state.values, **moved})
 
 
 def accelerated(state: State, carry: Any, found: Constraints, embedded: Embedded) -> State:

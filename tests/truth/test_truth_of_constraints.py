@@ -1,0 +1,88 @@
+"""What is said to be kept with constraints, on systems where it must be said and on systems where it must be denied."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import mbsym
+from mbsym.analysis.constrained import programs_of
+from mbsym.analysis.pipeline import Analysis
+from mbsym.formulas.formula import Formula
+from mbsym.problems.checks import EXACT, FAILED
+from mbsym.problems.constraints.checks import check_integrals
+
+PLANE = """
+mbsym: 1
+name: A particle and a wheel
+parameters: {m: positive, J: positive, r: positive, k: positive, c: positive, Om: positive}
+prescribed: {s: {rate: Om}}
+bodies:
+  - {name: wheel, attached to: 0, connection point: [x, y, z], mass: m, rotation: {axes: [3], angles: [phi]},
+     inertia about: mass centre, inertia: [J, J, J], coordinates: [x, y, z, phi]}
+"""
+
+
+def kept(constraints: str, loads: str = "") -> set[str]:
+    analysis = analysed(constraints, loads)
+    assert all(check.outcome == EXACT for check in analysis.checks), analysis.checks
+    return {item.name for item in analysis.integrals if item.status == "proved"}
+
+
+def analysed(constraints: str, loads: str = "") -> Analysis:
+    text = PLANE + (f"loads:\n  - {loads}\n" if loads else "")
+    return mbsym.loads(
+        text + "constraints:\n" + "".join(f"  - {one}\n" for one in constraints.split("; ")), (1, 2, 3, 7)
+    )
+
+
+ENERGY = "generalised energy"
+
+
+def test_a_wheel_that_rolls_straight_on_keeps_one_momentum_of_two() -> None:
+    """x = r phi: neither m x' nor J phi' is kept if the other is pushed, (m r^2 + J) phi' is."""
+    found = kept("relation: x = r*phi")
+    assert {ENERGY, "momentum of y", "momentum of z"} <= found
+    assert not {"momentum of x", "momentum of phi"} & found
+    assert any("along the displacement" in name for name in found)
+
+
+def test_the_blade_takes_the_momentum_of_cyclic_coordinates() -> None:
+    found = kept("velocity: x_dot*sin(phi) = y_dot*cos(phi)")
+    assert {ENERGY, "momentum of z"} <= found
+    assert not {"momentum of x", "momentum of y", "linear momentum along axis 1"} & found
+    # Through its mass centre the blade makes no moment: J phi' is kept.
+    assert "momentum of phi" in found
+
+
+@pytest.mark.parametrize(
+    ("constraint", "is_kept"),
+    [
+        ("relation: x = r", True),
+        ("relation: x = r*sin(s)", False),  # a moving wall works
+        ("relation: x = y*sin(t)", False),  # j = -y cos t
+        ("velocity: x_dot = r*Om", False),  # a belt works
+        ("velocity: x_dot*cos(t) = y_dot*sin(t)", True),  # homogeneous: no work, although it turns with time
+        ("distance: {between: [{body: wheel, point: [0, 0, 0]}, {body: 0, point: [0, 0, 0]}], length: r}", True),
+        ("distance: {between: [{body: wheel, point: [0, 0, 0]}, {body: 0, point: [0, 0, 0]}], length: r + c*t}", False),
+    ],
+)
+def test_energy_is_kept_where_the_constraints_do_no_work(constraint: str, is_kept: bool) -> None:
+    found = {item.name for item in analysed(constraint).integrals}
+    assert (ENERGY in found) == is_kept
+
+
+def test_damping_is_no_less_felt_with_constraints() -> None:
+    assert ENERGY not in kept("relation: x = r*phi", "damper: {coordinate: phi, coefficient: c}")
+    # A spring has a force function.
+    assert ENERGY in kept("relation: y = r", "spring: {coordinate: x, stiffness: k}")
+
+
+def test_a_false_integral_fails_its_check() -> None:
+    analysis = analysed("relation: x = r*phi")
+    first, *_ = (item for item in analysis.integrals if "along the displacement" in item.name)
+    ring, programs = analysis.ring, programs_of(analysis)
+    assert check_integrals(analysis.system, ring, [first], analysis.constraints, programs).outcome == EXACT
+    wrong = replace(first, formula=Formula(ring, first.formula.polynomial * ring.generator("coordinate", "x")))
+    assert check_integrals(analysis.system, ring, [wrong], analysis.constraints, programs).outcome == FAILED
