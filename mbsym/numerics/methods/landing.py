@@ -21,11 +21,13 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics, Frozen
+from mbsym.numerics.methods.blocks import MOST, Block, Blocks
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.leaving import TOGETHER, Leaving
 from mbsym.numerics.methods.led import LedRun, lead
 from mbsym.numerics.methods.narrow import BESIDE, along, met
 from mbsym.numerics.methods.passed import MOST_KEPT, Narrow, Passed
+from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.sides import Sides, endless, feature_kernel
 
 #: So many switches where nothing moves between them end the run.
@@ -93,6 +95,7 @@ class LandingRun:
         if first is not None:
             self._runs[None] = first
             start = first.state
+        self._blocks = Blocks(self._positive, self._switches.looked_for, self._narrow_values, self._kinds)
         self.restart(at, start)
 
     def restart(self, time: float, state: Any) -> None:
@@ -102,6 +105,7 @@ class LandingRun:
         self._ahead: Run | None = None
         self._windows: list[_Window] = []
         self._together = 0
+        self._length = 0.0  # of the last step
         self._beyond: tuple[Piece, Any] | None = None  # a step that ends after ``time``, and the state there
 
     # --- what a run offers ---
@@ -120,6 +124,12 @@ class LandingRun:
         found[:, :done] = np.asarray(self.state)[:, None]
         try:
             while done < len(at):
+                block = self._block(at[done:])
+                if block is not None:
+                    last = done + block.rows.shape[1]
+                    found[:, done:last] = block.rows
+                    done = last
+                    continue
                 # Steps of one length end at the last row: there is more in a step than in what lies between.
                 piece = self.step(at[-1]) if self._method.traits.fixed else self._onwards(float(at[-1]))
                 last = int(np.searchsorted(at, piece.end, side="right"))
@@ -134,6 +144,26 @@ class LandingRun:
             self._beyond = piece, self.state
             self.time, self.state = float(at[-1]), found[:, -1].copy()
         return found
+
+    def _block(self, rows: Any) -> Block | None:
+        """A stretch of steps at once, where nothing is near; the last row is left to single steps."""
+        run, length = self._ahead, self._length
+        plain = isinstance(run, CompiledRun) and self._sides is not None and run.time == self.time
+        if not plain or self._windows or self._beyond is not None or not length > 0 or self._longest is not None:
+            return None
+        assert isinstance(run, CompiledRun)
+        assert self._sides is not None
+        bound = min(float(rows[-1]), self._switches.next_knot(self._sides))
+        if self.work.steps + 2 * MOST > self._setting.step_limit:
+            return None
+        before = {name: getattr(run.work, name) for name in COUNTS}
+        block = self._blocks.ahead(run, length, bound, rows)
+        for name in COUNTS:
+            setattr(self.work, name, getattr(self.work, name) + getattr(run.work, name) - before[name])
+        if block is None:
+            return None
+        self.time, self.state, self._together, self._length = block.end, run.state, 0, block.length
+        return block
 
     def _onwards(self, last: float) -> Piece:
         """A step of the method's own choosing; where none can be made, one that ends at ``last``."""
@@ -239,6 +269,7 @@ class LandingRun:
         assert self._ahead is not None
         self._note_narrow(piece)
         self._check_sides(piece)
+        self._length = max(float(piece.end - piece.start), 0.5 * self._length)  # a piece may be the rest of a step
         self.time, self.state = piece.end, self._ahead.state
         self._windows = [window for window in self._windows if window.end > self.time]
         self._together = 0
@@ -279,7 +310,8 @@ class LandingRun:
         """Other sides for some switches: those that the motion then stays on."""
         assert self._sides is not None
         self._sides = self._switches.choose(self.time, self.state, self._sides, turned)
-        self._ahead = None
+        self._ahead, self._length = None, 0.0
+        self._blocks.begin()
 
     def _positive(self, points: Any) -> Any:
         """What is positive on the present sides."""

@@ -119,6 +119,21 @@ def _is_plain(kind: str, coefficients: Any, most: float) -> bool:
     return least > SHALLOW * (abs(middle) + rest) or 2.0 * least > bend * most**2
 
 
+def harmless(kind: str, found: Any) -> Any:
+    """Whether functions of u with the series ``found`` (..., NODES) do nothing narrow for sure, for each series.
+
+    Besides what is far: a peak rises by more than 1 above the ends of a step, |u - c_0| <= sum |c_k|; a turn is narrow
+    where |du/ds| > 1/(2 NARROW), and |du/ds| <= sum k^2 |c_k|.
+    """
+    sizes = np.abs(found[..., 1:])
+    middle, most = found[..., 0], np.sum(sizes, axis=-1) * (1 + 1e-9)
+    if kind == PEAK:
+        return (middle + most < -SMALL) | ((2 * most < 1) & (middle - most > -SMALL))
+    if kind == TURN:
+        return (np.abs(middle) > most) | (sizes @ np.arange(1, NODES) ** 2 < 0.5 / NARROW)
+    return np.abs(middle) - most > SHALLOW * (np.abs(middle) + most)
+
+
 def _others(values: Any, s: float) -> list[float]:
     """The values at the ends of a step, but at the one where s is."""
     return [float(x) for x, edge in ((values[0], s <= -1 + 1e-6), (values[-1], s >= 1 - 1e-6)) if not edge]

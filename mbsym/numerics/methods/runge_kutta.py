@@ -139,6 +139,21 @@ class CompiledRun(Stepping):
         count[PREPARED] = count[STEPS]
         self.time, self.state = self.reached, self.x.copy()
 
+    def saved(self) -> tuple[Any, ...]:
+        """All that the next steps depend on, for ``undo``."""
+        return (*(array.copy() for array in self._memory), self.time, np.array(self.state), self.work.steps,
+                self.work.rejected)  # fmt: skip
+
+    def undo(self, saved: tuple[Any, ...]) -> None:
+        """Back to where ``saved`` was asked for; evaluations since then have been made and stay counted."""
+        *arrays, self.time, self.state, self.work.steps, self.work.rejected = saved
+        for array, before in zip(self._memory, arrays, strict=True):
+            array[...] = before
+
+    @property
+    def _memory(self) -> tuple[Any, ...]:
+        return self.x, self.carry, self.old, self.k, self.terms, self.clock, self.count
+
     @property
     def reached(self) -> Any:
         """The end of the last step: a float, or a longdouble where the run is extended."""
