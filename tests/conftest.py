@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import shutil
 import subprocess
@@ -69,6 +70,11 @@ def browsed(file: Path, *options: str, wait: int = 1000) -> tuple[str, list[str]
     done = subprocess.run([*command, file.as_uri()], capture_output=True, timeout=120)
     said = done.stderr.decode(errors="replace").splitlines()
     return done.stdout.decode(errors="replace"), [line for line in said if "CONSOLE" in line]
+
+
+def pytest_configure() -> None:
+    """As the command has it: formulas are many small objects and hardly ever cycles."""
+    gc.set_threshold(200_000, 20, 20)
 
 
 @pytest.fixture(scope="session", autouse=True)

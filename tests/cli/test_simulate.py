@@ -688,7 +688,7 @@ def test_auto_takes_an_explicit_method_where_nothing_is_stiff() -> None:
 def test_auto_takes_an_implicit_method_for_a_stiff_system(tmp_path: Path) -> None:
     """x creeps as exp(-1e-6 t) once its velocity has settled; the other particle swings as cos t."""
     path = described(tmp_path, STIFF)
-    done = mbsym(path, "--time", 300, "--every", 50, "-f", "csv", "-o", tmp_path / "out")
+    done = mbsym(path, "--time", 100, "--every", 20, "-f", "csv", "-o", tmp_path / "out")
     assert done.exit_code == 0, done.output
     content = summary(tmp_path / "out")
     # Nothing links the two, so only the stiff one pays.
