@@ -96,7 +96,15 @@ def _equations(analysis: Analysis) -> Check | None:
 
 def _program(analysis: Analysis) -> Check | None:
     found = analysis.optional("programs")
-    return None if found is None else comparison.check_program(analysis.oracles, found)
+    if found is None:
+        return None
+    checked = comparison.check_program(analysis.oracles, found)
+    if analysis.speed_form is None or checked.failed:
+        return checked
+    from mbsym.problems import speed_checks
+
+    in_speeds = speed_checks.check_program(analysis.oracles, analysis.speed_form)
+    return in_speeds if in_speeds.failed else checked
 
 
 def _mass_matrix(analysis: Analysis) -> Check | None:

@@ -23,11 +23,12 @@ from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.matrices import determinant
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
-from mbsym.mechanics.variables import ring_environment
+from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
 
@@ -125,6 +126,13 @@ class SpeedForm:
         named = dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
         vectors = {self.ring.generators[k].name: x for k, x in self._cosines.items()}
         return {name: vectors.get(name, named.get(name)) for name in self.system.variables}
+
+    def state_in_coordinates(self, program: Program) -> list[Node]:
+        """(s, u) in (q, q', t), as nodes of a program whose inputs bear the declared names."""
+        carry = Carrier(self.ring, program, program_environment(self.system, program))
+        plain = {position.name: self.ring.context.gen(position.index) for position in self.positions}
+        positions = [self.in_angles(x) for x in plain.values()]
+        return [carry(x) for x in (*positions, *self.in_coordinates)]
 
     def _form(self, scene: Scene, speed: Speed) -> Polynomial:
         spin = scene.motions[speed.body].angular_velocity

@@ -9,9 +9,14 @@ du/dq' from the spins of the bodies; the kinematic equations s' = g(s, u) are co
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from mbsym.algebra.evaluate import Carrier
 from mbsym.mechanics.oracle import Oracle
+from mbsym.mechanics.speed_programs import speed_program
 from mbsym.mechanics.speed_states import slopes
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import D_ALEMBERT, STATES, Check, Pair, compare
@@ -21,37 +26,69 @@ from mbsym.problems.speeds import SpeedEquations
 
 def check_equations(truth: Oracles, found: SpeedEquations) -> Check:
     """Kane's closed equations and the kinematic ones against d'Alembert's principle."""
-    system = truth.system
-    declared = {speed.name: speed for speed in system.speeds}
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
-        errors = []
-        for r, row in enumerate(found.mass_matrix):
-            total = -carry(found.forcing[r].polynomial)
-            for entry, rate in zip(row, found.speed_rates, strict=True):
-                total = total + carry(entry.polynomial) * state.values[rate]
-            errors.append(total)
+        mass = [[carry(entry.polynomial) for entry in row] for row in found.mass_matrix]
+        errors = _errors(oracle, found.speed_rates, mass, [carry(x.polynomial) for x in found.forcing])
         balance = [carry(a.polynomial) - carry(b.polynomial) for a, b in zip(found.needed, found.supplied, strict=True)]
-        compared: list[Pair] = list(
-            zip([f"equation {u} as it stands" for u in found.speeds], balance, errors, strict=True)
-        )
-        columns = []
-        for u in found.speeds:
-            if u in declared:
-                columns.append(slopes(oracle, declared[u]))
-            else:
-                one, zero = state.numbers.one, state.numbers.zero
-                columns.append([one if velocity_name(name) == u else zero for name in system.coordinates])
-        for i, name in enumerate(system.coordinates):
-            total = sum((e * column[i] for e, column in zip(errors, columns, strict=True)), state.numbers.zero)
-            compared.append((f"equation {name}", total, oracle.residuals[name]))
-        for position, derived in zip(found.positions, found.rates, strict=True):
-            compared.append((f"{position}'", carry(derived.polynomial), state.values[velocity_name(position)]))
-        return compared
+        names = [f"equation {u} as it stands" for u in found.speeds]
+        rates = [carry(x.polynomial) for x in found.rates]
+        compared: list[Pair] = list(zip(names, balance, errors, strict=True))
+        return compared + _against(oracle, found.speeds, found.positions, errors, rates)
 
     return compare(truth, "equations of motion", ("Kane, closed form", D_ALEMBERT), pairs, STATES)
+
+
+def check_program(truth: Oracles, form: SpeedForm) -> Check:
+    """The straight-line program in speeds against d'Alembert's principle."""
+    code = speed_program(form)
+    n = len(form.speeds)
+    nodes = [*(x for row in code.mass_matrix for x in row), *code.forcing, *code.rates]
+    speeds = [u.name for u in form.speeds]
+
+    def pairs(oracle: Oracle) -> list[Pair]:
+        values = code.program.evaluate(nodes, oracle.state.values, oracle.state.numbers)
+        mass = [values[r * n : (r + 1) * n] for r in range(n)]
+        forcing, rates = values[n * n : n * n + n], values[n * n + n :]
+        errors = _errors(oracle, [u.rate_name for u in form.speeds], mass, forcing)
+        return _against(oracle, speeds, [x.name for x in form.positions], errors, rates)
+
+    return compare(truth, "straight-line program", ("Kane in body axes, straight-line", D_ALEMBERT), pairs, STATES)
+
+
+def _errors(oracle: Oracle, rates: Sequence[str], mass: Sequence[Sequence[Any]], forcing: Sequence[Any]) -> list[Any]:
+    """(M u' - f)_r at the state."""
+    found = []
+    for row, force in zip(mass, forcing, strict=True):
+        total = -force
+        for entry, rate in zip(row, rates, strict=True):
+            total = total + entry * oracle.state.values[rate]
+        found.append(total)
+    return found
+
+
+def _against(
+    oracle: Oracle, speeds: Sequence[str], positions: Sequence[str], errors: Sequence[Any], rates: Sequence[Any]
+) -> list[Pair]:
+    """e_i against sum_r E_r du_r/dq'_i, and s' against the rates at the state."""
+    state, system = oracle.state, oracle.system
+    declared = {speed.name: speed for speed in system.speeds}
+    one, zero = state.numbers.one, state.numbers.zero
+    columns = [
+        slopes(oracle, declared[u])
+        if u in declared
+        else [one if velocity_name(name) == u else zero for name in system.coordinates]
+        for u in speeds
+    ]
+    compared: list[Pair] = []
+    for i, name in enumerate(system.coordinates):
+        total = sum((e * column[i] for e, column in zip(errors, columns, strict=True)), zero)
+        compared.append((f"equation {name}", total, oracle.residuals[name]))
+    for position, rate in zip(positions, rates, strict=True):
+        compared.append((f"{position}'", rate, state.values[velocity_name(position)]))
+    return compared
 
 
 def check_energy(truth: Oracles, energy: Energy, speeds: tuple[str, ...]) -> Check:

@@ -11,6 +11,7 @@ before zero is decided).  Tried are
 * the momenta  sum_r dT/du_r du_r/dq'_i  of the coordinates that are left;
 * the components of the linear and angular momentum in inertial axes; with the unit vector gamma along one of them the
   area integral  (A p + h_1) gamma_1 + (B q + h_2) gamma_2 + (C r + h_3) gamma_3;
+* dT/du_r of the declared speeds (C r of a symmetric top);
 * the squares and products of the unit vectors that occur: what these are is known, they are listed because the
   equations alone keep them.
 
@@ -32,9 +33,9 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
 from mbsym.problems.integrals import ENERGY, PROVED, Integral, whole_momenta
-from mbsym.problems.speeds import SpeedEquations
+from mbsym.problems.speeds import SpeedEquations, residual
 
-GEOMETRIC = "unit vectors"
+GEOMETRIC, SPEED_MOMENTUM = "unit vectors", "speed momentum"
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,15 @@ class Field:
         """Whether dx/dt = 0 on every motion; None where the ring cannot decide."""
         return self.form.vanishes(self.rate(x))
 
+    def combines(self, x: Polynomial, multipliers: Sequence[Polynomial]) -> bool | None:
+        """Whether dx/dt = sum mu_r (M u' - f)_r with these multipliers, as polynomials in u', too: no inverse of M."""
+        ring = self.form.ring
+        total = self.form.rate(x)
+        for r, multiplier in enumerate(multipliers):
+            if not ring.vanishes(multiplier):
+                total = total - ring.times(multiplier, residual(self.equations, r))
+        return self.form.vanishes(ring.reduce(total))
+
     def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
         """dx/dt on the motion."""
         ring = self.form.ring
@@ -85,11 +95,12 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
     field = Field(form, equations)
     found: list[Integral] = []
     known: list[Polynomial] = []
-    for integral in _candidates(form, scene, energy, equations):
+    for integral, multipliers in _candidates(form, scene, energy, equations):
         x = integral.formula.polynomial
         geometric = integral.kind == GEOMETRIC
         with suppress(Failure):  # what is too long is not known to be conserved
-            if field.keeps(x) is True and (geometric or _is_new(form, x, known)):
+            proved = bool(multipliers) and field.combines(x, multipliers) is True
+            if (proved or field.keeps(x) is True) and (geometric or _is_new(form, x, known)):
                 found.append(integral)
                 if integral.kind not in (ENERGY, GEOMETRIC):
                     known.append(x)
@@ -97,20 +108,27 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
     return tuple(found)
 
 
-def _candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> Iterator[Integral]:
+Candidate = tuple[Integral, Sequence[Polynomial]]
+
+
+def _candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> Iterator[Candidate]:
+    """What may be conserved, each with the multipliers that would prove it where they are known."""
     ring = form.ring
     kinetic, force = energy.kinetic_energy.polynomial, energy.force_function.polynomial
     momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
     homogeneous = [ring.context.gen(u.index) - at_rest for u, at_rest in zip(form.speeds, form.drifts, strict=True)]
     power = sum((ring.times(p, u) for p, u in zip(momenta, homogeneous, strict=True)), ring.zero)
-    yield _integral(form, ENERGY, ENERGY, "time", power - kinetic - force)
+    yield _integral(form, ENERGY, ENERGY, "time", power - kinetic - force), homogeneous
     for name, slopes in form.slopes.items():
         momentum = sum((ring.times(p, slope) for p, slope in zip(momenta, slopes, strict=True)), ring.zero)
-        yield _integral(form, f"momentum of {name}", "cyclic momentum", name, momentum)
+        yield _integral(form, f"momentum of {name}", "cyclic momentum", name, momentum), slopes
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
             word = "about" if kind == "angular momentum" else "along"
-            yield _integral(form, f"{kind} {word} axis {axis}", kind, str(axis), formula)
+            yield _integral(form, f"{kind} {word} axis {axis}", kind, str(axis), formula), ()
+    for u, momentum in zip(form.speeds, momenta, strict=True):
+        if u.name in form.system.variables:
+            yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
     for k, (name, components) in enumerate(equations.vectors):
         for other, others in equations.vectors[k:]:
             pairs = [
@@ -119,7 +137,7 @@ def _candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedE
             ]
             product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
             title = f"length of {name}" if other == name else f"product of {name} and {other}"
-            yield _integral(form, title, GEOMETRIC, name if other == name else f"{name} {other}", product)
+            yield _integral(form, title, GEOMETRIC, name if other == name else f"{name} {other}", product), ()
 
 
 def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> Integral:
@@ -129,7 +147,7 @@ def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> 
 def _is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
     """Whether it depends on the state, and is none of the others."""
     ring = form.ring
-    state = [*(s.name for s in form.positions), *(u.name for u in form.speeds)]
-    if not ring.dependencies(x, state):
+    state = [*form.system.coordinates, *(u.name for u in form.speeds)]
+    if not ring.dependencies(form.in_angles(x), state):
         return False
     return not any(form.vanishes(x - sign * other) for other in known for sign in (1, -1))

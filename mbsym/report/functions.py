@@ -58,7 +58,7 @@ class Functions:
             self.reserved |= identifiers(system)
         self.tables: dict[Tabulated, None] = {}  # that are called
         names = [*system.coordinates, *system.velocities, *system.parameter_names]
-        names += [*(item.name for item in system.prescribed), *system.input_names]
+        names += [*(item.name for item in system.prescribed), *system.input_names, *system.variables]
         self.names = injective(names, propose, taken=self.reserved) | {"t": "t", "pi": pi}
 
     def function(self, program: Program, outputs: Iterable[Node]) -> Function:

@@ -43,6 +43,7 @@ RESERVED = {
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
     "Parameters", "INTEGRALS", "UNITS", "with_unit",
+    "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "y", "right", "matrix",
 }  # fmt: skip
 #: What a module of a constrained system calls something besides.
 TIED = frozenset({
@@ -75,6 +76,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         from mbsym.report.constrained_code import tied_code
 
         tied, code, no_code = tied_code(analysis, writer)
+    speeds = None
+    if system.speeds:
+        from mbsym.report.speed_code import speed_code
+
+        speeds = speed_code(analysis, writer)
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
@@ -102,6 +108,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=plain(no_code),
         tied=tied,
+        speeds=speeds,
         upper=upper,
         mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
         forcing=code and writer.function(code.program, code.forcing),

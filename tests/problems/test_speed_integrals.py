@@ -111,3 +111,11 @@ def test_claims_hold_and_fail_as_they_should(tmp_path):
     found = load(tmp_path, GYROSTAT.format(told=POISSON) + CLAIMS)
     assert [claim.outcome for claim in found.claims] == OUTCOMES
     assert found.claims[-1].remark == "it is a constant, whatever the motion"
+
+
+def test_lagranges_top_keeps_its_spin(tmp_path):
+    top = GYROSTAT.format(told=POISSON).replace("[x0, y0, z0]", "[0, 0, z0]").replace("[A, B, C]", "[A, A, C]")
+    found = load(tmp_path, top.replace("    gyrostatic moment: [l1, l2, l3]\n", ""))
+    names = [item.name for item in found.integrals]
+    assert names == ["generalised energy", "angular momentum about axis 3", "dT/dr", "length of gamma"]
+    assert [found.integrals[2].formula] == expected(found, ["C*r"])

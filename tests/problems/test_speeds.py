@@ -1,5 +1,6 @@
 """Velocities that are variables: equations as textbooks print them, and planted mistakes that the self-check finds."""
 
+import numpy as np
 import pytest
 
 import mbsym
@@ -248,3 +249,51 @@ def test_a_motion_that_is_none_is_refused(tmp_path):
 def test_what_does_not_know_speeds_says_so(tmp_path):
     found = load(tmp_path, GYROSTAT.format(told=SPEEDS))
     assert found.stage_of("told").failure.code == "speeds"
+
+
+def module_of(found, tmp_path):
+    """model.py, imported."""
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    from mbsym.report.python_module import render
+
+    file = tmp_path / "model.py"
+    file.write_text(render(found, (3,)))
+    spec = spec_from_file_location("model_in_speeds", file)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("text", [GYROSTAT.format(told=SPEEDS), GYROSTAT.format(told=POISSON), CARRIED])
+def test_the_generated_module_gives_the_same_motion_in_speeds(tmp_path, text):
+    """d speed_state(x)/dt along rhs, by differences, is speed_rhs: the two right-hand sides share no recursion."""
+    module = module_of(load(tmp_path, text), tmp_path)
+    rng = np.random.default_rng(7)
+    p = dict(zip(module.PARAMETERS, rng.uniform(0.5, 1.5, len(module.PARAMETERS)), strict=True))
+    x, t, h = rng.uniform(0.3, 1.2, 2 * len(module.COORDINATES)), 0.7, 1e-5
+    rate = module.rhs(t, x, p)
+    ahead, behind = (module.speed_state(x + sign * h * rate, p, t + sign * h) for sign in (1, -1))
+    y = module.speed_state(x, p, t)
+    assert y.shape == (len(module.POSITIONS) + len(module.SPEEDS),)
+    assert np.allclose(module.speed_rhs(t, y, p), (ahead - behind) / (2 * h), rtol=1e-7, atol=1e-8)
+
+
+def test_unit_vectors_pass_where_angles_are_singular(tmp_path):
+    """theta = 0: the axes 3, 1, 3 are singular there, and Euler's equations know nothing of it."""
+    module = module_of(load(tmp_path, GYROSTAT.format(told=POISSON)), tmp_path)
+    p = dict.fromkeys(module.PARAMETERS, 1.0) | {"A": 2.0, "B": 3.0, "C": 4.0}
+    y = np.array([1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0, 0.1, 0.2, 0.3])
+    rates = module.speed_rhs(0.0, y, p)
+    assert np.allclose(rates[6:9], [-0.2, 0.1, 0.0])
+    assert rates[9] == pytest.approx((-(4 - 3) * 0.2 * 0.3 - 0.2 + 0.3 + 1.0 * (0 - 1.0)) / 2)
+
+
+def test_a_planted_mistake_in_the_program_is_found(tmp_path, monkeypatch):
+    from mbsym.mechanics import speed_programs
+
+    old = speed_programs._pairs
+    monkeypatch.setattr(speed_programs, "_pairs", lambda *given: old(*given)[:5])  # a moment is lost
+    found = load(tmp_path, GYROSTAT.format(told=POISSON))
+    assert found.stage(3).failure is None
+    assert found.check("straight-line program").outcome == FAILED

@@ -1,0 +1,78 @@
+"""Kane's equations in speeds as a straight-line program: M, f of M u' = f and the rates s' = g.
+
+The recursions run over the program with the angular velocities and unit vectors that are variables taken as they are,
+so that no angle, and no singular one, stands between.  Inertia is linear in u', velocities are linear in u: M and the
+partial velocities are exact derivatives of nodes (``algebra.derivative``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.vectors import Vector
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import actions
+from mbsym.mechanics.newton_euler import inertia_wrenches
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import program_environment
+
+
+@dataclass(frozen=True)
+class SpeedProgram:
+    """Nodes of ``program``, whose inputs bear the declared names: M (n x n), f (n), s' in the order of positions."""
+
+    program: Program
+    mass_matrix: tuple[tuple[Node, ...], ...]
+    forcing: tuple[Node, ...]
+    rates: tuple[Node, ...]
+
+
+def speed_program(form: SpeedForm) -> SpeedProgram:
+    """The program of a system in speeds.  Raises what the loads raise, NoClosedForm where a rate has none."""
+    program = Program()
+    inputs: dict[str, Node] = dict(program_environment(form.system, program))
+    scene = form.scene_over(program, inputs)
+    residuals = _residuals(form, scene, inputs)
+    accelerations = [inputs[u.rate_name] for u in form.speeds]
+    still = {u.rate_name: program.zero for u in form.speeds}
+    forcing = program.evaluate(residuals, {**inputs, **still}, program)
+    carry = Carrier(form.ring, program, inputs)
+    return SpeedProgram(
+        program=program,
+        mass_matrix=jacobian(program, residuals, accelerations),
+        forcing=tuple(-x for x in forcing),
+        rates=tuple(carry(form.rates[position.name]) for position in form.positions),
+    )
+
+
+def _residuals(form: SpeedForm, scene: Scene, inputs: Mapping[str, Node]) -> list[Node]:
+    """sum (F - F_loads) . dV_O/du_r + (N - M_loads) . domega/du_r - sum Q_i dq'_i/du_r."""
+    program: Program = scene.algebra  # type: ignore[assignment]
+    speeds = [inputs[u.name] for u in form.speeds]
+    wrenches = inertia_wrenches(scene)
+    generalized: dict[str, Node] = {}
+    for action in actions(scene):
+        for wrench in action.wrenches:
+            force, moment = wrenches[wrench.body]
+            wrenches[wrench.body] = (force - wrench.force, moment - wrench.moment)
+        for name, value in action.generalized.items():
+            generalized[name] = generalized.get(name, program.zero) + value
+    powers = [(x, v) for name, (force, moment) in wrenches.items() for x, v in _pairs(scene, name, force, moment)]
+    carry = Carrier(form.ring, program, inputs)
+    powers += [(-force, carry(form.velocities[name])) for name, force in generalized.items()]
+    rows = jacobian(program, [velocity for _, velocity in powers], speeds)
+    totals = [program.zero for _ in speeds]
+    for (needed, _), row in zip(powers, rows, strict=True):
+        totals = [total + needed * partial for total, partial in zip(totals, row, strict=True)]
+    return totals
+
+
+def _pairs(scene: Scene, name: str, force: Vector, moment: Vector) -> list[tuple[Node, Node]]:
+    """Components of a wrench, each with the velocity on which it works."""
+    motion = scene.motions[name]
+    found = [*zip(force, motion.velocity_origin, strict=True), *zip(moment, motion.angular_velocity, strict=True)]
+    return list(found)
