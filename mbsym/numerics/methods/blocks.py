@@ -46,7 +46,7 @@ class Block:
 
 
 class Blocks:
-    """Blocks of a run: ``positive`` maps points (1 + 2n, m) to what keeps its sign, ``narrow`` to the u of the kinds."""
+    """Blocks of a run: ``positive`` maps points (1 + 2n, m) to what keeps its sign, ``narrow`` to each u."""
 
     def __init__(
         self,
