@@ -88,12 +88,14 @@ class Blocks:
             if run.reached > run.time:
                 rest = run.step()  # what is left of the last step
         except Breakdown:
-            return self._undone(run, saved)
+            self._undone(run, saved)
+            return None
         far_enough = bound - float(run.reached) > AWAY * length
         few = run.work.steps - steps <= STEPS_TO_AN_INTERVAL * count + 2
         at_probes = np.concatenate([known, states[:, np.searchsorted(times, probes[1:])]], axis=1)
         if not (far_enough and few and self._free(probes, at_probes) and self._free_on(rest)):
-            return self._undone(run, saved)
+            self._undone(run, saved)
+            return None
         self._size, self._waits = min(2 * self._size, MOST), 0
         length *= count / max(1, run.work.steps - steps)
         found = states[:, np.searchsorted(times, within)]
