@@ -14,35 +14,49 @@ numbers, sine and cosine of an angle, reciprocals, roots, and a normal form.  Th
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, curve_name
 
-#: A scalar of some algebra: anything with + - * among its own kind.
+
+class Summable(Protocol):
+    """What a scalar of any algebra can do among its own kind: sums.  Products and all else are asked of its algebra."""
+
+    def __add__(self, other: Self, /) -> Self: ...
+
+    def __sub__(self, other: Self, /) -> Self: ...
+
+    def __neg__(self) -> Self: ...
+
+
+#: A scalar of one algebra: ``Algebra[S]``, ``Vector[S]``, ``Scene[S]`` belong together.
+S = TypeVar("S", bound=Summable)
+#: A scalar where nobody says of which algebra.
 Scalar = Any
 #: The components of a vector, in the axes of a frame that only the reader knows; with it: ``mbsym.algebra.vectors``.
-Components = tuple[Scalar, Scalar, Scalar]
+Components = tuple[S, S, S]
 
 
-class Algebra:
+class Algebra(Generic[S]):
     """Operations on scalars beyond ``+``, ``-`` and ``*``; subclasses define what raises NotImplementedError here."""
 
-    zero: Scalar
-    one: Scalar
+    zero: S
+    one: S
 
-    def number(self, value: Fraction | int) -> Scalar:
+    def number(self, value: Fraction | int) -> S:
         raise NotImplementedError
 
-    def sin_cos(self, angle: LinearForm) -> tuple[Scalar, Scalar]:
+    def sin_cos(self, angle: LinearForm) -> tuple[S, S]:
         """sin and cos of a linear form in named angles."""
         raise NotImplementedError
 
-    def sin_cos_of(self, argument: Scalar) -> tuple[Scalar, Scalar]:
+    def sin_cos_of(self, argument: S) -> tuple[S, S]:
         """sin and cos of an argument that is no linear form in angles."""
         raise NotImplementedError
 
@@ -50,30 +64,31 @@ class Algebra:
         """Whether sin(theta + 3/10) is wanted in terms of the sines and cosines of theta and of 3/10."""
         return False
 
-    def reciprocal(self, x: Scalar) -> Scalar:
+    def reciprocal(self, x: S) -> S:
         raise NotImplementedError
 
-    def square_root(self, x: Scalar) -> Scalar:
+    def square_root(self, x: S) -> S:
         raise NotImplementedError
 
-    def function(self, name: str, x: Scalar) -> Scalar:
+    def function(self, name: str, x: S) -> S:
         """exp, log, atan, sinh, cosh, tanh, abs or sign, the last two with their values at 0; or a ``Tabulated``."""
         raise NotImplementedError
 
-    def times(self, a: Scalar, b: Scalar) -> Scalar:
-        return a * b
+    def times(self, a: S, b: S) -> S:
+        product: S = operator.mul(a, b)
+        return product
 
-    def reduce(self, x: Scalar) -> Scalar:
+    def reduce(self, x: S) -> S:
         """The normal form; algebras without relations return x."""
         return x
 
-    def vanishes(self, x: Scalar) -> bool:
+    def vanishes(self, x: S) -> bool:
         """Whether x is zero as it stands, so that work with it can be left out."""
         return bool(x == 0)
 
     # --- derived --------------------------------------------------------------------------------------------------
 
-    def power(self, base: Scalar, exponent: int) -> Scalar:
+    def power(self, base: S, exponent: int) -> S:
         """base**exponent by repeated squaring; a negative exponent takes the reciprocal first."""
         if exponent < 0:
             base, exponent = self.reciprocal(base), -exponent
@@ -86,7 +101,7 @@ class Algebra:
                 square = self.reduce(self.times(square, square))
         return result
 
-    def dot(self, u: Sequence[Scalar], v: Sequence[Scalar]) -> Scalar:
+    def dot(self, u: Sequence[S], v: Sequence[S]) -> S:
         total = self.zero
         for a, b in zip(u, v, strict=True):
             if not (self.vanishes(a) or self.vanishes(b)):
@@ -94,7 +109,7 @@ class Algebra:
         return self.reduce(total)
 
 
-class Lowering:
+class Lowering(Generic[S]):
     """Gives expressions values in an algebra: names through the environment, numbers exactly.
 
     ``environment`` maps every name that may occur (parameters, coordinates, velocities, accelerations, prescribed
@@ -105,18 +120,18 @@ class Lowering:
     upwards, not by recursion.
     """
 
-    def __init__(self, algebra: Algebra, environment: Mapping[str, Scalar]) -> None:
+    def __init__(self, algebra: Algebra[S], environment: Mapping[str, S]) -> None:
         self.algebra = algebra
         self.environment = environment
-        self._values: dict[int, Scalar] = {}
+        self._values: dict[int, S] = {}
         self._shapes: dict[tuple[Any, ...], int] = {}
         self._numbers: dict[int, int] = {}
         self._kept: list[Expression] = []  # an identity must not be used again
 
-    def vector(self, components: Sequence[Expression]) -> Components:
+    def vector(self, components: Sequence[Expression]) -> Components[S]:
         return (self(components[0]), self(components[1]), self(components[2]))
 
-    def __call__(self, expression: Expression) -> Scalar:
+    def __call__(self, expression: Expression) -> S:
         """The value of the expression.
 
         Raises SingularPoint for a division by zero, NoValue for a name without one, NoClosedForm or NotRational as the
@@ -168,7 +183,7 @@ class Lowering:
                 return ()
         return children(expression)
 
-    def angle(self, expression: Expression) -> tuple[Scalar, Scalar]:
+    def angle(self, expression: Expression) -> tuple[S, S]:
         """(sin, cos) of an expression; theta + 3/10 by the addition theorem where the algebra wants it so."""
         form = self._angle_form(expression)
         if form is not None:
@@ -191,7 +206,7 @@ class Lowering:
         """No rates in it: the sine of a velocity is that of a plain value."""
         return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
 
-    def _value(self, expression: Expression) -> Scalar:
+    def _value(self, expression: Expression) -> S:
         algebra = self.algebra
         match expression:
             case Number(value):
@@ -229,7 +244,7 @@ class Lowering:
                 return algebra.function(function, self(argument))
         raise TypeError(f"not an expression: {expression!r}")
 
-    def _tabulated(self, table: Table, order: int, x: Scalar) -> Scalar:
+    def _tabulated(self, table: Table, order: int, x: S) -> S:
         """f(x), where it is one polynomial as that; a table that is zero outside is one that holds, less its ends."""
         algebra, name = self.algebra, curve_name(table, order)
         polynomial = name.curve.polynomial
@@ -245,18 +260,18 @@ class Lowering:
             found = found - algebra.times(algebra.number(end), self._step(x - algebra.number(last)))
         return found
 
-    def _step(self, x: Scalar) -> Scalar:
+    def _step(self, x: S) -> S:
         """(1 + sign x)/2."""
         half = self.algebra.number(Fraction(1, 2))
         return half + self.algebra.times(half, self.algebra.function("sign", x))
 
-    def _named(self, name: str) -> Scalar:
+    def _named(self, name: str) -> S:
         try:
             return self.environment[name]  # some environments make their values when they are asked for
         except KeyError:
             raise NoValue(name) from None
 
-    def _power(self, base: Expression, exponent: Expression) -> Scalar:
+    def _power(self, base: Expression, exponent: Expression) -> S:
         form = linear_form(exponent)
         if form is None or not form.is_constant:
             raise NoClosedForm("a power whose exponent is not a number")

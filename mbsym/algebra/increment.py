@@ -53,7 +53,7 @@ class Increment:
         return Increment(self.algebra, times(self.value, other.value), change)
 
 
-class Increments(Algebra):
+class Increments(Algebra[Increment]):
     """Pairs over ``algebra``; ``angles`` gives every name under sin and cos its value and change."""
 
     def __init__(self, algebra: Algebra, angles: Mapping[str, Increment]) -> None:

@@ -58,7 +58,7 @@ def _accumulate(ring: Ring, into: dict[Any, Polynomial], terms: dict[Any, Polyno
             into[key] = into[key] + product if key in into else product
 
 
-class Jets(Algebra):
+class Jets(Algebra[Jet]):
     """Jets over a ring.
 
     ``motion`` gives each coordinate's unperturbed value as an expression in parameters; a coordinate that is not in it

@@ -24,7 +24,7 @@ from mbsym.expressions.table import Curve, Tabulated
 MOST_MULTIPLE = 256
 
 
-class Rationals(Algebra):
+class Rationals(Algebra[fmpq]):
     """``fmpq`` scalars.  ``half_tangents`` gives t for each angle name; ``denominators`` the d of sin(name / d)."""
 
     def __init__(self, half_tangents: Mapping[str, fmpq], denominators: Mapping[str, int]) -> None:
@@ -89,7 +89,7 @@ def _quarter_turns(turns: Fraction) -> tuple[fmpq, fmpq]:
     return fmpq(sine), fmpq(cosine)
 
 
-class Balls(Algebra):
+class Balls(Algebra[arb]):
     """``arb`` scalars: rigorous enclosures at the working precision; ``angles`` gives each angle's value."""
 
     def __init__(self, angles: Mapping[str, arb]) -> None:

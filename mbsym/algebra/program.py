@@ -63,7 +63,7 @@ class Instruction(NamedTuple):
     payload: str | Fraction | None = None
 
 
-class Program(Algebra):
+class Program(Algebra[Node]):
     """An algebra whose scalars record what is done with them."""
 
     def __init__(self) -> None:

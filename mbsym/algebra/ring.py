@@ -95,7 +95,7 @@ class Spent:
     work: int = 0
 
 
-class Ring(Algebra):
+class Ring(Algebra[Polynomial]):
     """One context per system.
 
     coordinates, prescribed, parameters: declared names, disjoint.  angles: the names that stand under sin and cos,

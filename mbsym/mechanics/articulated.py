@@ -21,8 +21,10 @@ the body's joint is eliminated as a whole in its own axes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import mul
+from typing import Generic
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of
 from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned_symmetric
@@ -32,29 +34,29 @@ from mbsym.model.system import INERTIAL
 
 
 @dataclass(frozen=True, slots=True)
-class _Inertia:
+class _Inertia(Generic[S]):
     """Rows of A (symmetric), B and C (symmetric)."""
 
-    force: Tensor
-    mixed: Tensor
-    moment: Tensor
+    force: Tensor[S]
+    mixed: Tensor[S]
+    moment: Tensor[S]
 
 
 @dataclass(frozen=True, slots=True)
-class _Joint:
+class _Joint(Generic[S]):
     """One eliminated coordinate: q'' = (share - U_f.a - U_n.alpha) inverse slope."""
 
     name: str
-    spin: Vector
-    velocity: Vector
-    force: Vector
-    moment: Vector
-    share: Scalar
-    inverse: Scalar
-    slope: Scalar
+    spin: Vector[S]
+    velocity: Vector[S]
+    force: Vector[S]
+    moment: Vector[S]
+    share: S
+    inverse: S
+    slope: S
 
 
-def applies(system: Articulation) -> bool:
+def applies(system: Articulation[S]) -> bool:
     """Whether every coordinate belongs to one body's joint."""
     drivers: dict[str, set[str]] = {}
     for frame in system.frames:
@@ -63,7 +65,7 @@ def applies(system: Articulation) -> bool:
     return all(len(bodies) == 1 for bodies in drivers.values())
 
 
-def solve(system: Articulation, needed: BiasForces) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+def solve(system: Articulation[S], needed: BiasForces[S]) -> tuple[tuple[S, ...], tuple[S, ...]]:
     """(accelerations, pivots) in the order of the coordinates.
 
     The product of the pivots is the determinant of M.  Raises SingularPoint for a pivot that is zero everywhere.
@@ -71,19 +73,19 @@ def solve(system: Articulation, needed: BiasForces) -> tuple[tuple[Scalar, ...],
     return _Articulated(system, needed).solved()
 
 
-class _Articulated:
-    def __init__(self, system: Articulation, needed: BiasForces) -> None:
+class _Articulated(Generic[S]):
+    def __init__(self, system: Articulation[S], needed: BiasForces[S]) -> None:
         self.system = system
         self.algebra = system.algebra
         self.generalized = needed.generalized
         self.inertias = [_rigid(self.algebra, x) for x in system.masses]
         self.forces, self.moments = list(needed.forces), list(needed.moments)
-        self.turns: list[list[_Joint]] = [[] for _ in system.frames]
-        self.displacements: list[list[_Joint]] = [[] for _ in system.frames]
-        self.pivots: dict[str, Scalar] = {}
+        self.turns: list[list[_Joint[S]]] = [[] for _ in system.frames]
+        self.displacements: list[list[_Joint[S]]] = [[] for _ in system.frames]
+        self.pivots: dict[str, S] = {}
         self.whole = self._whole_joints()
 
-    def solved(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+    def solved(self) -> tuple[tuple[S, ...], tuple[S, ...]]:
         """(accelerations, pivots), both in the order of the coordinates.
 
         Raises SingularPoint where a coordinate moves no body.
@@ -99,10 +101,10 @@ class _Articulated:
 
     # --- joints ---
 
-    def _whole_joints(self) -> dict[int, list[tuple[str, Vector, Vector]]]:
+    def _whole_joints(self) -> dict[int, list[tuple[str, Vector[S], Vector[S]]]]:
         """(coordinate, w, v) in the axes of the body's own frame, for bodies whose elementary joints share one."""
         algebra, scene = self.algebra, self.system.scene
-        partial: dict[str, dict[str, tuple[Vector, Vector]]] = {}
+        partial: dict[str, dict[str, tuple[Vector[S], Vector[S]]]] = {}
         for frame in self.system.frames:
             if not frame.together:
                 continue
@@ -121,8 +123,8 @@ class _Articulated:
         }
 
     def _eliminate(
-        self, number: int, inertia: _Inertia, name: str, spin: Vector, velocity: Vector
-    ) -> tuple[_Inertia, _Joint]:
+        self, number: int, inertia: _Inertia[S], name: str, spin: Vector[S], velocity: Vector[S]
+    ) -> tuple[_Inertia[S], _Joint[S]]:
         """A joint along (spin, velocity) taken out of the inertia and the wrench of a frame."""
         algebra, force, moment = self.algebra, self.forces[number], self.moments[number]
         u_force = inertia.force @ velocity + inertia.mixed @ spin
@@ -133,7 +135,7 @@ class _Articulated:
             number, inertia, _Joint(name, spin, velocity, u_force, u_moment, share, pivot, algebra.one)
         )
 
-    def _taken_out(self, number: int, inertia: _Inertia, joint: _Joint) -> tuple[_Inertia, _Joint]:
+    def _taken_out(self, number: int, inertia: _Inertia[S], joint: _Joint[S]) -> tuple[_Inertia[S], _Joint[S]]:
         """The inertia that is left, and the joint with its pivot inverted; the frame's wrench is updated."""
         algebra, pivot = self.algebra, joint.inverse
         if algebra.vanishes(pivot):
@@ -153,7 +155,7 @@ class _Articulated:
         done = _Joint(joint.name, joint.spin, joint.velocity, joint.force, joint.moment, share, inverse, slope)
         return left, done
 
-    def _turn_eliminated(self, number: int, inertia: _Inertia, turn: Turn, name: str, slope: Scalar) -> _Inertia:
+    def _turn_eliminated(self, number: int, inertia: _Inertia[S], turn: Turn[S], name: str, slope: S) -> _Inertia[S]:
         """A turn about an axis of the frame; its row and column vanish from C, its column from B."""
         algebra, a, own = self.algebra, turn.axis - 1, turn.frame
         zero = algebra.zero
@@ -202,10 +204,10 @@ class _Articulated:
 
     # --- outwards ---
 
-    def _outwards(self) -> dict[str, Scalar]:
+    def _outwards(self) -> dict[str, S]:
         zero = self.system.scene.zero(INERTIAL)
-        found: dict[str, Scalar] = {}
-        motions: list[tuple[Vector, Vector]] = []
+        found: dict[str, S] = {}
+        motions: list[tuple[Vector[S], Vector[S]]] = []
         for number, frame in enumerate(self.system.frames):
             angular, linear = motions[frame.parent] if frame.parent >= 0 else (zero, zero)
             linear = linear + angular.cross(frame.offset)
@@ -215,12 +217,12 @@ class _Articulated:
         return found
 
     def _accelerated(
-        self, joints: list[_Joint], angular: Vector, linear: Vector, found: dict[str, Scalar]
-    ) -> tuple[Vector, Vector]:
+        self, joints: list[_Joint[S]], angular: Vector[S], linear: Vector[S], found: dict[str, S]
+    ) -> tuple[Vector[S], Vector[S]]:
         algebra = self.algebra
         for joint in reversed(joints):
             pull = joint.force.dot(linear) + joint.moment.dot(angular)
-            rate = algebra.reduce((joint.share - pull) * joint.inverse)
+            rate = algebra.reduce(mul(joint.share - pull, joint.inverse))
             found[joint.name] = rate
             if joint.slope != algebra.one:
                 found[joint.name] = algebra.times(rate, algebra.reciprocal(joint.slope))
@@ -232,7 +234,7 @@ class _Articulated:
 # --- blocks of six by six matrices ---
 
 
-def _rigid(algebra: Algebra, x: MassProperties) -> _Inertia:
+def _rigid(algebra: Algebra[S], x: MassProperties[S]) -> _Inertia[S]:
     """A = m 1, B = -[h], C = J."""
     zero, m, frame = algebra.zero, x.mass, x.first_moment.frame
     a, b, c = x.first_moment
@@ -240,31 +242,31 @@ def _rigid(algebra: Algebra, x: MassProperties) -> _Inertia:
     return _Inertia(Tensor(algebra, ((m, zero, zero), (zero, m, zero), (zero, zero, m)), frame), mixed, x.tensor)
 
 
-def _scaled(v: Vector, factor: Scalar) -> Vector:
+def _scaled(v: Vector[S], factor: S) -> Vector[S]:
     """factor v by products: ``v * factor`` would turn each product with a reciprocal into a division."""
     a, b, c = v
-    return Vector(v.algebra, (a * factor, b * factor, c * factor), v.frame)
+    return Vector(v.algebra, (mul(a, factor), mul(b, factor), mul(c, factor)), v.frame)
 
 
-def _less_symmetric(m: Tensor, u: Vector, v: Vector) -> Tensor:
+def _less_symmetric(m: Tensor[S], u: Vector[S], v: Vector[S]) -> Tensor[S]:
     """M - u v^T, where u and v are parallel."""
     rows = [list(row) for row in m]
     for i in range(3):
         for j in range(i, 3):
-            rows[i][j] = rows[i][j] - u[i] * v[j]
+            rows[i][j] = rows[i][j] - mul(u[i], v[j])
     return symmetric_tensor(m.algebra, rows, m.frame)
 
 
-def _less(m: Tensor, u: Vector, v: Vector) -> Tensor:
+def _less(m: Tensor[S], u: Vector[S], v: Vector[S]) -> Tensor[S]:
     """M - u v^T."""
-    return tensor_of(m.algebra, [[m[i][j] - u[i] * v[j] for j in range(3)] for i in range(3)], m.frame)
+    return tensor_of(m.algebra, [[m[i][j] - mul(u[i], v[j]) for j in range(3)] for i in range(3)], m.frame)
 
 
-def _sum(x: _Inertia, y: _Inertia) -> _Inertia:
+def _sum(x: _Inertia[S], y: _Inertia[S]) -> _Inertia[S]:
     return _Inertia(x.force + y.force, x.mixed + y.mixed, x.moment + y.moment)
 
 
-def _turned(algebra: Algebra, x: _Inertia, frame: Frame) -> _Inertia:
+def _turned(algebra: Algebra[S], x: _Inertia[S], frame: Frame[S]) -> _Inertia[S]:
     """The inertia of what lies beyond a frame, in the axes before its turn."""
     turn = frame.turn
     if turn is None:
@@ -277,7 +279,7 @@ def _turned(algebra: Algebra, x: _Inertia, frame: Frame) -> _Inertia:
     )
 
 
-def _turned_general(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
+def _turned_general(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S]) -> Tensor[S]:
     """C^T B C for a general B in at most 23 operations.
 
     In the plane of the turn, with entries p, q; r, s and  u = sin (p - s) + cos (q + r):
@@ -301,7 +303,7 @@ def _turned_general(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
     return tensor_of(algebra, rows, turn.source)
 
 
-def _shifted(algebra: Algebra, x: _Inertia, r: Vector) -> _Inertia:
+def _shifted(algebra: Algebra[S], x: _Inertia[S], r: Vector[S]) -> _Inertia[S]:
     """The inertia about a point from which the old one is seen at r:
 
     B' = B - A [r],      C' = C + [r] B' + ([r] B)^T.

@@ -20,8 +20,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Generic
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of, zero_tensor, zero_vector
 from mbsym.expressions.tree import Expression, differentiate, names
 from mbsym.mechanics.frames import Turn
@@ -31,16 +32,16 @@ from mbsym.model.welded import still_names, welded
 
 
 @dataclass(frozen=True, slots=True)
-class MassProperties:
+class MassProperties(Generic[S]):
     """Mass, first moment m c and the symmetric tensor about the frame's origin, in the frame's axes."""
 
-    mass: Scalar
-    first_moment: Vector
-    tensor: Tensor
+    mass: S
+    first_moment: Vector[S]
+    tensor: Tensor[S]
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(Generic[S]):
     """One elementary frame; ``parent`` is -1 for the inertial frame, vectors are in the parent's axes.
 
     offset, offset_rate, offset_acceleration: r, r' and r'' of the frame's origin at q'' = 0.  The partial derivatives
@@ -51,12 +52,12 @@ class Frame:
 
     body: str
     parent: int
-    turn: Turn | None
-    offset: Vector
-    offset_rate: Vector
-    offset_acceleration: Vector
-    angle_derivatives: Mapping[str, Scalar]
-    offset_derivatives: Mapping[str, Vector]
+    turn: Turn[S] | None
+    offset: Vector[S]
+    offset_rate: Vector[S]
+    offset_acceleration: Vector[S]
+    angle_derivatives: Mapping[str, S]
+    offset_derivatives: Mapping[str, Vector[S]]
     fixed_turn: bool
     fixed_offset: bool
     together: bool
@@ -66,29 +67,29 @@ class Frame:
         """What vectors in its axes are marked with; the name of the body for the last of its frames."""
         return self.body if self.turn is None else self.turn.frame
 
-    def out(self, v: Vector) -> Vector:
+    def out(self, v: Vector[S]) -> Vector[S]:
         """A vector from the parent's axes to the frame's."""
         return v.in_parallel(self.body) if self.turn is None else self.turn.out(v)
 
-    def back(self, v: Vector) -> Vector:
+    def back(self, v: Vector[S]) -> Vector[S]:
         """A vector from the frame's axes to the parent's."""
         return v.in_parallel(self.offset.frame) if self.turn is None else self.turn.back(v)
 
 
 @dataclass(frozen=True)
-class Articulation:
+class Articulation(Generic[S]):
     """``frames`` parents first; ``frame_of`` maps a body to its own frame, ``masses`` holds each frame's properties.
 
     ``scene`` is the system at q'' = 0 (its accelerations' environment holds zeros).
     """
 
-    scene: Scene
-    frames: tuple[Frame, ...]
+    scene: Scene[S]
+    frames: tuple[Frame[S], ...]
     frame_of: Mapping[str, int]
-    masses: tuple[MassProperties, ...]
+    masses: tuple[MassProperties[S], ...]
 
     @property
-    def algebra(self) -> Algebra:
+    def algebra(self) -> Algebra[S]:
         return self.scene.algebra
 
     @property
@@ -96,7 +97,7 @@ class Articulation:
         return self.scene.system.coordinates
 
 
-def articulation(scene: Scene, apart: bool = False) -> Articulation:
+def articulation(scene: Scene[S], apart: bool = False) -> Articulation[S]:
     """The elementary frames of a scene whose accelerations are zero, with regrouped mass properties.
 
     With ``apart`` the bodies that are welded to others keep their mass properties for themselves.
@@ -111,10 +112,10 @@ def articulation(scene: Scene, apart: bool = False) -> Articulation:
     return Articulation(scene, tuple(builder.frames), builder.frame_of, masses)
 
 
-class _Builder:
-    def __init__(self, scene: Scene) -> None:
+class _Builder(Generic[S]):
+    def __init__(self, scene: Scene[S]) -> None:
         self.scene = scene
-        self.frames: list[Frame] = []
+        self.frames: list[Frame[S]] = []
         self.frame_of: dict[str, int] = {}
         self.still = still_names(scene.system)
         self.coordinates = set(scene.system.coordinates)
@@ -177,7 +178,7 @@ class _Builder:
             )
         self.frame_of[body.name] = len(self.frames) - 1
 
-    def _derivatives(self, angle: Expression) -> dict[str, Scalar]:
+    def _derivatives(self, angle: Expression) -> dict[str, S]:
         found = sorted(names(angle) & self.coordinates)
         return {name: self.scene.lower(differentiate(angle, name)) for name in found}
 
@@ -185,7 +186,7 @@ class _Builder:
 # --- mass properties ---
 
 
-def mass_properties(scene: Scene, name: str) -> MassProperties:
+def mass_properties(scene: Scene[S], name: str) -> MassProperties[S]:
     """A body's mass properties about its connection point."""
     algebra, motion = scene.algebra, scene.motions[name]
     tensor = zero_tensor(algebra, name) if motion.inertia is None else motion.inertia
@@ -198,17 +199,17 @@ def mass_properties(scene: Scene, name: str) -> MassProperties:
     return MassProperties(motion.mass, moment, shifted(algebra, central, motion.mass_centre).tensor)
 
 
-def total(a: MassProperties, b: MassProperties) -> MassProperties:
+def total(a: MassProperties[S], b: MassProperties[S]) -> MassProperties[S]:
     """Two bodies on one frame."""
     tensor = a.tensor + b.tensor
     return MassProperties(a.mass + b.mass, a.first_moment + b.first_moment, tensor)
 
 
-def nothing(algebra: Algebra, frame: str) -> MassProperties:
+def nothing(algebra: Algebra[S], frame: str) -> MassProperties[S]:
     return MassProperties(algebra.zero, zero_vector(algebra, frame), zero_tensor(algebra, frame))
 
 
-def shifted(algebra: Algebra, x: MassProperties, r: Vector) -> MassProperties:
+def shifted(algebra: Algebra[S], x: MassProperties[S], r: Vector[S]) -> MassProperties[S]:
     """The same body about a point from which its old origin is seen at r, in the same axes.
 
     With g = 2 h + m r:  J + r.g 1 - (r g^T + g r^T)/2,  that is J11 + r2 g2 + r3 g3, J12 - r1 h2 - r2 (h1 + m r1), ...
@@ -230,7 +231,7 @@ def shifted(algebra: Algebra, x: MassProperties, r: Vector) -> MassProperties:
     return MassProperties(m, moved, symmetric_tensor(algebra, rows, h.frame))
 
 
-def turned_back(algebra: Algebra, x: MassProperties, frame: Frame) -> MassProperties:
+def turned_back(algebra: Algebra[S], x: MassProperties[S], frame: Frame[S]) -> MassProperties[S]:
     """The same body in the axes before the turn of a frame."""
     moment = frame.back(x.first_moment)
     if frame.turn is None:
@@ -238,7 +239,7 @@ def turned_back(algebra: Algebra, x: MassProperties, frame: Frame) -> MassProper
     return MassProperties(x.mass, moment, turned_symmetric(algebra, frame.turn, x.tensor))
 
 
-def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
+def turned_symmetric(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S]) -> Tensor[S]:
     """C^T S C for a symmetric S, with C = C_a(x), in at most 16 operations.
 
     In the plane of the turn, with the entries p, q, s (q off the diagonal) and  u = sin (p - s) + 2 cos q:
@@ -262,8 +263,8 @@ def turned_symmetric(algebra: Algebra, turn: Turn, matrix: Tensor) -> Tensor:
 
 
 def _regrouped(
-    algebra: Algebra, frames: list[Frame], properties: Mapping[int, MassProperties], kept: frozenset[int]
-) -> tuple[MassProperties, ...]:
+    algebra: Algebra[S], frames: list[Frame[S]], properties: Mapping[int, MassProperties[S]], kept: frozenset[int]
+) -> tuple[MassProperties[S], ...]:
     """Mass properties frame by frame after moving to the parents what the joints do not feel; ``kept`` move nothing."""
     masses = [properties.get(number) or nothing(algebra, frame.name) for number, frame in enumerate(frames)]
     for number in reversed(range(len(frames))):
@@ -280,7 +281,7 @@ def _regrouped(
     return tuple(masses)
 
 
-def _split(algebra: Algebra, frame: Frame, own: MassProperties) -> tuple[MassProperties, MassProperties]:
+def _split(algebra: Algebra[S], frame: Frame[S], own: MassProperties[S]) -> tuple[MassProperties[S], MassProperties[S]]:
     """What stays on a frame, and what may move to its parent; their sum is ``own``."""
     none = nothing(algebra, frame.name)
     if frame.together:  # the joint is solved as a whole, with all that it moves on the last of its frames

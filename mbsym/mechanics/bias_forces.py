@@ -15,8 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Generic
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, zero_tensor
 from mbsym.mechanics.articulation import Articulation, Frame
 from mbsym.mechanics.falling import falling_scene, overrides
@@ -25,35 +26,35 @@ from mbsym.model.system import INERTIAL
 
 
 @dataclass(frozen=True, slots=True)
-class BiasForces:
+class BiasForces(Generic[S]):
     """Force and moment about its origin that each frame's own mass needs at q'' = 0 beyond what the loads supply.
 
     ``generalized`` are the generalised forces Q that loads exert directly on coordinates.
     """
 
-    forces: tuple[Vector, ...]
-    moments: tuple[Vector, ...]
-    generalized: Mapping[str, Scalar]
+    forces: tuple[Vector[S], ...]
+    moments: tuple[Vector[S], ...]
+    generalized: Mapping[str, S]
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
-    spin: Vector
-    angular: Vector
-    origin: Vector
-    w_tensor: Tensor
-    products: Tensor
+class _Motion(Generic[S]):
+    spin: Vector[S]
+    angular: Vector[S]
+    origin: Vector[S]
+    w_tensor: Tensor[S]
+    products: Tensor[S]
 
 
-def bias_forces(system: Articulation) -> BiasForces:
+def bias_forces(system: Articulation[S]) -> BiasForces[S]:
     """The wrenches of inertia and loads at q'' = 0."""
     algebra = system.algebra
     zero, still = system.scene.zero(INERTIAL), zero_tensor(algebra, INERTIAL)
-    motions: list[_Motion] = []
+    motions: list[_Motion[S]] = []
     base = _Motion(zero, zero, base_acceleration(system.scene), still, still)
     felt = {system.frame_of[name]: w for name, w in overrides(system.scene, base.origin).items()}
-    forces: list[Vector] = []
-    moments: list[Vector] = []
+    forces: list[Vector[S]] = []
+    moments: list[Vector[S]] = []
     for number, frame in enumerate(system.frames):
         motion = _moved(algebra, frame, motions[frame.parent] if frame.parent >= 0 else base)
         if number in felt:
@@ -78,7 +79,7 @@ def bias_forces(system: Articulation) -> BiasForces:
     return BiasForces(tuple(forces), tuple(moments), generalized)
 
 
-def _carrying(system: Articulation, body: str, moment: Vector) -> tuple[int, Vector]:
+def _carrying(system: Articulation[S], body: str, moment: Vector[S]) -> tuple[int, Vector[S]]:
     """The frame that turns a body's gyrostatic moment, and that in its axes: where the turn of a frame is fixed, the
     frame below it."""
     k = system.frame_of[body]
@@ -88,7 +89,7 @@ def _carrying(system: Articulation, body: str, moment: Vector) -> tuple[int, Vec
     return k, moment
 
 
-def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:
+def forcing(system: Articulation[S], needed: BiasForces[S]) -> tuple[S, ...]:
     """f of M q'' = f: the loads' part less the inertia's, carried from the tips to the base and projected."""
     algebra = system.algebra
     forces, moments = list(needed.forces), list(needed.moments)
@@ -109,7 +110,7 @@ def forcing(system: Articulation, needed: BiasForces) -> tuple[Scalar, ...]:
     return tuple(algebra.reduce(totals[name]) for name in system.coordinates)
 
 
-def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:
+def _moved(algebra: Algebra[S], frame: Frame[S], parent: _Motion[S]) -> _Motion[S]:
     origin = parent.origin + parent.w_tensor @ frame.offset
     two = algebra.number(2)
     origin = origin + parent.spin.cross(frame.offset_rate) * two + frame.offset_acceleration
@@ -125,7 +126,7 @@ def _moved(algebra: Algebra, frame: Frame, parent: _Motion) -> _Motion:
     return _Motion(spin, angular, frame.out(origin), _w_tensor(algebra, angular, products), products)
 
 
-def _products(algebra: Algebra, w: Vector) -> Tensor:
+def _products(algebra: Algebra[S], w: Vector[S]) -> Tensor[S]:
     """omega omega^T."""
     rows = [[algebra.zero] * 3 for _ in range(3)]
     for i in range(3):
@@ -134,7 +135,7 @@ def _products(algebra: Algebra, w: Vector) -> Tensor:
     return symmetric_tensor(algebra, rows, w.frame)
 
 
-def _w_tensor(algebra: Algebra, angular: Vector, p: Tensor) -> Tensor:
+def _w_tensor(algebra: Algebra[S], angular: Vector[S], p: Tensor[S]) -> Tensor[S]:
     """[alpha] + [omega][omega]."""
     a, b, c = angular
     rows = (
@@ -145,14 +146,14 @@ def _w_tensor(algebra: Algebra, angular: Vector, p: Tensor) -> Tensor:
     return Tensor(algebra, rows, angular.frame)
 
 
-def _needed(system: Articulation, number: int, motion: _Motion) -> tuple[Vector, Vector]:
+def _needed(system: Articulation[S], number: int, motion: _Motion[S]) -> tuple[Vector[S], Vector[S]]:
     """(F, N) of a frame's own mass."""
     own, a = system.masses[number], motion.origin
     force = a * own.mass + motion.w_tensor @ own.first_moment
     return force, own.first_moment.cross(a) + _rotational(system.algebra, own.tensor, motion)
 
 
-def _rotational(algebra: Algebra, tensor: Tensor, motion: _Motion) -> Vector:
+def _rotational(algebra: Algebra[S], tensor: Tensor[S], motion: _Motion[S]) -> Vector[S]:
     """J alpha + omega x J omega; first component  J11 alpha1 + (J33 - J22) omega2 omega3
     + J12 (alpha2 - omega1 omega3) + J13 (alpha3 + omega1 omega2) + J23 (omega2^2 - omega3^2),  others cyclically."""
     p, w = motion.products, motion.w_tensor

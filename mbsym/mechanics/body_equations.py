@@ -26,7 +26,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Algebra
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Tensor, Vector, symmetric_tensor
@@ -49,7 +49,7 @@ class BodyEquations:
 
     program: Program
     meanings: Mapping[int, Meaning]
-    motions: Mapping[str, tuple[Vector, Vector, Vector]]
+    motions: Mapping[str, tuple[Vector[Node], Vector[Node], Vector[Node]]]
     mass_matrix: tuple[tuple[Node, ...], ...]
     forcing: tuple[Node, ...]
     kinetic_energy: Node
@@ -103,8 +103,8 @@ class _Joint:
     """What one coordinate does to a body: it turns it about ``turn`` and displaces O_k along ``shift``, in its axes."""
 
     coordinate: str
-    turn: Vector
-    shift: Vector
+    turn: Vector[Node]
+    shift: Vector[Node]
 
 
 def _joints(scene: NamedScene, name: str) -> list[_Joint]:
@@ -123,7 +123,7 @@ def _joints(scene: NamedScene, name: str) -> list[_Joint]:
     return found
 
 
-def _turned_back(algebra: Algebra, rotation: Tensor, tensor: Tensor) -> Tensor:
+def _turned_back(algebra: Algebra[Node], rotation: Tensor[Node], tensor: Tensor[Node]) -> Tensor[Node]:
     """R^T J R of a symmetric tensor."""
     columns = [rotation.column(k) for k in range(3)]
     half = [tensor @ column for column in columns]
@@ -141,7 +141,7 @@ class _Composite:
         self.scene = scene
         self.algebra = scene.algebra
         self.joints = {name: _joints(scene, name) for name in scene.motions}
-        self.entries: dict[tuple[str, str], Scalar] = {}
+        self.entries: dict[tuple[str, str], Node] = {}
         self.order = {name: place for place, name in enumerate(scene.system.coordinates)}
         #: The bodies that have a joint, or carry on to one nearer to the base.
         self.moving = {name for name in scene.motions if any(self.joints.get(x) for x in scene.system.path(name))}
@@ -169,7 +169,7 @@ class _Composite:
     def _key(self, i: str, j: str) -> tuple[str, str]:
         return (i, j) if self.order[i] <= self.order[j] else (j, i)
 
-    def _climb(self, name: str, place: int, joint: _Joint, own: MassProperties) -> None:
+    def _climb(self, name: str, place: int, joint: _Joint, own: MassProperties[Node]) -> None:
         """What a unit acceleration of one joint takes, on its way to the base."""
         scene, notes, h = self.scene, self.scene.notes, own.first_moment
         force = joint.shift * own.mass + joint.turn.cross(h)
@@ -189,7 +189,7 @@ class _Composite:
             body = motion.body.attached_to
             others = self.joints[body]
 
-    def _add(self, joint: _Joint, other: _Joint, share: Scalar) -> None:
+    def _add(self, joint: _Joint, other: _Joint, share: Node) -> None:
         if self.algebra.vanishes(share):
             return
         if joint is not other and joint.coordinate == other.coordinate:
@@ -202,7 +202,7 @@ class _Composite:
 def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Node, ...]:
     algebra, notes, system = scene.algebra, scene.notes, scene.system
     force, moment = _needed(scene)
-    totals: dict[str, Scalar] = dict.fromkeys(system.coordinates, algebra.zero)
+    totals: dict[str, Node] = dict.fromkeys(system.coordinates, algebra.zero)
     falling = _falling(scene) if falling_frames(system) else scene
     for action in actions_beyond_fields(scene, falling):
         for name, value in action.generalized.items():
@@ -226,14 +226,14 @@ def _forcing(scene: NamedScene, joints: Mapping[str, list[_Joint]]) -> tuple[Nod
     return tuple(totals[name] for name in system.coordinates)
 
 
-def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
+def _needed(scene: NamedScene) -> tuple[dict[str, Vector[Node]], dict[str, Vector[Node]]]:
     """F and H of each body's own mass at q'' = 0, the loads other than gravity left out."""
     algebra, notes = scene.algebra, scene.notes
     zero, base = scene.zero(INERTIAL), base_acceleration(scene)
     felt = overrides(scene, base)
     angular, origin = {INERTIAL: zero}, {INERTIAL: base}
-    force: dict[str, Vector] = {}
-    moment: dict[str, Vector] = {}
+    force: dict[str, Vector[Node]] = {}
+    moment: dict[str, Vector[Node]] = {}
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
         spin = scene.motions[parent].angular_velocity if parent != INERTIAL else zero
@@ -264,12 +264,12 @@ def _needed(scene: NamedScene) -> tuple[dict[str, Vector], dict[str, Vector]]:
     return force, moment
 
 
-def _swung(angular: Vector, spin: Vector, r: Vector) -> Vector:
+def _swung(angular: Vector[Node], spin: Vector[Node], r: Vector[Node]) -> Vector[Node]:
     """epsilon x r + omega x (omega x r)."""
     return angular.cross(r) + spin.cross(spin.cross(r))
 
 
-def _joint_acceleration(scene: NamedScene, name: str) -> Vector:
+def _joint_acceleration(scene: NamedScene, name: str) -> Vector[Node]:
     """omega_k x sum v_t + sum over s < t of v_s x v_t + sum u_t x_t''."""
     motion = scene.motions[name]
     rates = [axis * turn.rate for turn, axis in zip(motion.turns, scene.axes[name], strict=True)]

@@ -17,22 +17,23 @@ Joints of different branches do not meet, so their entries stay zero.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Generic
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulation import Articulation, MassProperties, shifted, total, turned_back
 
 
-def mass_matrix(system: Articulation) -> tuple[tuple[Scalar, ...], ...]:
+def mass_matrix(system: Articulation[S]) -> tuple[tuple[S, ...], ...]:
     """M, n x n and symmetric, in the order of the coordinates."""
     return _Composite(system).rows()
 
 
-class _Composite:
-    def __init__(self, system: Articulation) -> None:
+class _Composite(Generic[S]):
+    def __init__(self, system: Articulation[S]) -> None:
         self.system = system
         self.algebra = system.algebra
-        self.entries: dict[tuple[str, str], Scalar] = {}
+        self.entries: dict[tuple[str, str], S] = {}
         self.order = {name: number for number, name in enumerate(system.coordinates)}
         # Whether there is any joint at the frame or below it that a wrench can still meet.
         self.moving: list[bool] = []
@@ -43,7 +44,7 @@ class _Composite:
         for number in reversed(range(len(masses))):
             self._frame(number, masses)
 
-    def rows(self) -> tuple[tuple[Scalar, ...], ...]:
+    def rows(self) -> tuple[tuple[S, ...], ...]:
         names, zero = self.system.coordinates, self.algebra.zero
         reduce = self.algebra.reduce
         found = {key: reduce(value) for key, value in self.entries.items()}
@@ -52,7 +53,7 @@ class _Composite:
     def _key(self, i: str, j: str) -> tuple[str, str]:
         return (i, j) if self.order[i] <= self.order[j] else (j, i)
 
-    def _frame(self, number: int, masses: list[MassProperties]) -> None:
+    def _frame(self, number: int, masses: list[MassProperties[S]]) -> None:
         """Entries of the joints of one frame with each other and with those nearer to the base."""
         algebra, frame = self.algebra, self.system.frames[number]
         if not self.moving[number]:
@@ -73,7 +74,7 @@ class _Composite:
             masses[frame.parent] = total(masses[frame.parent], carried)
 
     def _climb(
-        self, number: int, derivatives: Mapping[str, Scalar], force: Vector, moment: Vector, place: int | None
+        self, number: int, derivatives: Mapping[str, S], force: Vector[S], moment: Vector[S], place: int | None
     ) -> None:
         """A joint's wrench, in the parent's axes at the frame's origin, meets all joints nearer to the base.
 
@@ -96,14 +97,14 @@ class _Composite:
                 self._between(derivatives, frame.angle_derivatives, moment[frame.turn.axis - 1])
             force, moment = frame.back(force), frame.back(moment)
 
-    def _within(self, derivatives: Mapping[str, Scalar], share: Scalar) -> None:
+    def _within(self, derivatives: Mapping[str, S], share: S) -> None:
         """A joint with itself: one half of what it would be between two."""
         names = list(derivatives)
         for place, i in enumerate(names):
             for j in names[place:]:
                 self._add(i, j, self.algebra.times(self.algebra.times(derivatives[i], derivatives[j]), share))
 
-    def _between(self, first: Mapping[str, Scalar], second: Mapping[str, Scalar], share: Scalar) -> None:
+    def _between(self, first: Mapping[str, S], second: Mapping[str, S], share: S) -> None:
         algebra = self.algebra
         if algebra.vanishes(share):
             return
@@ -112,7 +113,7 @@ class _Composite:
                 value = algebra.times(algebra.times(a, b), share)
                 self._add(i, j, value + value if i == j else value)
 
-    def _add(self, i: str, j: str, value: Scalar) -> None:
+    def _add(self, i: str, j: str, value: S) -> None:
         if not self.algebra.vanishes(value):
             key = self._key(i, j)
             known = self.entries.get(key)

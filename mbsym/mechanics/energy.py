@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 
 
-def kinetic_energy(scene: Scene) -> Scalar:
+def kinetic_energy(scene: Scene[S]) -> S:
     """T of the whole system, the gyrostatic term included."""
     algebra = scene.algebra
     total = gyrostatic_term(scene)
@@ -26,7 +26,7 @@ def kinetic_energy(scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def gyrostatic_term(scene: Scene) -> Scalar:
+def gyrostatic_term(scene: Scene[S]) -> S:
     """sum of h.omega."""
     algebra = scene.algebra
     total = algebra.zero
@@ -36,7 +36,7 @@ def gyrostatic_term(scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def body_energy(scene: Scene, motion: BodyMotion) -> Scalar:
+def body_energy(scene: Scene[S], motion: BodyMotion[S]) -> S:
     """The kinetic energy of one body, without what a gyrostatic moment adds to T."""
     algebra = scene.algebra
     half = algebra.number(Fraction(1, 2))

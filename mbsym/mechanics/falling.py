@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.expressions.tree import names
 from mbsym.mechanics.energy import kinetic_energy
@@ -59,7 +59,7 @@ def _prescribed(system: System, frame: str) -> bool:
     return not any(moving & names(x) for body in path for x in expressions((body.rotation, body.connection_point)))
 
 
-def felt_acceleration(scene: Scene, about: str, loads: tuple[NewtonianGravity, ...]) -> Vector:
+def felt_acceleration(scene: Scene[S], about: str, loads: tuple[NewtonianGravity, ...]) -> Vector[S]:
     """w = a_O1 - g of one falling frame, in its axes; uniform gravity is not counted."""
     system, ring = scene.system, scene.ring
     path = tuple(system.body(name) for name in system.path(about) if name != INERTIAL)
@@ -78,18 +78,18 @@ def felt_acceleration(scene: Scene, about: str, loads: tuple[NewtonianGravity, .
     return scene.carried(felt.reduced())
 
 
-def felt_accelerations(scene: Scene) -> dict[str, Vector]:
+def felt_accelerations(scene: Scene[S]) -> dict[str, Vector[S]]:
     """w of every falling frame."""
     return {about: felt_acceleration(scene, about, loads) for about, loads in falling_frames(scene.system).items()}
 
 
-def falling_scene(scene: Scene) -> Scene:
+def falling_scene(scene: Scene[S]) -> Scene[S]:
     """The same system seen from its falling frames: their origins are at rest and their weight is gone."""
     frames = frozenset(falling_frames(scene.system))
     return Scene(scene.system, scene.algebra, scene.environment, scene.ring, scene.frozen, falling=frames)
 
 
-def relative_lagrangian(scene: Scene) -> tuple[Scalar, Scalar]:
+def relative_lagrangian(scene: Scene[S]) -> tuple[S, S]:
     """(T_rel, U_rest - w.S): a Lagrangian of the same equations of motion, split into its two parts.
 
     T_rel + U is T + U where nothing falls.
@@ -104,11 +104,11 @@ def relative_lagrangian(scene: Scene) -> tuple[Scalar, Scalar]:
     return kinetic_energy(relative), algebra.reduce(force)
 
 
-def _work(scene: Scene, about: str, w: Vector) -> Scalar:
+def _work(scene: Scene[S], about: str, w: Vector[S]) -> S:
     """w.S = sum of m w.c over the bodies that a frame carries, c from its origin; w turns outwards with the bodies."""
     algebra = scene.algebra
-    field: dict[str, Vector] = {about: w}
-    height: dict[str, Scalar] = {about: algebra.zero}
+    field: dict[str, Vector[S]] = {about: w}
+    height: dict[str, S] = {about: algebra.zero}
     total = algebra.zero
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
@@ -123,7 +123,7 @@ def _work(scene: Scene, about: str, w: Vector) -> Scalar:
     return algebra.reduce(total)
 
 
-def overrides(scene: Scene, base: Vector) -> Mapping[str, Vector]:
+def overrides(scene: Scene[S], base: Vector[S]) -> Mapping[str, Vector[S]]:
     """Accelerations of falling frames' origins, less the gravity there; ``base`` is that of the inertial frame."""
     felt = felt_accelerations(scene)
     return {name: w + scene.to_axes(base, name) for name, w in felt.items()}

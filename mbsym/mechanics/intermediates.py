@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from mbsym.algebra.base import Scalar
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector
@@ -71,25 +70,27 @@ class Notes:
         self.meanings.setdefault(node.number, meaning)
         return node
 
-    def vector(self, v: Vector, quantity: Quantity, body: str, coordinate: str = "", load: int = 0) -> Vector:
+    def vector(
+        self, v: Vector[Node], quantity: Quantity, body: str, coordinate: str = "", load: int = 0
+    ) -> Vector[Node]:
         for i, x in enumerate(v, 1):
             self.scalar(x, Meaning(quantity, body, (i,), coordinate, load))
         return v
 
-    def symmetric(self, rows: Tensor, quantity: Quantity, body: str) -> Tensor:
+    def symmetric(self, rows: Tensor[Node], quantity: Quantity, body: str) -> Tensor[Node]:
         for i in range(3):
             for j in range(i, 3):
                 self.scalar(rows[i][j], Meaning(quantity, body, (i + 1, j + 1)))
         return rows
 
-    def matrix(self, rows: Tensor, quantity: Quantity, body: str) -> Tensor:
+    def matrix(self, rows: Tensor[Node], quantity: Quantity, body: str) -> Tensor[Node]:
         for i in range(3):
             for j in range(3):
                 self.scalar(rows[i][j], Meaning(quantity, body, (i + 1, j + 1)))
         return rows
 
 
-class NamedScene(Scene):
+class NamedScene(Scene[Node]):
     """A scene over a straight-line program that notes what its nodes mean.
 
     ``rotations``: R^jk of every body; ``joint_rates``: for every turn its axis in the body's own axes times its rate,
@@ -100,18 +101,18 @@ class NamedScene(Scene):
         self,
         system: System,
         program: Program,
-        environment: Mapping[str, Scalar],
+        environment: Mapping[str, Node],
         ring: Ring,
         notes: Notes,
         falling: frozenset[str] = frozenset(),
     ) -> None:
         self.notes = notes
         self.program = program
-        self.rotations: dict[str, Tensor] = {}
-        self.axes: dict[str, tuple[Vector, ...]] = {}
+        self.rotations: dict[str, Tensor[Node]] = {}
+        self.axes: dict[str, tuple[Vector[Node], ...]] = {}
         super().__init__(system, program, environment, ring, falling=falling)
 
-    def _motion(self, body: Body) -> BodyMotion:
+    def _motion(self, body: Body) -> BodyMotion[Node]:
         algebra, lower, notes = self.algebra, self.lower, self.notes
         name, before = body.name, body.attached_to
         turns = tuple(self._turns(body))
@@ -157,8 +158,8 @@ class NamedScene(Scene):
             gyrostatic_moment=self._gyrostatic_moment(body),
         )
 
-    def out(self, body: str, v: Vector) -> Vector:
+    def out(self, body: str, v: Vector[Node]) -> Vector[Node]:
         return self.rotations[body] @ v
 
-    def back(self, body: str, v: Vector) -> Vector:
+    def back(self, body: str, v: Vector[Node]) -> Vector[Node]:
         return self.rotations[body].T @ v

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic
 
-from mbsym.algebra.base import Algebra, Lowering, Scalar
+from mbsym.algebra.base import Algebra, Lowering, S
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, tensor_of, zero_vector
@@ -25,38 +25,38 @@ from mbsym.model.system import INERTIAL, Body, System
 
 
 @dataclass(frozen=True, slots=True)
-class BodyMotion:
+class BodyMotion(Generic[S]):
     """One body's motion in its own axes; ``offset`` is r^j_Ok in the axes of the body it is attached to.
 
     ``gyrostatic_moment`` is None where the body has none.
     """
 
     body: Body
-    turns: tuple[Turn, ...]
-    offset: Vector
-    relative_angular_velocity: Vector
-    angular_velocity: Vector
-    velocity_origin: Vector
-    velocity_mass_centre: Vector
-    mass: Scalar
-    mass_centre: Vector
-    inertia: Tensor | None
-    gyrostatic_moment: Vector | None
+    turns: tuple[Turn[S], ...]
+    offset: Vector[S]
+    relative_angular_velocity: Vector[S]
+    angular_velocity: Vector[S]
+    velocity_origin: Vector[S]
+    velocity_mass_centre: Vector[S]
+    mass: S
+    mass_centre: Vector[S]
+    inertia: Tensor[S] | None
+    gyrostatic_moment: Vector[S] | None
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class Given(Generic[S]):
     """A body whose angular velocity and acceleration are variables of their own, in its axes (``mechanics.speeds``).
 
     ``cosines`` are its direction cosines where these are variables, too; None where it is turned by angles.
     """
 
-    angular_velocity: Vector
-    angular_acceleration: Vector
-    cosines: Tensor | None = None
+    angular_velocity: Vector[S]
+    angular_acceleration: Vector[S]
+    cosines: Tensor[S] | None = None
 
 
-class Scene:
+class Scene(Generic[S]):
     """A system seen through one algebra: lowered expressions and the motion of every body.
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
@@ -69,13 +69,13 @@ class Scene:
     def __init__(
         self,
         system: System,
-        algebra: Algebra,
-        environment: Mapping[str, Scalar],
+        algebra: Algebra[S],
+        environment: Mapping[str, S],
         ring: Ring,
         frozen: bool = False,
         bodies: bool = True,
         falling: frozenset[str] = frozenset(),
-        given: Mapping[str, Given] | None = None,
+        given: Mapping[str, Given[S]] | None = None,
     ) -> None:
         self.system = system
         self.given = given or {}
@@ -86,15 +86,15 @@ class Scene:
         self.lower = Lowering(algebra, environment)
         self.environment = environment
         self._carrier = Carrier(ring, algebra, environment)
-        self.motions: dict[str, BodyMotion] = {}
+        self.motions: dict[str, BodyMotion[S]] = {}
         for body in system.bodies if bodies else ():
             self.motions[body.name] = self._motion(body)
 
-    def _motion(self, body: Body) -> BodyMotion:
+    def _motion(self, body: Body) -> BodyMotion[S]:
         algebra, lower, name, before = self.algebra, self.lower, body.name, body.attached_to
         given = self.given.get(name)
         if given is not None and given.cosines is not None:
-            turns: tuple[Turn, ...] = (given_rotation(given.cosines),)
+            turns: tuple[Turn[S], ...] = (given_rotation(given.cosines),)
         else:
             turns = tuple(self._turns(body))
         parent_spin = parent_velocity = self.zero(before)
@@ -132,15 +132,15 @@ class Scene:
             gyrostatic_moment=self._gyrostatic_moment(body),
         )
 
-    def _inertia(self, body: Body) -> Tensor | None:
+    def _inertia(self, body: Body) -> Tensor[S] | None:
         if body.inertia is None:
             return None
         return tensor_of(self.algebra, [self.lower.vector(row) for row in body.inertia.tensor], body.name)
 
-    def _gyrostatic_moment(self, body: Body) -> Vector | None:
+    def _gyrostatic_moment(self, body: Body) -> Vector[S] | None:
         return None if body.gyrostatic_moment is None else self.vector(body.gyrostatic_moment, body.name)
 
-    def _turns(self, body: Body) -> list[Turn]:
+    def _turns(self, body: Body) -> list[Turn[S]]:
         """The turns that there are; the axes between two of them have a name of their own."""
         given = [(axis, angle) for axis, angle in body.rotation.turns() if angle != ZERO]
         frames = [body.attached_to, *(f"{body.name} after turn {k}" for k in range(1, len(given))), body.name]
@@ -158,23 +158,23 @@ class Scene:
 
     # --- vectors and their frames -----------------------------------------------------------------------------------
 
-    def vector(self, components: Sequence[Expression], frame: str) -> Vector:
+    def vector(self, components: Sequence[Expression], frame: str) -> Vector[S]:
         """The vector that has these components in the axes of a body."""
         return Vector(self.algebra, self.lower.vector(components), frame)
 
-    def zero(self, frame: str) -> Vector:
+    def zero(self, frame: str) -> Vector[S]:
         return zero_vector(self.algebra, frame)
 
-    def out(self, body: str, v: Vector) -> Vector:
+    def out(self, body: str, v: Vector[S]) -> Vector[S]:
         """From the axes of the body that it is attached to, to its own."""
         return forward(self.motions[body].turns, v, body)
 
-    def back(self, body: str, v: Vector) -> Vector:
+    def back(self, body: str, v: Vector[S]) -> Vector[S]:
         """From a body's own axes to those of the body that it is attached to."""
         motion = self.motions[body]
         return back(motion.turns, v, motion.body.attached_to)
 
-    def to_axes(self, v: Vector, target: str) -> Vector:
+    def to_axes(self, v: Vector[S], target: str) -> Vector[S]:
         """A vector in the axes of another body."""
         up, down = self.system.path(v.frame), self.system.path(target)
         common = sum(a == b for a, b in zip(up, down, strict=False))
@@ -184,7 +184,7 @@ class Scene:
             v = self.out(name, v)
         return v
 
-    def position(self, point: Vector, frame: str) -> Vector:
+    def position(self, point: Vector[S], frame: str) -> Vector[S]:
         """The radius vector from the origin of ``frame`` to a point, in the axes of ``frame``.
 
         ``point`` is its radius vector from the origin of the body in whose axes it is; ``frame`` is an ancestor.
@@ -201,7 +201,7 @@ class Scene:
         """A polynomial of the ring, in this algebra."""
         return x if self.algebra is self.ring else self._carrier(x)
 
-    def carried(self, v: Vector) -> Vector:
+    def carried(self, v: Vector[S]) -> Vector[S]:
         """A vector over the ring, in this algebra."""
         a, b, c = v
         return Vector(self.algebra, (self.carry(a), self.carry(b), self.carry(c)), v.frame)

@@ -12,7 +12,9 @@ projections on the joint's partial velocities are the residuals  M q'' - forcing
 
 from __future__ import annotations
 
-from mbsym.algebra.base import Scalar
+from typing import Generic
+
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import differentiate, names
 from mbsym.mechanics.frames import forward
@@ -22,19 +24,19 @@ from mbsym.mechanics.loads.kinds import actions
 from mbsym.model.system import INERTIAL
 
 
-class _Accelerations:
+class _Accelerations(Generic[S]):
     """alpha_k and a_Ok of every body, in its axes."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene[S]) -> None:
         self.scene = scene
         zero = scene.zero(INERTIAL)
-        self.angular: dict[str, Vector] = {INERTIAL: zero}
-        self.origin: dict[str, Vector] = {INERTIAL: zero}
-        self.spin: dict[str, Vector] = {INERTIAL: zero}
+        self.angular: dict[str, Vector[S]] = {INERTIAL: zero}
+        self.origin: dict[str, Vector[S]] = {INERTIAL: zero}
+        self.spin: dict[str, Vector[S]] = {INERTIAL: zero}
         for name, motion in scene.motions.items():
             self._step(name, motion)
 
-    def _step(self, name: str, motion: BodyMotion) -> None:
+    def _step(self, name: str, motion: BodyMotion[S]) -> None:
         scene, parent = self.scene, motion.body.attached_to
         algebra, r = scene.algebra, motion.offset
         spin, angular = self.spin[parent], self.angular[parent]
@@ -59,12 +61,14 @@ class _Accelerations:
         self.spin[name], self.angular[name] = spin.in_parallel(name), angular.in_parallel(name)
 
 
-def origin_acceleration(scene: Scene, body: str) -> Vector:
+def origin_acceleration(scene: Scene[S], body: str) -> Vector[S]:
     """a_Ok of one body, in its axes."""
     return _Accelerations(scene).origin[body]
 
 
-def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: Vector) -> tuple[Vector, Vector]:
+def _inertia_wrench(
+    scene: Scene[S], motion: BodyMotion[S], angular: Vector[S], origin: Vector[S]
+) -> tuple[Vector[S], Vector[S]]:
     """(F, N): the rate of momentum, and of angular momentum referred to O_k."""
     algebra, inertia = scene.algebra, motion.inertia
     spin, centre = motion.angular_velocity, motion.mass_centre
@@ -83,7 +87,7 @@ def _inertia_wrench(scene: Scene, motion: BodyMotion, angular: Vector, origin: V
     return force, moment
 
 
-def inertia_wrenches(scene: Scene) -> dict[str, tuple[Vector, Vector]]:
+def inertia_wrenches(scene: Scene[S]) -> dict[str, tuple[Vector[S], Vector[S]]]:
     """(F, N) of every body, in its axes: what its motion needs, the moment about O_k."""
     found = _Accelerations(scene)
     return {
@@ -92,27 +96,27 @@ def inertia_wrenches(scene: Scene) -> dict[str, tuple[Vector, Vector]]:
     }
 
 
-class _Joints:
+class _Joints(Generic[S]):
     """Forces and moments that the joints must supply, body by body, and their projections on the coordinates."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene[S]) -> None:
         self.scene = scene
-        self.force: dict[str, Vector] = {name: scene.zero(name) for name in scene.motions}
+        self.force: dict[str, Vector[S]] = {name: scene.zero(name) for name in scene.motions}
         self.moment = dict(self.force)
-        self.totals: dict[str, Scalar] = dict.fromkeys(scene.system.coordinates, scene.algebra.zero)
+        self.totals: dict[str, S] = dict.fromkeys(scene.system.coordinates, scene.algebra.zero)
 
-    def need(self, body: str, force: Vector, moment: Vector) -> None:
+    def need(self, body: str, force: Vector[S], moment: Vector[S]) -> None:
         self.force[body] = self.force[body] + force
         self.moment[body] = self.moment[body] + moment
 
-    def supply(self, action: Action) -> None:
+    def supply(self, action: Action[S]) -> None:
         for name, value in action.generalized.items():
             self.totals[name] = self.totals[name] - value
         for wrench in action.wrenches:
             self.force[wrench.body] = self.force[wrench.body] - wrench.force
             self.moment[wrench.body] = self.moment[wrench.body] - wrench.moment
 
-    def projections(self) -> dict[str, Scalar]:
+    def projections(self) -> dict[str, S]:
         """The backward recursion, from the tips to the base."""
         scene = self.scene
         for name in reversed(scene.motions):
@@ -125,7 +129,7 @@ class _Joints:
                 self.need(motion.body.attached_to, carried, twist)
         return {name: scene.algebra.reduce(value) for name, value in self.totals.items()}
 
-    def _project(self, motion: BodyMotion, carried: Vector, moment: Vector) -> None:
+    def _project(self, motion: BodyMotion[S], carried: Vector[S], moment: Vector[S]) -> None:
         """moment . (dx/dq) e_axis for each turn, force . dr/dq for a moving connection point."""
         algebra, lower, totals = self.scene.algebra, self.scene.lower, self.totals
         for turn in reversed(motion.turns):
@@ -139,7 +143,7 @@ class _Joints:
                 totals[name] = totals[name] + share
 
 
-def residuals(scene: Scene, loads: bool = True) -> dict[str, Scalar]:
+def residuals(scene: Scene[S], loads: bool = True) -> dict[str, S]:
     """M q'' - forcing for every coordinate, at the state and accelerations of the scene's environment.
 
     With ``loads`` false the loads are left out: what remains is the inertia part alone.
@@ -152,7 +156,7 @@ def residuals(scene: Scene, loads: bool = True) -> dict[str, Scalar]:
     return joints.projections()
 
 
-def applied_forces(scene: Scene) -> dict[str, Scalar]:
+def applied_forces(scene: Scene[S]) -> dict[str, S]:
     """The generalised forces of the loads that have no force function, by projection on the joints."""
     joints = _Joints(scene)
     for action in actions(scene, potential=False):

@@ -73,7 +73,7 @@ class Dual:
         return Dual(a * first, a * other.b + self.b * first)
 
 
-class TaylorSeries(Algebra):
+class TaylorSeries(Algebra[Series]):
     """Series over numbers (rationals or balls)."""
 
     def __init__(self, numbers: Algebra, angles: Mapping[str, Any]) -> None:

@@ -27,8 +27,9 @@ from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
-from mbsym.model.basics import INERTIAL, Vector, _span
+from mbsym.model.basics import INERTIAL as INERTIAL
 from mbsym.model.basics import Point as Point
+from mbsym.model.basics import Vector, _span
 from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output

@@ -138,7 +138,7 @@ class Linearisation(Shown):
         )
 
 
-def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | None) -> Linearisation:
+def by_quadratisation(scene: Scene, expanded: Scene[Jet], equilibrium: Equilibrium | None) -> Linearisation:
     """Route 2, from the system over jets (``quadratised``): never forms the nonlinear equations.
 
     Raises NoClosedForm or SingularPoint.
@@ -147,13 +147,13 @@ def by_quadratisation(scene: Scene, expanded: Scene, equilibrium: Equilibrium | 
     L = kinetic_energy(expanded) + force_function(expanded)
     Q = list(applied_forces(expanded).values())
 
-    def second(rows: int, columns: int) -> ScalarMatrix:
+    def second(rows: int, columns: int) -> ScalarMatrix[Polynomial]:
         return ScalarMatrix.by_entry(ring, n, n, lambda i, j: _second(ring, L, rows + i, columns + j))
 
-    def slopes(start: int, count: int) -> ScalarMatrix:
+    def slopes(start: int, count: int) -> ScalarMatrix[Polynomial]:
         return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].first.get(start + j, ring.zero))
 
-    def rate(matrix: ScalarMatrix) -> ScalarMatrix:
+    def rate(matrix: ScalarMatrix[Polynomial]) -> ScalarMatrix[Polynomial]:
         return matrix.map(lambda x: rate_on_motion(scene, x))
 
     x, v, u = 0, n, 2 * n  # where the deviations of coordinates, velocities and inputs begin
@@ -173,7 +173,7 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     at, inputs = unperturbed(scene), scene.system.input_names
     f = [x.polynomial for x in equations.forcing]
 
-    def on_motion(rows: Sequence[Sequence[Polynomial]]) -> ScalarMatrix:
+    def on_motion(rows: Sequence[Sequence[Polynomial]]) -> ScalarMatrix[Polynomial]:
         return ScalarMatrix(ring, rows).map(lambda x: ring.substitute(x, at))
 
     M = on_motion(equations.mass_matrix.polynomials)
@@ -183,7 +183,7 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     return assemble(scene, equilibrium, (M, C, S, B), "linearised equations", inputs)
 
 
-def quadratised(scene: Scene, whole: System | None = None) -> Scene:
+def quadratised(scene: Scene, whole: System | None = None) -> Scene[Jet]:
     """The system over second-order jets about the unperturbed motion; with ``whole`` its inputs deviate, too.
 
     Deviations are numbered: x_i is i, x'_i is n + i, that of input k is 2 n + k.
@@ -218,7 +218,7 @@ def _second(ring: Ring, x: Jet, i: int, j: int) -> Polynomial:
 def assemble(
     scene: Scene,
     equilibrium: Equilibrium | None,
-    whole: tuple[ScalarMatrix, ScalarMatrix, ScalarMatrix, ScalarMatrix],
+    whole: tuple[ScalarMatrix[Polynomial], ...],
     route: str,
     inputs: tuple[str, ...],
     coordinates: tuple[str, ...] | None = None,

@@ -325,7 +325,7 @@ def test_mistakes_in_the_lean_recursions_fail_the_self_check(
 ARTICULATED_MISTAKES = [
     ("mechanics.articulated:_shifted", "new[j][j]", "old[j][j]"),
     ("mechanics.articulated:_turned_general", "mixed - r", "mixed + r"),
-    ("mechanics.articulated:_less", "- u[i] * v[j]", "+ u[i] * v[j]"),
+    ("mechanics.articulated:_less", "- mul(u[i], v[j])", "+ mul(u[i], v[j])"),
     ("mechanics.articulated:_Articulated._inwards", " + frame.offset.cross(force)", ""),
     ("mechanics.articulated:_Articulated._outwards", " + angular.cross(frame.offset)", ""),
     ("mechanics.factorisation:solve", "value - factor * found[i]", "value + factor * found[i]"),

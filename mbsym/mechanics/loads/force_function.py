@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.expressions.tree import differentiate, names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model.loads import ForceFunction
 
 
-def _force_function(load: ForceFunction, scene: Scene) -> Scalar:
+def _force_function(load: ForceFunction, scene: Scene[S]) -> S:
     value = scene.lower(load.expression)
     return -value if load.spelled == "potential" else value
 
 
-def _force_function_action(load: ForceFunction, scene: Scene) -> Action:
+def _force_function_action(load: ForceFunction, scene: Scene[S]) -> Action[S]:
     """Q = dU/dq, differentiated as written."""
     sign = scene.algebra.number(-1 if load.spelled == "potential" else 1)
     forces = {}

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.kinematics import Scene
@@ -19,20 +19,20 @@ L = TypeVar("L")
 
 
 @dataclass(frozen=True, slots=True)
-class Wrench:
+class Wrench(Generic[S]):
     """A force on a body and its moment about the body's connection point O_k, in the body's axes."""
 
     body: str
-    force: Vector
-    moment: Vector
+    force: Vector[S]
+    moment: Vector[S]
 
 
 @dataclass(frozen=True, slots=True)
-class Action:
+class Action(Generic[S]):
     """What a load does: wrenches on bodies, and generalised forces Q on coordinates."""
 
-    wrenches: tuple[Wrench, ...] = ()
-    generalized: dict[str, Scalar] = field(default_factory=dict)
+    wrenches: tuple[Wrench[S], ...] = ()
+    generalized: dict[str, S] = field(default_factory=dict)
 
 
 class Note(NamedTuple):
@@ -55,14 +55,14 @@ class Kind(Generic[L]):
     ``upward``: against it, in the axes of a frame, where there is such a direction: for pictures.
     """
 
-    action: Callable[[L, Scene], Action]
-    force_function: Callable[[L, Scene], Scalar] | None = None
-    field: Callable[[L, Scene], Vector] | None = None
+    action: Callable[[L, Scene[S]], Action[S]]
+    force_function: Callable[[L, Scene[S]], S] | None = None
+    field: Callable[[L, Scene[S]], Vector[S]] | None = None
     falls: bool = False
-    notes: Callable[[L, Scene], Iterable[Note]] | None = None
-    upward: Callable[[L, Scene, str], Vector | None] | None = None
+    notes: Callable[[L, Scene[S]], Iterable[Note]] | None = None
+    upward: Callable[[L, Scene[S], str], Vector[S] | None] | None = None
 
 
-def force_at(point: Vector, force: Vector) -> Wrench:
+def force_at(point: Vector[S], force: Vector[S]) -> Wrench[S]:
     """The wrench of a force on a point of a body, both in its axes."""
     return Wrench(force.frame, force, point.cross(force))

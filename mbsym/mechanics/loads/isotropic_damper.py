@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from mbsym.algebra.base import S
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.between import Pair, closing, noted
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model.loads import IsotropicDamper
 
 
-def _isotropic_damper_action(load: IsotropicDamper, scene: Scene) -> Action:
+def _isotropic_damper_action(load: IsotropicDamper, scene: Scene[S]) -> Action[S]:
     """coefficient (V_second - V_first) on the first point."""
     pair = Pair(load.first, load.second, scene)
     coefficient = scene.lower(load.coefficient)

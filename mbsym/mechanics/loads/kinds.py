@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads import (
@@ -42,7 +42,7 @@ KINDS: dict[type, Kind[Any]] = {
 }
 
 
-def force_function(scene: Scene) -> Scalar:
+def force_function(scene: Scene[S]) -> S:
     """U = sum of the force functions of all loads that have one."""
     total = scene.algebra.zero
     for load in scene.system.loads:
@@ -52,13 +52,13 @@ def force_function(scene: Scene) -> Scalar:
     return scene.algebra.reduce(total)
 
 
-def actions(scene: Scene, potential: bool = True) -> list[Action]:
+def actions(scene: Scene[S], potential: bool = True) -> list[Action[S]]:
     """What the loads do to the bodies; with ``potential`` false, only those that have no force function."""
     loads = [load for load in scene.system.loads if potential or not load.conservative]
     return [KINDS[type(load)].action(load, scene) for load in loads]
 
 
-def base_acceleration(scene: Scene) -> Vector:
+def base_acceleration(scene: Scene[S]) -> Vector[S]:
     """-sum of g: the acceleration of a base that stands for all uniform fields, in inertial axes."""
     base = scene.zero(INERTIAL)
     for load in scene.system.loads:
@@ -68,7 +68,7 @@ def base_acceleration(scene: Scene) -> Vector:
     return base
 
 
-def actions_beyond_fields(scene: Scene, falling: Scene) -> Iterator[Action]:
+def actions_beyond_fields(scene: Scene[S], falling: Scene[S]) -> Iterator[Action[S]]:
     """What the loads do to the bodies, less what ``base_acceleration`` stands for.
 
     ``falling`` is the scene seen from its falling frames, or the same scene where none falls.

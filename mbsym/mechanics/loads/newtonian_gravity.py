@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.kinematics import Scene
@@ -16,7 +16,7 @@ from mbsym.model.loads import EXACT, NewtonianGravity
 from mbsym.model.system import INERTIAL
 
 
-def _newtonian_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
+def _newtonian_force_function(load: NewtonianGravity, scene: Scene[S]) -> S:
     """U = nu m/R - nu m/R^2 e.c + nu/R^3 [ m/2 (3 (e.c)^2 - c.c) + tr Theta_C / 2 - 3/2 e.Theta_C e ], summed."""
     algebra = scene.algebra
     orbit = Orbit(load, scene)
@@ -36,7 +36,7 @@ def _newtonian_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def _newtonian_action(load: NewtonianGravity, scene: Scene) -> Action:
+def _newtonian_action(load: NewtonianGravity, scene: Scene[S]) -> Action[S]:
     """F = -nu m/R^2 e + nu m/R^3 (3 (e.c) e - c) at the mass centre, and the torque 3 nu/R^3 e x Theta_C e."""
     algebra = scene.algebra
     orbit = Orbit(load, scene)
@@ -55,7 +55,7 @@ def _newtonian_action(load: NewtonianGravity, scene: Scene) -> Action:
     return completed(load, scene, wrenches, lambda: _on_the_expansion_point(orbit))
 
 
-def _on_the_expansion_point(orbit: Orbit) -> Wrench:
+def _on_the_expansion_point(orbit: Orbit[S]) -> Wrench[S]:
     """What is left of dU when O1 itself moves and the bodies stay: a force on O1, of the third order in c/R,
 
     nu/R^4 sum m/2 (6 (e.c) c - 15 (e.c)^2 e + 3 c.c e) - 3/2 tr Theta_C e - 3 Theta_C e + 15/2 (e.Theta_C e) e.
@@ -80,15 +80,15 @@ def _on_the_expansion_point(orbit: Orbit) -> Wrench:
     return Wrench(orbit.about, total * fourth, scene.zero(orbit.about))
 
 
-def _force_function_of_order(load: NewtonianGravity, scene: Scene) -> Scalar:
+def _force_function_of_order(load: NewtonianGravity, scene: Scene[S]) -> S:
     return _newtonian_force_function(load, scene) if load.order == 2 else order_force_function(load, scene)
 
 
-def _action_of_order(load: NewtonianGravity, scene: Scene) -> Action:
+def _action_of_order(load: NewtonianGravity, scene: Scene[S]) -> Action[S]:
     return _newtonian_action(load, scene) if load.order == 2 else order_action(load, scene)
 
 
-def _notes(load: NewtonianGravity, scene: Scene) -> Iterator[Note]:
+def _notes(load: NewtonianGravity, scene: Scene[S]) -> Iterator[Note]:
     """Where the bodies are: r in the exact field; e, c and e.c where it is expanded."""
     if load.order == EXACT:
         for motion, r in radius_vectors(load, scene):
@@ -100,7 +100,7 @@ def _notes(load: NewtonianGravity, scene: Scene) -> Iterator[Note]:
         yield Note(Quantity.ALONG, motion.body.name, e.dot(c))
 
 
-def _upward(load: NewtonianGravity, scene: Scene, frame: str) -> Vector | None:
+def _upward(load: NewtonianGravity, scene: Scene[S], frame: str) -> Vector[S] | None:
     """Away from a centre at rest; None where it is another frame that is expanded about."""
     if load.about != frame or load.centre != INERTIAL or frame == INERTIAL:
         return None

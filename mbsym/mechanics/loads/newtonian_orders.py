@@ -31,8 +31,9 @@ Stegun 22.7.3 and 22.7.10 (the recurrences of the Gegenbauer and Legendre polyno
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Generic
 
-from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 from mbsym.mechanics.loads.interface import Action, Wrench
@@ -40,7 +41,7 @@ from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radiu
 from mbsym.model.loads import EXACT, NewtonianGravity
 
 
-def order_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
+def order_force_function(load: NewtonianGravity, scene: Scene[S]) -> S:
     """U of the orders 3 and 4 and of the exact field, summed over the bodies."""
     if load.order == EXACT:
         return _exact_force_function(load, scene)
@@ -63,7 +64,7 @@ def order_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def legendre(algebra: Algebra, x: Scalar, y: Scalar, order: int) -> list[Scalar]:
+def legendre(algebra: Algebra[S], x: S, y: S, order: int) -> list[S]:
     """P_0 to P_order, homogeneous: k P_k = (2k - 1) x P_(k-1) - (k - 1) y P_(k-2)."""
     found = [algebra.one, x]
     for k in range(2, order + 1):
@@ -73,9 +74,7 @@ def legendre(algebra: Algebra, x: Scalar, y: Scalar, order: int) -> list[Scalar]
     return found
 
 
-def _spread(
-    scene: Scene, motion: BodyMotion, e: Vector, c: Vector, x: Scalar, y: Scalar, order: int
-) -> dict[int, Scalar]:
+def _spread(scene: Scene[S], motion: BodyMotion[S], e: Vector[S], c: Vector[S], x: S, y: S, order: int) -> dict[int, S]:
     """MacCullagh's term by its degree, without nu/R^(degree + 1)."""
     tensor = central_inertia(scene, motion)
     if tensor is None:
@@ -84,7 +83,7 @@ def _spread(
     turned, t = tensor @ e, trace(tensor)
     ee, ec = e.dot(turned), c.dot(turned)
 
-    def sum_of(*terms: tuple[Fraction | int, Scalar, Scalar]) -> Scalar:
+    def sum_of(*terms: tuple[Fraction | int, S, S]) -> S:
         total = algebra.zero
         for number, first, second in terms:
             total = total + algebra.times(algebra.number(number), algebra.times(first, second))
@@ -105,7 +104,7 @@ def _spread(
 # --- wrenches ---
 
 
-def order_action(load: NewtonianGravity, scene: Scene) -> Action:
+def order_action(load: NewtonianGravity, scene: Scene[S]) -> Action[S]:
     """Forces at the mass centres and torques, of the orders 3 and 4 and of the exact field.
 
     Where O1 moves and the bodies stay, p = R e and c change oppositely.  In the exact field this changes nothing,
@@ -130,7 +129,7 @@ def order_action(load: NewtonianGravity, scene: Scene) -> Action:
                 torque = torque + expansion.torque(degree) * factors[degree]
         wrenches.append(Wrench(motion.body.name, force, motion.mass_centre.cross(force) + torque))
 
-    def on_the_expansion_point() -> Wrench:
+    def on_the_expansion_point() -> Wrench[S]:
         left = nothing = scene.zero(load.about)
         for _, expansion in expansions:
             left = left + scene.to_axes(expansion.force(order), load.about)
@@ -139,10 +138,10 @@ def order_action(load: NewtonianGravity, scene: Scene) -> Action:
     return completed(load, scene, wrenches, on_the_expansion_point)
 
 
-class _Expansion:
+class _Expansion(Generic[S]):
     """Forces and torques on one body by their degree, without nu and powers of R."""
 
-    def __init__(self, scene: Scene, motion: BodyMotion, e: Vector, c: Vector, order: int) -> None:
+    def __init__(self, scene: Scene[S], motion: BodyMotion[S], e: Vector[S], c: Vector[S], order: int) -> None:
         algebra = self.algebra = scene.algebra
         self.mass, self.e, self.c = motion.mass, e, c
         x, y = e.dot(c), c.dot(c)
@@ -156,12 +155,12 @@ class _Expansion:
             self.quadratic = (e.dot(self.turned[0]), twice, c.dot(self.turned[1]))
             self.trace = trace(self.tensor)
 
-    def _along(self, series: list[Scalar], k: int, pair: tuple[Vector, Vector]) -> Vector:
+    def _along(self, series: list[S], k: int, pair: tuple[Vector[S], Vector[S]]) -> Vector[S]:
         """The coefficient of s^k in series (first + s second)."""
         found = pair[0] * series[k]
         return found + pair[1] * series[k - 1] if k else found
 
-    def force(self, degree: int) -> Vector:
+    def force(self, degree: int) -> Vector[S]:
         """The coefficient of nu/R^(degree + 2) in the force."""
         algebra = self.algebra
         r = (self.e, self.c)
@@ -178,14 +177,14 @@ class _Expansion:
             total = total + along * algebra.number(Fraction(15, 2))
         return total.reduced()
 
-    def _product(self, series: list[Scalar], k: int) -> Scalar:
+    def _product(self, series: list[S], k: int) -> S:
         """The coefficient of s^k in series (e + s c).Theta (e + s c)."""
         total = self.algebra.zero
         for i, value in enumerate(self.quadratic[: k + 1]):
             total = total + self.algebra.times(series[k - i], value)
         return self.algebra.reduce(total)
 
-    def torque(self, degree: int) -> Vector:
+    def torque(self, degree: int) -> Vector[S]:
         """The coefficient of nu/R^(degree + 1) in the torque."""
         algebra, k = self.algebra, degree - 2
         e, c = self.e, self.c
@@ -198,7 +197,7 @@ class _Expansion:
         return total * algebra.number(3)
 
 
-def gegenbauer(algebra: Algebra, x: Scalar, y: Scalar, exponent: int, order: int) -> list[Scalar]:
+def gegenbauer(algebra: Algebra[S], x: S, y: S, exponent: int, order: int) -> list[S]:
     """The coefficients q_0 to q_order of (1 + 2 s x + s^2 y)^(-exponent/2) = |e + s c|^-exponent in powers of s:
 
     k q_k = -(2k + exponent - 2) x q_(k-1) - (k + exponent - 2) y q_(k-2).
@@ -214,14 +213,14 @@ def gegenbauer(algebra: Algebra, x: Scalar, y: Scalar, exponent: int, order: int
 # --- exact ---
 
 
-def _inverse_distance(algebra: Algebra, r: Vector) -> tuple[Scalar, Scalar]:
+def _inverse_distance(algebra: Algebra[S], r: Vector[S]) -> tuple[S, S]:
     """1/|r| and 1/|r|^2."""
     square = r.dot(r)
     inverse = algebra.reciprocal(square)
     return algebra.reduce(algebra.times(algebra.square_root(square), inverse)), inverse
 
 
-class _Falling:
+class _Falling(Generic[S]):
     """The exact monopole field of unit mass beyond its value at O1, without differences of nearly equal numbers.
 
     With x = e.c, y = c.c, u = 2 x/R + y/R^2 and s = sqrt(1 + u) = |r|/R (Encke's method; Battin, An Introduction to the
@@ -231,7 +230,7 @@ class _Falling:
         U        nu/R [ 1/s - 1 + x/R ]  =  nu/(2 R) [ u^2 (s + 2)/(s (1 + s)^2) - y/R^2 ]
     """
 
-    def __init__(self, orbit: Orbit, e: Vector, c: Vector) -> None:
+    def __init__(self, orbit: Orbit[S], e: Vector[S], c: Vector[S]) -> None:
         algebra = self.algebra = orbit.scene.algebra
         self.orbit, self.e, self.c = orbit, e, c
         scaled = c * orbit.inverse
@@ -239,7 +238,7 @@ class _Falling:
         self.u = algebra.times(algebra.number(2), e.dot(scaled)) + self.y
         self.s = algebra.square_root(algebra.reduce(algebra.one + self.u))
 
-    def force(self) -> Vector:
+    def force(self) -> Vector[S]:
         algebra, s = self.algebra, self.s
         square = algebra.times(s, s)
         top = algebra.times(self.u, algebra.one + s + square)
@@ -249,7 +248,7 @@ class _Falling:
         across = self.c * algebra.times(algebra.one + f, self.orbit.cube)
         return -(along + across)
 
-    def potential(self) -> Scalar:
+    def potential(self) -> S:
         algebra, s = self.algebra, self.s
         more = algebra.one + s
         top = algebra.times(algebra.times(self.u, self.u), s + algebra.number(2))
@@ -258,7 +257,7 @@ class _Falling:
         return algebra.times(half, quotient - self.y)
 
 
-def _fallen(load: NewtonianGravity, scene: Scene) -> dict[str, _Falling]:
+def _fallen(load: NewtonianGravity, scene: Scene[S]) -> dict[str, _Falling[S]]:
     """The field of every body that a falling frame carries; nothing where the frame does not fall."""
     if load.about not in scene.falling:
         return {}
@@ -266,7 +265,7 @@ def _fallen(load: NewtonianGravity, scene: Scene) -> dict[str, _Falling]:
     return {motion.body.name: _Falling(orbit, e, c) for motion, e, c in orbit.bodies()}
 
 
-def _exact_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
+def _exact_force_function(load: NewtonianGravity, scene: Scene[S]) -> S:
     """U = nu [ m/|r| + (tr Theta - 3 r.Theta r/|r|^2)/(2 |r|^3) ], summed over the bodies."""
     algebra = scene.algebra
     total = tides = algebra.zero
@@ -286,7 +285,7 @@ def _exact_force_function(load: NewtonianGravity, scene: Scene) -> Scalar:
     return algebra.reduce(algebra.times(scene.lower(load.constant), algebra.reduce(total)) + tides)
 
 
-def _exact_action(load: NewtonianGravity, scene: Scene) -> Action:
+def _exact_action(load: NewtonianGravity, scene: Scene[S]) -> Action[S]:
     """F and L of the exact field, on every body."""
     algebra = scene.algebra
     constant = scene.lower(load.constant)

@@ -7,8 +7,9 @@ A field is expanded in c/R and in the extent of the bodies over R; the exact fie
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Generic
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import BodyMotion, Scene
@@ -18,14 +19,14 @@ from mbsym.model.loads import NewtonianGravity
 from mbsym.model.system import INERTIAL
 
 
-class Orbit:
+class Orbit(Generic[S]):
     """Distance R of the expansion point O1 from the centre, unit vector e, and each body's mass centre c from O1.
 
     first, square, cube: nu/R, nu/R^2, nu/R^3.  ``potential`` and ``weight`` are the first two as they act at O1: zero
     where the frame falls.
     """
 
-    def __init__(self, load: NewtonianGravity, scene: Scene) -> None:
+    def __init__(self, load: NewtonianGravity, scene: Scene[S]) -> None:
         algebra, ring = scene.algebra, scene.ring
         # The distance is simplified in the ring, where sin^2 + cos^2 = 1, and then carried into the algebra at hand.
         radius = outward(load, scene)
@@ -46,18 +47,18 @@ class Orbit:
         self.potential = algebra.zero if self.falling else self.first
         self.weight = algebra.zero if self.falling else self.square
 
-    def bodies(self) -> list[tuple[BodyMotion, Vector, Vector]]:
+    def bodies(self) -> list[tuple[BodyMotion[S], Vector[S], Vector[S]]]:
         """(motion, e, c) of every body carried by the frame O1, in the body's axes."""
         return _carried(self.scene, self.about, self.centre, self.unit)
 
 
-def radius_vectors(load: NewtonianGravity, scene: Scene) -> list[tuple[BodyMotion, Vector]]:
+def radius_vectors(load: NewtonianGravity, scene: Scene[S]) -> list[tuple[BodyMotion[S], Vector[S]]]:
     """(motion, r) of every body carried by the frame ``about``: r from the centre to its mass centre, in its axes."""
     start = scene.carried(outward(load, scene))
     return [(motion, p + c) for motion, p, c in _carried(scene, load.about, load.centre, start)]
 
 
-def outward(load: NewtonianGravity, scene: Scene) -> Vector:
+def outward(load: NewtonianGravity, scene: Scene[S]) -> Vector[S]:
     """p from the centre to the origin of ``about``, over the ring, in the axes of ``about``."""
     ring = scene.ring
     closed = scene if scene.algebra is ring else _closed_scene(scene)
@@ -68,18 +69,20 @@ def outward(load: NewtonianGravity, scene: Scene) -> Vector:
     return closed.to_axes(p, load.about)
 
 
-def _closed_scene(scene: Scene) -> Scene:
+def _closed_scene(scene: Scene[S]) -> Scene[S]:
     return Scene(scene.system, scene.ring, ring_environment(scene.system, scene.ring), scene.ring)
 
 
-def _carried(scene: Scene, about: str, centre: str, direction: Vector) -> list[tuple[BodyMotion, Vector, Vector]]:
+def _carried(
+    scene: Scene[S], about: str, centre: str, direction: Vector[S]
+) -> list[tuple[BodyMotion[S], Vector[S], Vector[S]]]:
     """(motion, direction, c) of every body with mass or inertia that ``about`` carries, both in the body's axes.
 
     The centre does not attract itself.
     """
     algebra = scene.algebra
-    turned: dict[str, Vector] = {about: direction}
-    origin: dict[str, Vector] = {about: scene.zero(about)}
+    turned: dict[str, Vector[S]] = {about: direction}
+    origin: dict[str, Vector[S]] = {about: scene.zero(about)}
     found = []
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
@@ -94,7 +97,7 @@ def _carried(scene: Scene, about: str, centre: str, direction: Vector) -> list[t
     return found
 
 
-def central_inertia(scene: Scene, motion: BodyMotion) -> Tensor | None:
+def central_inertia(scene: Scene[S], motion: BodyMotion[S]) -> Tensor[S] | None:
     """Theta_C = Theta_O - m (c.c 1 - c c^T) for a tensor given about the joint."""
     if motion.inertia is None or motion.body.inertia is None:
         return None
@@ -113,11 +116,11 @@ def central_inertia(scene: Scene, motion: BodyMotion) -> Tensor | None:
     return tensor_of(algebra, rows, c.frame)
 
 
-def trace(tensor: Tensor) -> Scalar:
+def trace(tensor: Tensor[S]) -> S:
     return tensor[0][0] + tensor[1][1] + tensor[2][2]
 
 
-def _moves(scene: Scene, frame: str) -> bool:
+def _moves(scene: Scene[S], frame: str) -> bool:
     """Whether a frame depends on coordinates; a fixed or prescribed one feels no generalised force."""
     coordinates = set(scene.system.coordinates)
     path = [scene.system.body(name) for name in scene.system.path(frame) if name != INERTIAL]
@@ -125,8 +128,11 @@ def _moves(scene: Scene, frame: str) -> bool:
 
 
 def completed(
-    load: NewtonianGravity, scene: Scene, wrenches: Sequence[Wrench], at_origin: Callable[[], Wrench] | None = None
-) -> Action:
+    load: NewtonianGravity,
+    scene: Scene[S],
+    wrenches: Sequence[Wrench[S]],
+    at_origin: Callable[[], Wrench[S]] | None = None,
+) -> Action[S]:
     """The action on the bodies, with what acts on O1 (``at_origin``) and on the centre where these move.
 
     U changes neither when centre, O1 and bodies are all shifted, nor when all are turned about the centre.  So a centre

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.algebra.base import S
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.vectors import axis_vector
 from mbsym.mechanics.kinematics import Scene
@@ -10,7 +11,7 @@ from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model.loads import PointDamper
 
 
-def _point_damper_action(load: PointDamper, scene: Scene) -> Action:
+def _point_damper_action(load: PointDamper, scene: Scene[S]) -> Action[S]:
     """coefficient (u . (V_second - V_first)) u on the first point, with u along the line between the points.
 
     On a line that never turns u is its axis; elsewhere u u^T = r r^T / r.r with r = r_second - r_first, which is

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.between import Pair, noted
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model.loads import PointSpring
 
 
-def _point_spring_force_function(load: PointSpring, scene: Scene) -> Scalar:
+def _point_spring_force_function(load: PointSpring, scene: Scene[S]) -> S:
     """U = -stiffness (d^2 - 2 d length + length^2) / 2; without a natural length no root is taken."""
     algebra = scene.algebra
     span = Pair(load.first, load.second, scene).span
@@ -25,7 +25,7 @@ def _point_spring_force_function(load: PointSpring, scene: Scene) -> Scalar:
     return algebra.reduce(algebra.times(half, algebra.times(scene.lower(load.stiffness), energy)))
 
 
-def _point_spring_action(load: PointSpring, scene: Scene) -> Action:
+def _point_spring_action(load: PointSpring, scene: Scene[S]) -> Action[S]:
     """stiffness (1 - length/d) (r_second - r_first) on the first point."""
     algebra = scene.algebra
     pair = Pair(load.first, load.second, scene)

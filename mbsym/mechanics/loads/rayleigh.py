@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.algebra.base import S
 from mbsym.expressions.tree import differentiate, names, sticks, without_tables
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind
@@ -9,7 +10,7 @@ from mbsym.model.loads import Rayleigh
 from mbsym.model.system import velocity_name
 
 
-def _rayleigh_action(load: Rayleigh, scene: Scene) -> Action:
+def _rayleigh_action(load: Rayleigh, scene: Scene[S]) -> Action[S]:
     """Q = -dR/dq'.  A kink of R in a velocity is dry friction, which holds there: its table becomes moduli."""
     present = names(load.expression)
     potential = without_tables(load.expression, sticks)

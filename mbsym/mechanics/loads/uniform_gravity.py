@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.interface import Action, Kind, force_at
@@ -10,7 +10,7 @@ from mbsym.model.loads import UniformGravity
 from mbsym.model.system import INERTIAL
 
 
-def _uniform_force_function(load: UniformGravity, scene: Scene) -> Scalar:
+def _uniform_force_function(load: UniformGravity, scene: Scene[S]) -> S:
     """U = sum m g.r_C, without turning r_C into inertial axes: g turns outwards, and g.r_O adds up joint by joint."""
     algebra = scene.algebra
     field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
@@ -26,7 +26,7 @@ def _uniform_force_function(load: UniformGravity, scene: Scene) -> Scalar:
     return algebra.reduce(total)
 
 
-def _uniform_action(load: UniformGravity, scene: Scene) -> Action:
+def _uniform_action(load: UniformGravity, scene: Scene[S]) -> Action[S]:
     """m g at each mass centre."""
     field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
     wrenches = []
@@ -37,12 +37,12 @@ def _uniform_action(load: UniformGravity, scene: Scene) -> Action:
     return Action(tuple(wrenches))
 
 
-def _field(load: UniformGravity, scene: Scene) -> Vector:
+def _field(load: UniformGravity, scene: Scene[S]) -> Vector[S]:
     """g, in inertial axes."""
     return scene.vector(load.acceleration, INERTIAL)
 
 
-def _upward(load: UniformGravity, scene: Scene, frame: str) -> Vector:
+def _upward(load: UniformGravity, scene: Scene[S], frame: str) -> Vector[S]:
     return scene.to_axes(-_field(load, scene), frame)
 
 
