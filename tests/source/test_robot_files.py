@@ -285,3 +285,36 @@ def test_misspelled_elements_do_not_go_by_in_silence() -> None:
     assert "unknown element <orign> in <joint>" in converted(PENDULUM.replace("<origin rpy", "<orign rpy")).left_out
     made = converted(PENDULUM.replace("<mass value", "<mas value"))
     assert "unknown element <mas> in <inertial>" in made.left_out
+
+
+@pytest.mark.parametrize(
+    ("before", "body", "what", "meant"),
+    [
+        ("", '<body>\n<joint dampng="3"/><geom size="1"/></body>', "attribute 'dampng' of <joint>", "damping"),
+        ("", '<body><joint/>\n<geom size="1" densty="9"/></body>', "attribute 'densty' of <geom>", "density"),
+        ("", '<body><joint/>\n<geom size="1" Mass="9"/></body>', "attribute 'Mass' of <geom>", "mass"),
+        ("", '\n<body poss="0 0 1"><joint/><geom size="1"/></body>', "attribute 'poss' of <body>", "pos"),
+        ('\n<compiler angel="radian"/>', BALL, "attribute 'angel' of <compiler>", "angle"),
+        ('\n<option gravty="0 0 0"/>', BALL, "attribute 'gravty' of <option>", "gravity"),
+        ('<default><default class="a">\n<joint axs="1 0 0"/></default></default>', BALL, "<joint>", "axis"),
+        ("", '<body><joint/>\n<geon size="1"/></body>', "element <geon> in <body>", "geom"),
+    ],
+)
+def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
+    before: str, body: str, what: str, meant: str
+) -> None:
+    complaints = Complaints()
+    assert convert(mujoco(before, body), complaints) is None
+    (found,) = complaints.items
+    assert what in found.message
+    assert found.hint == f"did you mean '{meant}'?"
+    assert found.span is not None
+    assert found.span.line == 2
+
+
+def test_what_looks_like_nothing_known_is_left_out_by_name() -> None:
+    """It may be of a later MuJoCo; the same names in sections that are not read are nobody's business."""
+    after = '<equality><joint joint1="a" polycoef="1"/></equality><sensor><geom obj="b"/></sensor>'
+    made = converted(mujoco("", '<body name="b"><joint quux="1"/><geom size="0.5" density="6"/></body>', after))
+    assert "unknown attribute 'quux' of <joint>" in made.left_out
+    assert not any("polycoef" in one or "obj" in one for one in made.left_out)

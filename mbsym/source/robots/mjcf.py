@@ -17,6 +17,7 @@ from mbsym.source.robots.numbers import NOWHERE, Texts, degrees, number
 from mbsym.source.robots.orientation import Angles, orientation
 from mbsym.source.robots.reader import Reader
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns
+from mbsym.source.robots.spelling import check_spelling
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 
@@ -47,6 +48,7 @@ def read_mjcf(root: Element, complaints: Complaints) -> Robot | None:
     for element in root.walk():
         if element.tag in ("include", "attach", "frame", "replicate"):
             reader.error("unsupported", f"<{element.tag}> is not read", element, "let MuJoCo save the compiled model")
+    check_spelling(root, reader)
     for section in root.children:
         for _ in section.children if section.tag in _SECTIONS else ():
             reader.leave_out(_SECTIONS[section.tag])
