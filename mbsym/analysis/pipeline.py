@@ -54,6 +54,7 @@ from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.canonical import Hamilton, Routh
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.reduction import Reduced
@@ -98,7 +99,7 @@ KNOW_SPEEDS = frozenset(
 IN_COORDINATES = frozenset(
     (
         *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
-        *("stability", "trials", "equilibria"),
+        *("stability", "trials", "equilibria", "hamilton", "routh"),
     )
 )
 #: The checks of these.
@@ -293,6 +294,11 @@ class Analysis(Stages):
         says=True,
     )
 
+    # --- problem 3 in other forms, for whoever asks ---
+
+    hamilton = Derived["Analysis", "Hamilton"](lambda a: a._hamilton())
+    routh = Derived["Analysis", "Routh"](lambda a: a._routh())
+
     # --- at numbers ---
 
     equilibria = Derived["Analysis", "Equilibria"](lambda a: a._equilibria(), ("straight-line program",), says=True)
@@ -374,6 +380,16 @@ class Analysis(Stages):
         from mbsym.problems.state_space import state_space  # few systems have inputs
 
         return state_space(self.parameters_scene, self.expanded, self.linearisation, self.equilibrium)
+
+    def _hamilton(self) -> Hamilton:
+        from mbsym.problems import canonical  # what few ask for is not imported for nothing
+
+        return canonical.hamilton(self.system, self.terms)
+
+    def _routh(self) -> Routh:
+        from mbsym.problems import canonical
+
+        return canonical.routh(self.system, self.terms)
 
     def _told(self) -> ToldSystem:
         return told_system(self.system, self.ring, self.terms)
