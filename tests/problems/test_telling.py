@@ -66,6 +66,10 @@ def different(analysis: Analysis, found: ToldSystem) -> list[str]:
 @SYSTEMS
 def test_what_is_told_is_what_was_derived(path: object) -> None:
     analysis = mbsym.load(path)  # type: ignore[arg-type]
+    if analysis.system.constraints or analysis.system.speeds:
+        with pytest.raises(Unavailable, match="not taken into account"):
+            _ = analysis.told
+        return
     assert different(analysis, analysis.told) == []
 
 
