@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,9 @@ DEPENDENT = 1e-9
 
 #: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
 BESIDE, AWAY = 3, 0.05
+
+#: How many times nearer to a singular position than the start states may be computed: S has lost six digits.
+NEAREST = 1e6
 
 #: A correction of this size, beside the coordinates', ends Newton's iteration; so many steps of it at most.
 SETTLED, STEPS = 1e-13, 40
@@ -193,6 +197,25 @@ class Constraints:
         """The equations with the rows that are kept."""
         chosen = tuple((self.names[k].constraint, self.names[k].component) for k in self.kept)
         return constrained_dynamics(self._scenario.system, self._ring, chosen, self._apart)
+
+    @cached_property
+    def nearest(self) -> tuple[Fraction, ...]:
+        """Parts of the pivots of S, whose sum of quotients with them says how near a singular position is.
+
+        sum_i s_i / pivot_i grows like 1/sigma^2 towards one, with s_i the largest S_ii at positions near the start; it
+        is measured by NEAREST times its value at the start.
+        """
+        state = np.array([float(x) for x in self._scenario.state])
+        kept = list(self.kept)
+        rows = [self.at(0.0, x).partials[kept] @ self.weights(0.0, x) for x in self._places(state)]
+        sizes = np.max([np.sum(one**2, axis=1) for one in rows], axis=0)
+        found = self.dynamics
+        pivots = substituted(found.program, found.pivots[self.size :], numbers := bound(self._scenario))
+        values = arrays.kernel(Code(numbers, self.inputs, tuple(pivots)))(np.concatenate(([0.0], state)))
+        with np.errstate(all="ignore"):
+            usual = float(np.sum(sizes / values))
+        limit = NEAREST * (usual if np.isfinite(usual) and usual > len(kept) else len(kept))
+        return tuple(Fraction(float(size / limit)) for size in sizes)
 
     @cached_property
     def steady(self) -> bool:

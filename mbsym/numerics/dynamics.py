@@ -91,12 +91,20 @@ class Dynamics:
 
     @cached_property
     def correction(self) -> Code | None:
-        """(t, q, q') -> what leads a state back to the constraints, 2n outputs; None where there are none."""
+        """(t, q, q') -> what leads a state back to the constraints, 2n outputs; None where there are none.
+
+        One more output is how near the rows that are kept are to losing their rank: beyond 1 nothing is computed there.
+        """
         if self.constraints is None:
             return None
         found = self.constraints.dynamics
-        nodes = [*found.position_correction, *found.velocity_correction]
-        return self._code(substituted(found.program, nodes, self._specialised))
+        fresh, pivots = self._specialised, found.pivots[self.size :]
+        nodes = [*found.position_correction, *found.velocity_correction, *pivots]
+        made = substituted(found.program, nodes, fresh)
+        nearness = fresh.zero
+        for size, pivot in zip(self.constraints.nearest, made[2 * self.size :], strict=True):
+            nearness = nearness + fresh.number(size) * fresh.reciprocal(pivot)
+        return self._code([*made[: 2 * self.size], nearness])
 
     @cached_property
     def multipliers(self) -> Code:

@@ -18,6 +18,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.methods.interface import (
     BLOW_UP,
+    SINGULAR_CONSTRAINTS,
     STEP_LIMIT,
     STOPPED,
     STUCK,
@@ -268,7 +269,7 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
         found = diagnosed(dynamics, trouble, past)
-        if found.kind in (STEP_LIMIT, STUCK, STOPPED) and found.time > past[0, -1]:
+        if found.kind in (STEP_LIMIT, STUCK, STOPPED, SINGULAR_CONSTRAINTS) and found.time > past[0, -1]:
             # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
             rows.keep(np.array([found.time]), np.asarray(found.state)[:, None])
     except Breakdown as undefined:

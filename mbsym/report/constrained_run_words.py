@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.counting import counted
-from mbsym.model.quantities import unit_of, with_unit
+from mbsym.model.quantities import time_unit, unit_of, with_unit
 from mbsym.report.unit_text import pretty
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ def constraint_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     for place, text in enumerate(start_lines(run.closed, run.system)):
         yield "" if place else "start", text
     yield "drift", drift_line(run.drift, known)
+    if run.trajectory.work.singular:
+        yield "singular", singular_line(run.trajectory.work.singular, pretty(time_unit(run.system)))
 
 
 def rows_line(known: Constraints) -> str:
@@ -71,6 +73,15 @@ def drift_line(found: Drift, known: Constraints) -> str:
     return f"{first}velocities {velocities:.1e} off the constraints at most, in parts of the motion's size"
 
 
+def singular_line(times: Sequence[float], unit: str | None) -> str:
+    """Where the motion was continued through positions in which constraints lose their rank."""
+    shown = ", ".join(f"{time:.6g}" for time in times[:MOST_MOVES]) + (", ..." if len(times) > MOST_MOVES else "")
+    return (
+        f"at t = {with_unit(shown, unit)} the constraints lose their rank (branches of motion may meet): there the "
+        "motion is the polynomial that fits it before; it satisfies the constraints behind"
+    )
+
+
 def drift_columns(run: Simulation) -> Mapping[str, Any]:
     """The columns of the drift by their names; none without constraints."""
     if run.drift is None:
@@ -97,5 +108,6 @@ def constraints_json(run: Simulation) -> dict[str, Any]:
                 "moved": {move.name: {"given": move.given, "taken": move.found} for move in closed.moves},
             },
             "drift": {"positions": positions, "velocities": velocities},
+            "singular": list(run.trajectory.work.singular),
         }
     }

@@ -72,6 +72,7 @@ COUNTS = ("evaluations", "jacobians", "steps", "rejected")
 class Work:
     """What a run has cost so far, and which ``changes`` of the method it made on its way.
 
+    ``singular`` are times of singular positions of constraints through which the motion was continued.
     ``compiling`` are seconds that went into machine code after the run was started.
     """
 
@@ -80,6 +81,7 @@ class Work:
     steps: int = 0
     rejected: int = 0
     changes: list[Change] = field(default_factory=list)
+    singular: list[float] = field(default_factory=list)
     compiling: float = 0.0
 
 

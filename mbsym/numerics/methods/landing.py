@@ -56,7 +56,9 @@ class Landing:
     ) -> Run:
         """A run; raises what the method raises."""
         run, led = self._started(dynamics, setting, scalar, initial, at), lead(dynamics, scalar)
-        return run if led is None else LedRun(run, led)
+        if led is None:
+            return run
+        return LedRun(run, led, lambda time, state: self._started(dynamics, setting, scalar, state, time))
 
     def _started(self, dynamics: Dynamics, setting: Setting, scalar: str, initial: Any, at: float) -> Run:
         smooth = dynamics.features.none or isinstance(dynamics, Frozen)

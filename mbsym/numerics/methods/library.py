@@ -25,7 +25,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.led import lead, refuse
+from mbsym.numerics.methods.led import lead, nearly_singular, refuse
 from mbsym.numerics.methods.stepping import Stepping
 
 #: SciPy warns below this relative tolerance and takes it instead.
@@ -121,6 +121,8 @@ class LibraryRun(Stepping):
 
     def _step(self, solver: Any) -> None:
         time, state = solver.t, np.array(solver.y)
+        if self._led is not None and self._led.near(time, state):
+            raise nearly_singular(time, state)
         message = self._guarded(solver.step)
         self.work.steps += 1
         failed = solver.status == "failed"

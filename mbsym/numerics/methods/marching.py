@@ -34,6 +34,7 @@ from mbsym.numerics.methods.stages import (
     REACHED,
     REJECTED,
     RELATIVE,
+    SINGULARLY,
     START,
     STEP,
     STEPS,
@@ -80,6 +81,8 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     f.place(again)
     time = f.load(s.clock, clock, TIME)
     _leave_when_due(f, s, time)
+    if constrained:
+        _stop_before_singular(f)
     known, unknown, first = f.label(), f.label(), f.label()
     f.branch(f.load(INTEGER, count, FRESH).compare("!=", 0), known, unknown)
     f.place(known)
@@ -113,8 +116,10 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     f.store(step, s.clock, clock, LAST)
     f.store(base + number.converted(s.clock) * step, s.clock, clock, TIME)
     if constrained:
-        _led_back(f, s, moved)
+        near = _led_back(f, s, moved)
     f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
+    if constrained:
+        _note(f, near)
     f.jump(again)
     return f.text()
 
@@ -129,12 +134,13 @@ def _leave_when_due(f: Function, s: Stages, time: Value) -> None:
     f.store(left - 1, INTEGER, f["count"], LEFT)
 
 
-def _led_back(f: Function, s: Stages, moved: Value | None = None) -> None:
+def _led_back(f: Function, s: Stages, moved: Value | None = None) -> Value:
     """The state is led to the constraints at the time of the clock by ``correct``; what sums carry stays with them.
 
-    Where the increments of the step are kept, they are led with it.
+    Where the increments of the step are kept, they are led with it.  Says whether that is too near to a singular
+    position.
     """
-    change = f.slot(s.kind, s.size)
+    change = f.slot(s.kind, s.size + 1)
     for _ in range(LED_BACK):
         s.state_argument(f["x"])
         f.store(f.load(s.clock, f["clock"], TIME).converted(s.kind), s.kind, s.argument)
@@ -144,6 +150,18 @@ def _led_back(f: Function, s: Stages, moved: Value | None = None) -> None:
             add_compensated(f, s.kind, f["x"], f["carry"], i, part)
             if moved is not None:
                 f.store(f.load(s.kind, moved, i) + part, s.kind, moved, i)
+    return f.load(s.kind, change, s.size).compare(">", 1)
+
+
+def _note(f: Function, near: Value) -> None:
+    """No step begins where this one ends, if that is too near to a singular position."""
+    f.store(near.choose(f.number(1, INTEGER), f.number(0, INTEGER)), INTEGER, f["count"], SINGULARLY)
+
+
+def _stop_before_singular(f: Function) -> None:
+    """Ends the run before a singular position of the constraints."""
+    with _leaving(f, f.load(INTEGER, f["count"], SINGULARLY).compare("!=", 0), STOPPED):
+        pass
 
 
 def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = False) -> str:
@@ -165,6 +183,8 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     f.place(again)
     time = f.load(s.clock, clock, TIME)
     _leave_when_due(f, s, time)
+    if constrained:
+        _stop_before_singular(f)
     step = f.load(s.clock, clock, STEP)
     least = time.absolute() * (4 * Fraction(float(np.finfo(clock_dtype(s.clock)).eps)))
     f.branch(step.compare(">", least) & step.compare(">", Fraction(1, 10**200)), large, some)
@@ -213,7 +233,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     f.store(step, s.clock, clock, LAST)
     add_compensated(f, s.clock, clock, f.at(s.clock, clock, TIME_CARRY), TIME, step)
     if constrained:
-        _led_back(f, s)
+        near = _led_back(f, s)
     if constrained or not tableau.first_same_as_last:
         s.state_argument(x)
         s.evaluate(f.load(s.clock, clock, TIME), s.slope(k, stages))
@@ -222,6 +242,8 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     f.store(0, INTEGER, count, INFINITE)
     f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
     _grow(f, s, tableau, error, step)
+    if constrained:
+        _note(f, near)
     f.jump(again)
     return f.text()
 

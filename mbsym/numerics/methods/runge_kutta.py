@@ -33,6 +33,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import code_of, compiled_kernel, once
+from mbsym.numerics.methods.led import nearly_singular
 from mbsym.numerics.methods.marching import adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.rows import dense_text, terms_of
@@ -53,6 +54,7 @@ from mbsym.numerics.methods.stages import (
     REJECTED,
     RELATIVE,
     REPLY,
+    SINGULARLY,
     SLACK,
     START,
     STEP,
@@ -119,7 +121,7 @@ class CompiledRun(Stepping):
         self.k = aligned((rows, size), self.dtype)
         self.terms = aligned((terms_of(tableau), size), self.dtype)
         self.clock = aligned(12, self.clock_type)
-        self.count = aligned(10, np.int64)
+        self.count = aligned(11, np.int64)
         arrays = (self.x, self.carry, self.old, self.k, self.clock, self.count)
         self._pointers = tuple(address(array) for array in arrays)
         arrays = (self.x, self.old, self.k, self.terms, self.clock, self.count)
@@ -135,6 +137,7 @@ class CompiledRun(Stepping):
         clock, count = self.clock, self.count
         clock[TIME] = clock[START] = clock[BASE] = time
         clock[TIME_CARRY], clock[LAST] = 0, 1
+        count[SINGULARLY] = 0
         count[FRESH] = count[INFINITE] = count[CAREFUL] = count[NUMBER] = 0
         count[PREPARED] = count[STEPS]
         self.time, self.state = self.reached, self.x.copy()
@@ -238,7 +241,7 @@ class CompiledRun(Stepping):
     def _judge(self, reply: int) -> None:
         self._counted()
         if reply == STOPPED:
-            raise self._stopped()
+            raise nearly_singular(self.clock[TIME], self.x) if self.count[SINGULARLY] else self._stopped()
 
     def _stopped(self) -> Breakdown:
         """Why machine code could not go on."""

@@ -33,7 +33,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.kept import once
-from mbsym.numerics.methods.led import lead
+from mbsym.numerics.methods.led import lead, nearly_singular
 from mbsym.numerics.methods.stages import exact_number, initial_state
 from mbsym.numerics.methods.stepping import Stepping
 
@@ -218,6 +218,8 @@ class TaylorRun(Stepping):
         if work.steps >= self._limit:
             raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
         now, before = taylor.time, np.array(taylor.state)
+        if self._led is not None and self._led.near(now, before):
+            raise nearly_singular(now, before)
         room = self._dtype(FAR * (1 + abs(now))) if until is None else self._dtype(until) - now  # at rest: no bound
         outcome, step = taylor.step(room, write_tc=True)
         work.steps += 1
