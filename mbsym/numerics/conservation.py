@@ -14,6 +14,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
+from itertools import pairwise
 from random import Random
 from typing import Any
 
@@ -37,6 +38,9 @@ NOTHING = arb(2) ** -120
 
 #: Visited states looked at: those at the largest changes, as many evenly along the run, and some beside the start.
 LARGEST_CHANGES, EVENLY, BESIDE = 4, 4, 2
+
+#: So many states between switches that no row lies between.
+MOST_BETWEEN = 8
 
 #: A run that changes a quantity by more than this part of its scale contradicts whatever states have said.
 CONTRADICTION = 1e-3
@@ -104,9 +108,9 @@ def confronted(
 
 
 def energy_standing(
-    dynamics: Dynamics, points: Any, worth: float = 0.0, held: Collection[str] = ()
+    dynamics: Dynamics, points: Any, worth: float = 0.0, held: Collection[str] = (), near: Any = ()
 ) -> tuple[Standing, Doubt | None]:
-    """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns.
+    """Whether T2 - T0 - U is conserved; ``points`` are (t, q, q') of visited states, in columns; ``near`` of others.
 
     ``held`` are the coordinates that provably rest in this motion: nothing is said about motions in which they do not.
 
@@ -120,7 +124,9 @@ def energy_standing(
         return Standing.PROVED, None
     if dynamics.constraints is not None:
         return on_constraints(dynamics, dynamics.energy_power.outputs, points)
-    return judged(dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False, held=held)
+    return judged(
+        dynamics, lambda state: _power(dynamics, rate, state), points, worth, rounded=False, held=held, near=near
+    )
 
 
 def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list[arb]:
@@ -152,7 +158,7 @@ def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
 
 
 def standing(
-    dynamics: Dynamics, code: Code, output: int, points: Any, held: Collection[str] = ()
+    dynamics: Dynamics, code: Code, output: int, points: Any, held: Collection[str] = (), near: Any = ()
 ) -> tuple[Standing, Doubt | None]:
     """Whether one output of a code over (t, q, q') is constant along the motion, in which ``held`` provably rest."""
     rhs = dynamics.right_hand_side
@@ -163,7 +169,9 @@ def standing(
     if dynamics.constraints is not None:
         return on_constraints(dynamics, terms, points)
     whole = Code(program, dynamics.inputs, tuple(terms))
-    return judged(dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True, held=held)
+    return judged(
+        dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True, held=held, near=near
+    )
 
 
 def on_constraints(dynamics: Dynamics, terms: Sequence[Node], points: Any) -> tuple[Standing, Doubt | None]:
@@ -189,14 +197,16 @@ def judged(
     worth: float,
     rounded: bool,
     held: Collection[str] = (),
+    near: Any = (),
 ) -> tuple[Standing, Doubt | None]:
-    """Whether the sum of the terms vanishes at visited states, and at some beside the start, in balls.
+    """Whether the sum of the terms vanishes at visited states, at those ``near`` them and some beside the start, in
+    balls.
 
     ``rounded``: the terms hold rounded constants, which explain a sum that is tiny beside them.
     """
     seen = [[float(x) for x in state] for state in np.asarray(points, dtype=float).T]
     decided = 0
-    for place, state in enumerate([*seen, *_beside(dynamics, held)]):
+    for place, state in enumerate([*seen, *(list(map(float, one)) for one in near), *_beside(dynamics, held)]):
         with ctx.workprec(BITS):
             found = terms(state)
             if not all(term.is_finite() for term in found):
@@ -223,6 +233,21 @@ def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
         time, *parts = random.randint(0, 1024) / 256, *(random.randint(-64, 64) / 256 for _ in start)
         moved = [x + part * (1 + abs(x)) * one for x, part, one in zip(start, parts, free, strict=True)]
         found.append([time, *moved])
+    return found
+
+
+def between_switches(times: Any, states: Any, switches: Sequence[float]) -> list[list[float]]:
+    """(t, q, q') between switches that follow each other within one distance of rows: what acts there alone is seen in
+    no row.  The states lie on straight lines between those of the rows, beside the motion.
+    """
+    found: list[list[float]] = []
+    for one, later in pairwise(switches):
+        row = int(np.searchsorted(times, one))
+        if 0 < row < len(times) and later <= times[row] and len(found) < MOST_BETWEEN:
+            middle = 0.5 * (one + later)
+            share = (middle - times[row - 1]) / (times[row] - times[row - 1])
+            state = np.asarray(states[:, row - 1], float) * (1 - share) + np.asarray(states[:, row], float) * share
+            found.append([float(middle), *map(float, state)])
     return found
 
 

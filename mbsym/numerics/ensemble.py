@@ -9,13 +9,14 @@ those of the rest: ``alive`` says at every time of how many.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.passed import Narrow
 from mbsym.numerics.one_by_one import OneByOne, WithParameters
 from mbsym.numerics.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.variation import Members
@@ -68,7 +69,10 @@ class Compared:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """What ``ensemble`` found; ``final`` (2n, m) is each member's last state, nan where it ended early."""
+    """What ``ensemble`` found; ``final`` (2n, m) is each member's last state, nan where it ended early.
+
+    ``missed`` has for each member the first narrow load that its steps were too long for, if there was any.
+    """
 
     members: Members
     method: str
@@ -83,6 +87,7 @@ class Ensemble:
     lanes: int
     seconds: float
     interrupted: bool = False
+    missed: Mapping[int, Narrow] = field(default_factory=dict)
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -181,6 +186,7 @@ def ensemble(
         run.lanes,
         seconds,
         interrupted,
+        run.missed,
     )
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Run, Setting
+from mbsym.numerics.methods.passed import Narrow, met_by
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.parametrised import Parametrised
 from mbsym.numerics.side_by_side import Fate
@@ -68,6 +69,17 @@ class OneByOne:
         work = [None if run is None else run.work for run in self._runs]
         accepted = [0 if one is None else one.steps for one in work]
         return np.array(accepted, float), np.array([0 if one is None else one.rejected for one in work], float)
+
+    @property
+    def missed(self) -> dict[int, Narrow]:
+        """By member the first narrow feature that a step of it passed."""
+        found = {}
+        for member, run in enumerate(self._runs):
+            passed = met_by(run)
+            narrow = [] if passed is None else [one for one in passed.narrow if not one.followed]
+            if narrow:
+                found[member] = narrow[0]
+        return found
 
     def block(self, times: Any) -> Any:
         """States at increasing times beyond those before, shape (len(times), 2n, m); nan from where a member ended."""

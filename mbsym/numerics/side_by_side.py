@@ -12,12 +12,12 @@ from __future__ import annotations
 import ctypes
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, log
-from typing import Any
+from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
 import numpy as np
@@ -98,6 +98,9 @@ def compiled(code: Code, tableau: Tableau, size: int, lanes: int | None = None) 
 
 class SideBySide:
     """Members under way.  ``starts`` has shape (2n, m), ``parameters`` (p, m); times are asked for in blocks."""
+
+    #: What is narrow is integrated one by one.
+    missed: ClassVar[Mapping[int, Any]] = {}
 
     def __init__(
         self, made: Compiled, setting: Setting, starts: Any, parameters: Any, threads: int | None = None

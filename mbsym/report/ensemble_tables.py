@@ -156,10 +156,15 @@ def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:
     elif not found.interrupted:
         yield "error", "not estimated: nothing finer than this to compare with"
     if found.members.dynamics.switches.outputs:
-        told = (
-            "steps do not end where the rates are not smooth, as those of a run of its own do; the error may be larger"
+        yield "switches", "steps end where the rates are not smooth, each member's at places of its own"
+    if found.missed:
+        member, one = min(found.missed.items())
+        many = counted(len(found.missed), "member", "members")
+        yield (
+            "warning",
+            f"a load that changes within {one.width:.2g} at t = {one.time:.6g} was passed by steps of {one.step:.2g} "
+            f"(member {member}; so in {many}): a step of {one.width / 4:.2g} meets it",
         )
-        yield "warning", told
     if found.fates:
         ended = counted(len(found.fates), "member ended", "members ended")
         yield "warning", f"{ended} early; from then on the statistics are those of the rest (column alive)"

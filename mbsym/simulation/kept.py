@@ -6,7 +6,15 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from mbsym.numerics.columns import columns
-from mbsym.numerics.conservation import Conservation, Standing, confronted, energy_standing, standing, visited
+from mbsym.numerics.conservation import (
+    Conservation,
+    Standing,
+    between_switches,
+    confronted,
+    energy_standing,
+    standing,
+    visited,
+)
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.invariants import invariants, values
 from mbsym.numerics.linearised import LinearisedDynamics
@@ -19,23 +27,28 @@ if TYPE_CHECKING:
 def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
     """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
     points = _seen(found, "change", found.change)
-    scale = found.energy_scale
+    scale, near = found.energy_scale, _near(found)
     if isinstance(dynamics, LinearisedDynamics):
         # The energy is that of the whole system, the motion that of the linear equations: no theorem joins them.
-        known, doubt = standing(dynamics, dynamics.relative_energy, 0, points, held)
+        known, doubt = standing(dynamics, dynamics.relative_energy, 0, points, held, near)
     else:
-        known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held)
+        known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held, near)
     if dynamics.natural:
         same = confronted("energy", known, found.change, scale, doubt)
         return same, same
     generalized = confronted("generalised energy", known, found.change, scale, doubt)
-    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held)
+    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held, near)
     return generalized, confronted("energy", known, found.energy, scale, doubt)
 
 
 def _seen(found: Trajectory, name: str, values: Any) -> Any:
     """States of a run at which a quantity changes most, and others: among all rows, where these are some of them."""
     return visited(found.times, found.states, values) if found.table is None else found.table.visited[name]
+
+
+def _near(found: Trajectory) -> list[list[float]]:
+    """States beside the motion, where something acts for less than the distance of two rows."""
+    return [] if found.passed is None else between_switches(found.times, found.states, found.passed.switches)
 
 
 def kept_integrals(
@@ -53,6 +66,6 @@ def kept_integrals(
     for item, (column, _), (along, size) in zip(known, shown, seen, strict=True):
         state, doubt = Standing.PROVED, None
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
-            state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, along), held)
+            state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, along), held, _near(dense))
         kept.append(Kept(item.column, column, confronted(item.name, state, along, size, doubt), item.unit))
     return tuple(kept)

@@ -239,3 +239,17 @@ def test_the_drift_is_that_of_the_whole_interval() -> None:
     ]
     assert found == pytest.approx([found[2]] * 3, rel=0.05)
     assert found[2] > 1e-10
+
+
+@pytest.mark.parametrize(("start", "end"), [(5, 5.002), (5.003, 5.005)])
+def test_a_push_between_two_rows_is_seen(start: float, end: float) -> None:
+    """x'' = -x + 500 for 2 ms: no row sees its power, 500 x', and yet it is there; without it energy is an integral."""
+    text = (
+        "mbsym: 1\nname: pushed\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\nloads:\n"
+        f"  - potential: x**2/2\n  - generalized force:\n      x: FORCE*pulse(t, {start}, {end})\ninitial: {{x: 1}}\n"
+    )
+    pushed = mbsym.simulate(mbsym.loads(text.replace("FORCE", "500")), 20)
+    assert pushed.conservation.standing is Standing.CHANGING
+    still = mbsym.simulate(mbsym.loads(text.replace("FORCE", "0")), 20)
+    assert still.conservation.standing is Standing.PROVED
