@@ -15,7 +15,7 @@ from mbsym.numerics.accuracy import NoEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.methods import runge_kutta, sides
-from mbsym.numerics.methods.interface import Breakdown, Setting
+from mbsym.numerics.methods.interface import STUCK, Breakdown, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.landing import LandingRun
 from mbsym.numerics.methods.leaving import Leaving
@@ -242,3 +242,20 @@ def test_time_for_compiling_is_no_time_of_the_run() -> None:
     run = run_of("dop853", described("-3/10*sign(x_dot)", start="position: 2"))
     run.advance(4.0)
     assert run.work.compiling > 0
+
+
+def test_short_floats_of_a_method_end_a_run_by_a_breakdown_and_in_no_other_way() -> None:
+    """A Taylor series in float32 that looks for the wall of a contact: its steps end at short floats.
+
+    What it lands on may be nearer than one of them; then it says so, in place of trying for ever.
+    """
+    pytest.importorskip("heyoka")
+    from truth.independent.scenes import SCENES
+
+    scene = next(scene for scene in SCENES if scene.name == "contact")
+    run = METHODS["taylor"].start(Dynamics(scenario(mbsym.loads(scene.text).system)), Setting(1e-2), "float32")
+    times = np.linspace(0.0, scene.time, 1001)
+    with pytest.raises(Breakdown) as ended:
+        run.fill(times[1:])
+    assert ended.value.kind == STUCK
+    assert 0 < ended.value.time < math.sqrt(2 / 9.81)  # before the fall from 1 is over

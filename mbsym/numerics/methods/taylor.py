@@ -170,8 +170,9 @@ class TaylorRun(Stepping):
 
     @property
     def reached(self) -> Any:
-        """Where heyoka is."""
-        return self._taylor.time
+        """Where heyoka is; a short float as a long one, which it is exactly: sums with others shall not be rounded."""
+        found = self._taylor.time
+        return float(found) if isinstance(found, np.float32) else found
 
     @property
     def end(self) -> Any:
