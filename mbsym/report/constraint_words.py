@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints import Constraints, Integrability, Sureness
+from mbsym.problems.reduction import Reduction
 
 #: One sentence and what stands in its gaps.
 Said = tuple[str, dict[str, object]]
@@ -17,10 +19,12 @@ Said = tuple[str, dict[str, object]]
 
 @dataclass(frozen=True)
 class Writer:
-    """How a medium writes a list of coordinates, and a word in its language."""
+    """How a medium writes a list of coordinates, a word in its language, rates that are known, and a formula != 0."""
 
     names: Callable[[tuple[str, ...]], str]
     word: Callable[[str], str] = str
+    rates: Callable[[tuple[tuple[str, Formula], ...]], str] = lambda rates: ", ".join(f"{n}' = {x}" for n, x in rates)
+    nonzero: Callable[[Formula], str] = lambda value: f"{value} != 0"
 
 
 def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
@@ -53,6 +57,31 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
         "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
         {"dependent": write.names(found.dependent), "free": write.names(found.free)},
     )
+
+
+def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
+    """Which quantities the first approximation is about, and what became of the others."""
+    yield (
+        "The first approximation is about the independent velocities, those of [[free]], and what they depend on.",
+        {"free": write.names(found.speeds)},
+    )
+    if found.dependent_coordinates:
+        yield (
+            "Dependent coordinates are expanded about the motion, not solved for: [[names]].",
+            {"names": write.names(found.dependent_coordinates)},
+        )
+    if found.rates:
+        yield "On the motion the constraints demand [[rates]].", {"rates": write.rates(found.rates)}
+    if found.idle:
+        yield "No equation of these velocities depends on [[names]].", {"names": write.names(found.idle)}
+    for value in found.assumed:
+        yield "This holds where [[value]].", {"value": write.nonzero(value)}
+    if not found.holonomic:
+        yield (
+            "Velocities are constrained besides coordinates, so D, G, K and N are no more than the symmetric and skew "
+            "parts of two matrices: they are not those of forces of a kind.",
+            {},
+        )
 
 
 def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator[Said]:

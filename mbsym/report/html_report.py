@@ -5,7 +5,7 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -48,7 +48,9 @@ from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.reduction import Reduction
 
 #: The order of the sections: as a reader wants them, as in report.tex.
 ORDER = (1, 2, 3, 4, 5, 6, 7)
@@ -85,6 +87,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "unit": lambda name: labelled("", unit_of(system, name)),
         "pretty": pretty,
         "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
+        "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "constraint": lambda value: constraint_in_words(value, names),
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
@@ -126,7 +129,28 @@ def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
     from mbsym.report.constraint_words import Writer, sentences
 
     write = Writer(lambda listed: shown.math(*_separated([str(names[name]) for name in listed])))
-    for text, values in sentences(tied, write):
+    yield from _filled(sentences(tied, write))
+
+
+def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
+    """The sentences about what is left of the coordinates, names and formulas in MathML."""
+    from mbsym.report.constraint_words import Writer, reduction_sentences
+
+    def rates(given: tuple[tuple[str, Formula], ...]) -> Markup:
+        return Markup(", ").join(
+            shown.math(f"<mover>{names[name]}<mo>˙</mo></mover>", mo("="), shown.inline(x)) for name, x in given
+        )
+
+    write = Writer(
+        lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        rates=rates,
+        nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
+    )
+    yield from _filled(reduction_sentences(about, write))
+
+
+def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Markup]:
+    for text, values in said_ones:
         said = escape(text)
         for name, value in values.items():
             said = said.replace(f"[[{name}]]", escape(value))

@@ -67,6 +67,7 @@ if TYPE_CHECKING:
 
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.reduction import Reduction
 
 T = TypeVar("T")
 Filters = dict[str, Callable[..., Any]]
@@ -130,6 +131,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "failures": {number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
+        "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "statements": statements,
         "cases": cases,
@@ -214,10 +216,17 @@ def _of_constraints(tied: Constraints, names: LatexNames, tongue: Language) -> l
     return [tongue.sentence(text, **values) for text, values in said]
 
 
+def _of_reduction(about: Reduction, names: LatexNames, tongue: Language) -> list[str]:
+    said = constraint_words().reduction_sentences(about, _writer(names, tongue))
+    return [tongue.sentence(text, **values) for text, values in said]
+
+
 def _writer(names: LatexNames, tongue: Language) -> Any:
     return constraint_words().Writer(
         lambda listed: "$" + ",\\, ".join(str(names[name]) for name in listed) + "$",
         lambda word: escaped(tongue.say(word)),
+        lambda rates: ", ".join(f"${names[name].accented('dot')} = {formula(x)}$" for name, x in rates),
+        lambda value: f"${formula(value)} \\neq 0$",
     )
 
 

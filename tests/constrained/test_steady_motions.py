@@ -14,6 +14,12 @@ from mbsym.problems.stability.word import Word
 from mbsym.source import read
 
 HERE = Path(__file__).parent
+SYSTEMS = HERE.parent.parent / "systems"
+
+
+def place(name: str) -> Path:
+    """A description: shipped, or of these tests."""
+    return SYSTEMS / name if (SYSTEMS / name).exists() else HERE / name
 
 
 def described(text: str) -> Analysis:
@@ -23,7 +29,7 @@ def described(text: str) -> Analysis:
 
 
 def changed(name: str, *changes: tuple[str, str]) -> Analysis:
-    text = (HERE / name).read_text(encoding="utf-8")
+    text = (place(name)).read_text(encoding="utf-8")
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
@@ -56,7 +62,7 @@ def test_the_bicycle_is_stable_between_weave_and_capsize(speed: str, word: Word)
 @pytest.mark.slow
 def test_the_bicycle_has_its_conditions_in_symbols() -> None:
     """A polynomial of degree 4 in lambda; of the Hurwitz determinant there is the form in its coefficients."""
-    roll_and_steer, speed = mbsym.load(HERE / "bicycle.yaml").stability.subsystems
+    roll_and_steer, speed = mbsym.load(SYSTEMS / "bicycle.yaml").stability.subsystems
     assert roll_and_steer.coordinates == ("roll", "steer")
     assert len(roll_and_steer.characteristic) == 5
     assert max(x.terms for x in roll_and_steer.characteristic) < 300

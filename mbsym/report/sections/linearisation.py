@@ -13,6 +13,7 @@ from mbsym.report.plain import Write, Written, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.problems.reduction import Reduction
 
 
 #: B of at most so many terms stands in the terminal.
@@ -24,14 +25,32 @@ def data(found: Linearisation, system: System, write: Write) -> dict[str, Any]:
     return {
         **_five(found, write),
         **({} if found.B is None else {"B": matrix_text(found.B, write)}),
+        **({} if found.constrained is None else {"reduction": _reduction(found.constrained, write)}),
         "subsystems": [{"coordinates": list(part.coordinates), **_five(part, write)} for part in found.subsystems],
         "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
         "notation": {item.name: text(item.value) for item in system.notation},
     }
 
 
+def _reduction(about: Reduction, write: Write) -> dict[str, Any]:
+    return {
+        "coordinates": list(about.coordinates),
+        "speeds": list(about.speeds),
+        "dependent_coordinates": list(about.dependent_coordinates),
+        "dependent_speeds": list(about.dependent_speeds),
+        "idle": list(about.idle),
+        "rates": {name: write(rate) for name, rate in about.rates},
+        "assumed_nonzero": [write(x) for x in about.assumed],
+        "holonomic": about.holonomic,
+    }
+
+
 def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
+    if found.constrained is not None:
+        from mbsym.report.constraint_words import Writer, filled, reduction_sentences
+
+        yield from map(filled, reduction_sentences(found.constrained, Writer(", ".join)))
     present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
     yield f"matrices that are not zero: {', '.join(present)}"
     if found.B is not None:
