@@ -18,9 +18,13 @@ if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.integrals import Integral
+    from mbsym.problems.reactions import Reaction
 
 #: The checks of what only constrained systems have.
 CHECKS = ("constraints", "constrained motion")
+
+#: The check of what joints transmit, with constraints or without.
+REACTIONS = "reactions"
 
 
 def constraints_of(analysis: Analysis) -> Constraints:
@@ -82,3 +86,24 @@ def integrals_check(analysis: Analysis, found: tuple[Integral, ...]) -> Check:
     from mbsym.problems.constraints.checks import check_integrals
 
     return check_integrals(analysis.system, analysis.ring, found, analysis.constraints, programs_of(analysis))
+
+
+def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
+    """Forces and moments in the joints that the description names; none where it names none."""
+    if not analysis.system.reactions:
+        return ()
+    from mbsym.problems.reactions import reactions
+
+    return reactions(analysis.scene, analysis.constraints if analysis.system.constraints else None)
+
+
+def reactions_check(analysis: Analysis) -> Check | None:
+    """Against what the released joints would have to be held with."""
+    found = analysis.optional("reactions") if analysis.system.reactions else None
+    if not found:
+        return None
+    from mbsym.problems.reactions import check_reactions
+
+    if analysis.system.constraints:
+        return check_reactions(analysis.oracles, found, analysis.constraints, programs_of(analysis))
+    return check_reactions(analysis.oracles, found, None, None)

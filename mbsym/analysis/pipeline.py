@@ -72,8 +72,9 @@ KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability", "integrals"),
+        *("judgeable", "balance", "stability", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
+        f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion"),
     )
 )
@@ -262,6 +263,7 @@ class Analysis(Stages):
         ("equations of motion", "constraints", "constrained motion"),
     )
     constraints = Derived["Analysis", "Constraints"](lambda a: a._constraints(), ("constraints",))
+    reactions = Derived["Analysis", tuple[Any, ...]](constrained.reactions_of, (constrained.REACTIONS,))
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
     residuals = Derived["Analysis", Column](approximation.residuals)
     equilibrium = Problem[Equilibrium](

@@ -41,6 +41,8 @@ def _wanted(analysis: Analysis) -> list[str]:
     names = {name for problem in analysis.asked for name in problem.stands_on}
     if 3 in analysis.problems or "programs" in analysis.derived:
         names |= {"straight-line program", "mass matrix"}
+    if 3 in analysis.problems and analysis.system.reactions:
+        names.add(constrained.REACTIONS)
     return [name for name in SECOND_ROUTES if name in names]
 
 
@@ -165,6 +167,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "first integrals": _integrals,
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,
+    constrained.REACTIONS: constrained.reactions_check,
 }
 
 

@@ -224,6 +224,7 @@ class System(GuessesNames):
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
     the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
     ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
+    ``reactions`` are the bodies whose joints' forces and moments are wanted.
     ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
     """
 
@@ -251,6 +252,7 @@ class System(GuessesNames):
     constraints: tuple[Constraint, ...] = ()
     dependent: tuple[str, ...] = ()
     dependent_span: Span | None = _span()
+    reactions: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
 

@@ -115,6 +115,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         decided=_decided,
         **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,
+        reactions=analysis.optional("reactions") if system.reactions and 3 in problems else (),
         claims=analysis.claims,
         checks=analysis.checks,
         brief=brief(analysis, 0.0),

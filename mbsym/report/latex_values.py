@@ -133,6 +133,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
+        "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "statements": statements,
         "cases": cases,
         "Shown": Shown,

@@ -82,6 +82,15 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
         told = first_order(analysis, stages[5].value)
         if told["first_order"] is not None:
             found["state_space"] = _state_space(told["first_order"], write)
+    if system.reactions and 3 in problems:
+        from mbsym.report.sections.equations import reaction_data
+
+        stage = analysis.stage_of("reactions")
+        if stage.failure is None:
+            tied = analysis.constraints if system.constraints else None
+            found["reactions"] = reaction_data(stage.value, tied, write)
+        else:
+            unavailable["reactions"] = _failure(stage.failure)
     accepted = accepted_inertias(system)
     if accepted:
         found["accepted_inertias"] = [{"body": name, "violation": reason} for name, reason in accepted.items()]

@@ -14,8 +14,8 @@ from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
 from mbsym.model.driven import with_held
-from mbsym.model.system import LANGUAGES, System
-from mbsym.source.bodies import draft_bodies, read_body
+from mbsym.model.system import INERTIAL, LANGUAGES, System
+from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system
 from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
@@ -102,6 +102,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         order=_order(fields, reading),
         constraints=constraints,
         dependent=dependent,
+        reactions=_reactions(fields, [body.name for body in bodies], reading),
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
     names = [body.name for body in bodies]
@@ -134,6 +135,23 @@ def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[t
         message = "nothing depends on anything: there are no 'constraints'"
         reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
     return found, named
+
+
+def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str, ...]:
+    node = fields.get("reactions")
+    found: list[str] = []
+    for item in () if node is None else reading.items(node, "'reactions'"):
+        name = read_body_name(item, "a joint", bodies, reading)
+        if name is None:
+            continue
+        if name == INERTIAL:
+            message = "the inertial frame 0 has no joint"
+            reading.error("unknown-body", message, item.span, "name the body that the joint moves")
+        elif name in found:
+            reading.error("repeated-key", f"{ascii_safe(name)} is given twice", item.span)
+        else:
+            found.append(name)
+    return tuple(found)
 
 
 def _language(fields: Fields, reading: Reading) -> str:

@@ -19,6 +19,7 @@ SYSTEM = {
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
     "constraints": "what ties bodies or coordinates besides the joints: a list of {kind of constraint: {...}}",
     "dependent": "coordinates that the constraints express by the others: [q2, q3]; those left out are found",
+    "reactions": "bodies whose joints' forces and moments are wanted: [hinge]",
     "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
     "assumptions": "inequalities between parameters and notation, such as alpha > -1",
     "motion": "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest, {} is "

@@ -11,6 +11,7 @@ HEADER = {
     "language": "language",
     "order": "order",
     "dependent": "dependent",
+    "reactions": "reactions",
 }
 
 BODY = {

@@ -94,6 +94,7 @@ def _system_values() -> dict[str, Schema]:
         "loads": {"type": "array", "items": _reference("load")},
         "constraints": {"type": "array", "items": _reference("constraint")},
         "dependent": names,
+        "reactions": {"type": "array", "items": _BODY_NAME, "uniqueItems": True},
         "relations": _named(expression),
         "assumptions": {"type": "array", "items": {"type": "string"}},
         "motion": _named({"anyOf": [expression, _record(MOTION, {})]}),

@@ -66,15 +66,15 @@ class _TextReader:
         header, blocks = self.blocks(lines)
         start = Span(lines[0].span.line, 1)
         entries = [Entry(Scalar("mbsym", start, literal=False), Scalar(VERSION, start, literal=False))]
-        entries += self.header(header)
         bodies = [block for block in blocks if self.kind(block) == "body"]
+        self.names = {str(number): _name_in(block) or _unnamed(number) for number, block in enumerate(bodies, start=1)}
+        entries += self.header(header)
         loads = [block for block in blocks if self.kind(block) == "load"]
         self.check_numbers(bodies)
         claims = [block for block in blocks if self.kind(block) == "claim"]
         self.check_numbers(loads)
         self.check_numbers(claims)
         self.check_count(header, len(bodies))
-        self.names = {str(number): _name_in(block) or _unnamed(number) for number, block in enumerate(bodies, start=1)}
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
         entries += _list_entry("bodies", bodies, self.body_form)
         entries += _list_entry("loads", loads, self.load)
@@ -138,7 +138,16 @@ class _TextReader:
                 continue
             label, word, value = found
             free = word in ("mechanical system", "description", "source")
-            read = self.items(value) if word in ("order", "dependent") else self.unquoted(value) if free else value
+            read = (
+                self.items(value)
+                if word in ("order", "dependent", "reactions")
+                else self.unquoted(value)
+                if free
+                else value
+            )
+            if word == "reactions" and isinstance(read, Sequence):  # bodies by their numbers
+                named = (self.body_reference(x) if isinstance(x, Scalar) else x for x in read.items)
+                read = Sequence(tuple(named), read.span)
             entries.append(Entry(_key(label, HEADER[word]), read))
         return entries
 

@@ -36,6 +36,9 @@ def to_text(system: System) -> str:
         lines.append(f"Order: {_braces(list(system.order))}")
     if system.dependent:
         lines.append(f"Dependent: {_braces(list(system.dependent))}")
+    if system.reactions:
+        places = {body.name: str(number) for number, body in enumerate(system.bodies, start=1)}
+        lines.append(f"Reactions: {_braces([places[name] for name in system.reactions])}")
     lines.append(f"Number of bodies: {len(system.bodies)}")
     if system.time_scale is not None:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")

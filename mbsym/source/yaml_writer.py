@@ -48,6 +48,8 @@ def to_yaml(system: System) -> str:
     lines += _list("constraints", [_load(*constraint_shape(one)) for one in system.constraints])
     if system.dependent:
         lines += ["", f"dependent: [{', '.join(system.dependent)}]"]
+    if system.reactions:
+        lines += ["", f"reactions: {_flow(list(system.reactions))}"]
     lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})
     lines += _mapping("motion", motion_shapes(system))
     lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})

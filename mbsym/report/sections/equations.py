@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.expressions.counting import counted
@@ -13,6 +13,7 @@ from mbsym.report.plain import Write, column_text, matrix_text
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints, Solved
+    from mbsym.problems.reactions import Reaction
     from mbsym.problems.speeds import SpeedEquations
 
 
@@ -78,6 +79,23 @@ def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
     } | _solved(found.solved, write)
 
 
+def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[dict[str, Any]]:
+    """What each joint transmits, for results.json."""
+    names = [] if tied is None else [tied.names[i].label for i in tied.independent]
+    return [
+        {
+            "body": one.body,
+            "force": column_text(one.force, write),
+            "moment": column_text(one.moment, write),
+            "per_multiplier": [
+                {"row": name, "force": column_text(force, write), "moment": column_text(moment, write)}
+                for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
+            ],
+        }
+        for one in found
+    ]
+
+
 def _solved(found: Solved | None, write: Write) -> dict[str, Any]:
     """The dependent velocities, where they have closed forms."""
     if found is None:
@@ -114,3 +132,5 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
         yield f"without multipliers: {counted(found.embedded.terms, 'term')}"
     elif found.constraints is not None:
         yield "without multipliers: longer than the budget of terms"
+    for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
+        yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
