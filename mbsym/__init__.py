@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.adjoint import Gradient
     from mbsym.numerics.ensemble import Ensemble
     from mbsym.numerics.floquet import Judged
+    from mbsym.numerics.inverse import InverseDynamics
     from mbsym.numerics.lyapunov import Exponents
     from mbsym.numerics.plan import Plan
     from mbsym.simulation import Simulation
@@ -43,6 +44,7 @@ __all__ = [
     "extremes",
     "floquet",
     "gradient",
+    "inverse_dynamics",
     "load",
     "loads",
     "lyapunov",
@@ -387,6 +389,38 @@ def equilibria(
     from mbsym import studies
 
     return studies.equilibria(_system(source), values or {}, within)
+
+
+def inverse_dynamics(
+    source: str | Path | Analysis,
+    motion: Mapping[str, Fraction | float | str],
+    times: Iterable[float],
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+) -> InverseDynamics:
+    """The inputs of a description with which its coordinates move as given: ``mbsym inverse``.
+
+        >>> import mbsym
+        >>> found = mbsym.inverse_dynamics("systems/cart-pole.yaml", {"p": "t", "theta": "pi"}, [0, 1, 2])
+        >>> found.exact, [round(float(x), 12) for x in found["F"]]  # at a constant speed the friction c p' remains
+        (True, [0.1, 0.1, 0.1])
+
+    ``motion`` gives every coordinate as a smooth formula in t, parameters and prescribed motions.  The equations are
+    solved for the inputs at every time: in the sense of least squares where there are more of them (``exact`` and
+    ``left`` say what remains), by the smallest inputs where these are not ``unique``.
+
+    Raises DescriptionError; ValueError for arguments that cannot be met; ``mbsym.numerics.inverse.NotLinear`` where an
+    input enters other than linearly; ``mbsym.numerics.scenario.Incomplete``.
+    """
+    import numpy as np
+
+    from mbsym.numerics.inverse import inverse_dynamics as found_for
+    from mbsym.simulation import read_values
+    from mbsym.source.laws import read_motions
+
+    system = _analysis_of(source).system
+    moments = np.asarray(list(times), dtype=float)
+    return found_for(system, read_motions(system, motion), read_values(system, values or {}), moments)
 
 
 def _several(texts: str | Iterable[str]) -> tuple[str, ...]:

@@ -1,8 +1,8 @@
-"""Laws of inputs that are given outside of the description: ``u = sin(3*t)``, in its names and tables."""
+"""Formulas given outside of a description, in its names: laws of inputs ``u = sin(3*t)``, motions ``theta = t**2``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
@@ -18,13 +18,19 @@ if TYPE_CHECKING:
 LAW = Allowed("the law of an input", ("coordinate", "velocity", "prescribed", "parameter", "time"), KINKED)
 
 
-def read_law(text: str, system: System, complaints: Complaints, place: Callable[[int, int], Span]) -> Expression | None:
+#: A motion is differentiated twice.
+MOTION = Allowed("a motion", ("prescribed", "parameter", "time"))
+
+
+def read_law(
+    text: str, system: System, complaints: Complaints, place: Callable[[int, int], Span], allowed: Allowed = LAW
+) -> Expression | None:
     """A formula in t, coordinates, velocities, parameters and tables of the description; None after a complaint."""
     scope = _scope(system, complaints)
     before = len(complaints.items)
     tree = parse_expression(text, complaints, place, True, tables=scope.tables)
     for one in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
-        scope.check(one, LAW)
+        scope.check(one, allowed)
     return tree if len(complaints.items) == before else None
 
 
@@ -33,12 +39,32 @@ def read_laws(system: System, given: Mapping[str, Expression | Fraction | float 
 
     Raises ValueError with everything that is wrong.
     """
+    return _read(system, given, system.input_names, "input", LAW)
+
+
+def read_motions(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+    """Motions of all coordinates by name as smooth expressions in t, parameters and prescribed motions.
+
+    Raises ValueError with everything that is wrong, coordinates without a motion included.
+    """
+    return _read(system, given, system.coordinates, "coordinate", MOTION, True)
+
+
+def _read(
+    system: System,
+    given: Mapping[str, Expression | Fraction | float | str],
+    known: Sequence[str],
+    kind: str,
+    allowed: Allowed,
+    every: bool = False,
+) -> dict[str, Expression]:
     found: dict[str, Expression] = {}
-    wrong = [f"there is no input called {name}" for name in given if name not in system.input_names]
+    wrong = [f"there is no {kind} called {name}" for name in given if name not in known]
+    wrong += [f"no motion is given for {name}" for name in known if every and name not in given]
     for name, value in given.items():
         complaints = Complaints()
         if isinstance(value, str):
-            law = read_law(value, system, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+            law = read_law(value, system, complaints, _span, allowed)
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
                 found[name] = law
@@ -51,6 +77,10 @@ def read_laws(system: System, given: Mapping[str, Expression | Fraction | float 
     if wrong:
         raise ValueError("; ".join(wrong))
     return found
+
+
+def _span(start: int, end: int) -> Span:
+    return Span(1, start + 1, max(1, end - start))
 
 
 def _scope(system: System, complaints: Complaints) -> Scope:

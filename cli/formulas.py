@@ -1,0 +1,68 @@
+"""Formulas given on the command line: ``--input u=sin(3*t)``, ``--motion theta=t**2``, complained about with places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints, Span
+from mbsym.source import render_option
+from mbsym_cli.options import MAX_LENGTH, Options
+
+if TYPE_CHECKING:
+    from mbsym.expressions.tree import Expression
+    from mbsym.model.system import System
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What a formula is of: ``of`` the system's ``kind`` of names, ``word`` what it is called."""
+
+    option: str
+    kind: str
+    word: str
+    example: str
+    none: str
+
+    def names(self, system: System) -> tuple[str, ...]:
+        return system.input_names if self.kind == "input" else system.coordinates
+
+
+LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no inputs; they are declared under 'inputs'")
+MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "")
+
+
+def read_formula(text: str, system: System, what: Kind, found: dict[str, Expression], asked: Options) -> None:
+    """Puts a sound formula into ``found``; whatever is wrong with it joins the complaints of ``asked``."""
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    _read(text, system, what, complaints, found)
+    asked.complaints += [render_option(complaint, text, what.option) for complaint in complaints.sorted()]
+
+
+def _read(text: str, system: System, what: Kind, complaints: Complaints, found: dict[str, Expression]) -> None:
+    from mbsym.source.laws import LAW, MOTION, read_law
+    from mbsym.source.scope import did_you_mean, listed
+
+    left, equals, right = text.partition("=")
+    name, blanks, known = left.strip(), len(left) - len(left.lstrip()), what.names(system)
+    if not equals or not name or len(text) > MAX_LENGTH:
+        reason = (
+            f"{ascii_safe(text)} gives no {what.word}" if len(text) <= MAX_LENGTH else f"this {what.word} is too long"
+        )
+        complaints.error("bad-assignment", reason, None, f"write name={what.word}, for example {what.example}")
+        return
+    span = Span(1, blanks + 1, max(1, len(name)))
+    if name not in known:
+        hint = did_you_mean(name, known) or listed(f"the {what.kind}s are", known) or what.none
+        complaints.error("unknown-name", f"there is no {what.kind} called {ascii_safe(name)}", span, hint)
+    elif name in found:
+        complaints.error("repeated-name", f"'{name}' is given twice", span)
+    offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
+
+    def place(start: int, end: int) -> Span:
+        return Span(1, offset + start + 1, max(1, end - start))
+
+    law = read_law(right, system, complaints, place, allowed)
+    if law is not None and not complaints.errors:
+        found[name] = law
