@@ -27,8 +27,8 @@ MISTAKES = [
     Mistake(
         "the sign of B in one route",
         "problems.linearisation:by_quadratisation",
-        "[force.first.get(2 * n + k, ring.zero)",
-        "[-force.first.get(2 * n + k, ring.zero)",
+        "B = slopes(u, len(inputs))",
+        "B = -slopes(u, len(inputs))",
         "driven",
         (LINEARISATION, PERTURBED),
     ),
@@ -51,8 +51,8 @@ MISTAKES = [
     Mistake(
         "columns of B in another order in both routes",
         "problems.linearisation:assemble",
-        "for row in rows] for rows in whole]",
-        "for row in rows] for rows in (*whole[:3], [row[::-1] for row in whole[3]])]",
+        "B=Matrix.of(ring, B.rows)",
+        "B=Matrix.of(ring, [row[::-1] for row in B.rows])",
         "driven",
         (PERTURBED,),
     ),
