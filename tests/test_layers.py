@@ -78,13 +78,15 @@ def test_reading_a_description_loads_nothing_heavy(name: str) -> None:
 
 
 #: What a run has no use for: numbers in arrays, figures, SymPy's exchange, the search for all equilibria,
-#: metadata of packages, and (where nothing is printed) a terminal's colours.
+#: metadata of packages, constraints where there are none, and (where nothing is printed) a terminal's colours.
 UNUSED = (
     *(name for name in HEAVY if name != "jinja2"),
     "importlib.metadata",
     "importlib.resources",
     "mbsym.algebra.polynomial_systems",
     "mbsym.problems.equilibria",
+    "mbsym.problems.reduction",
+    "mbsym.mechanics.constraints.rows",
 )
 
 

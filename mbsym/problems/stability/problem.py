@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
 
@@ -24,12 +24,10 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.model.system import rational
-from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
-from mbsym.problems.reduction import Reduction
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
@@ -39,6 +37,9 @@ from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, undecided
+
+if TYPE_CHECKING:
+    from mbsym.problems.reduction import Reduction
 
 #: Working precision where numbers are irrational, in bits.
 PRECISION = 256
@@ -262,6 +263,8 @@ def _prepared_parts(
 
 def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs) -> NonholonomicForm:
     """What is known of a subsystem of a nonholonomic system besides its matrices."""
+    from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
+
     closed = isinstance(balance, ConstrainedBalance) and balance.closed
     at = [about.speeds.index(name) for name in part.coordinates]
     return NonholonomicForm(
