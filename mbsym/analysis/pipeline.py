@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
@@ -57,7 +57,9 @@ if TYPE_CHECKING:
     from mbsym.problems.canonical import Hamilton, Routh
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
+    from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduced
+    from mbsym.problems.speeds import SpeedEquations
     from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")
@@ -90,6 +92,7 @@ KNOW_SPEEDS = frozenset(
         "equations",
         "programs",
         "integrals",
+        "first_order",
         "claims",
         "checks",
     )
@@ -296,6 +299,10 @@ class Analysis(Stages):
         says=True,
     )
 
+    # --- problem 5 in speeds, of a system that has some ---
+
+    first_order = Derived["Analysis", "FirstOrder"](lambda a: a._first_order(), ("first approximation in speeds",))
+
     # --- problem 3 in other forms, for whoever asks ---
 
     hamilton = Derived["Analysis", "Hamilton"](lambda a: a._hamilton())
@@ -382,6 +389,14 @@ class Analysis(Stages):
         from mbsym.problems.state_space import state_space  # few systems have inputs
 
         return state_space(self.parameters_scene, self.expanded, self.linearisation, self.equilibrium)
+
+    def _first_order(self) -> FirstOrder:
+        from mbsym.problems import first_order
+
+        if self.speed_form is None:
+            why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
+            raise Unavailable("first order", why)
+        return first_order.first_order(self.speed_form, cast("SpeedEquations", self.equations), self.equilibrium)
 
     def _hamilton(self) -> Hamilton:
         from mbsym.problems import canonical  # what few ask for is not imported for nothing

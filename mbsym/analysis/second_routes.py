@@ -27,6 +27,8 @@ def checks(analysis: Analysis) -> tuple[Check, ...]:
     """Every check on which the asked-for problems stand, as far as their results allow it, and those of the program."""
     for number in analysis.problems:
         analysis.stage(number)
+    if analysis.system.speeds and 5 in analysis.problems:
+        analysis.optional("first_order")
     return tuple(found for name in _wanted(analysis) if (found := analysis.check(name)) is not None)
 
 
@@ -43,6 +45,8 @@ def _wanted(analysis: Analysis) -> list[str]:
         names |= {"straight-line program", "mass matrix"}
     if 3 in analysis.problems and analysis.system.reactions:
         names.add(constrained.REACTIONS)
+    if analysis.system.speeds:
+        names |= {"first approximation in speeds"}
     return [name for name in SECOND_ROUTES if name in names]
 
 
@@ -147,6 +151,21 @@ def _perturbed(analysis: Analysis) -> Check | None:
     return perturbation.check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis))
 
 
+def _first_order(analysis: Analysis) -> Check | None:
+    """Only where somebody has asked for it."""
+    if analysis.speed_form is None or "first_order" not in analysis.derived:
+        return None
+    found, linear = analysis.optional("first_order"), analysis.optional("linearisation")
+    if found is None or linear is None:
+        return None
+    from mbsym.problems import first_order
+    from mbsym.problems.speeds import SpeedEquations
+
+    closed = analysis.equations
+    assert isinstance(closed, SpeedEquations)
+    return first_order.check(analysis.speed_form, closed, found, linear, analysis.equilibrium)
+
+
 def _integrals(analysis: Analysis) -> Check | None:
     found = analysis.optional("integrals")
     if found and analysis.system.constraints:
@@ -164,6 +183,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "equilibrium": _equilibrium,
     "linearisation": _linearisation,
     "perturbed motion": _perturbed,
+    "first approximation in speeds": _first_order,
     "first integrals": _integrals,
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,

@@ -5,6 +5,8 @@
 _TURNED = "las rotaciones permanentes en torno a otras direcciones del espacio"
 
 EXPLAINED = {
+    "length of {}": "longitud de {0}",
+    "product of {} and {}": "producto de {0} y {1}",
     # what explains a verdict
     "{} root with positive real part.": "Raíces con parte real positiva: {0}.",
     "{} roots with positive real part.": "Raíces con parte real positiva: {0}.",

@@ -5,6 +5,8 @@
 _TURNED = "перманентных вращений вокруг других направлений пространства"
 
 EXPLAINED = {
+    "length of {}": "длина вектора {0}",
+    "product of {} and {}": "произведение векторов {0} и {1}",
     # what explains a verdict
     "{} root with positive real part.": "Корней с положительной вещественной частью: {0}.",
     "{} roots with positive real part.": "Корней с положительной вещественной частью: {0}.",

@@ -106,6 +106,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis) if 3 in stages and 3 not in found else None,
+        state=analysis.optional("first_order") if system.speeds and 5 in found else None,
         told=compact(analysis, {number: found.get(number) for number in problems}),
         variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
         characteristic="Lambda" if "<mi>Λ</mi>" not in taken else "Delta",

@@ -6,6 +6,8 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "En cuasivelocidades y posiciones: $\\dot x = A x$ con las desviaciones $x$ de $([[names]])$ respecto de $([[values]])$.",
+    "Unit vectors keep their lengths and the angles between them: zero roots of $A$ that belong to no motion: [[count]].": "Los vectores unitarios conservan sus longitudes y los ángulos entre ellos: raíces nulas de $A$ que no corresponden a ningún movimiento: [[count]].",
     "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Los problemas 4 a 6 se dan en coordenadas y velocidades generalizadas. Cerca del movimiento éstas y el estado en cuasivelocidades (y vectores unitarios) son funciones suaves unas de otras, así que la estabilidad es la misma en ambas.",
     "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Ecuaciones de Kane (igualmente de Boltzmann y Hamel) en las cuasivelocidades $[[speeds]]$: lo que el movimiento necesita es lo que dan las cargas.",
     "Kinematic equations:": "Ecuaciones cinemáticas:",
@@ -198,6 +200,7 @@ SENTENCES = {
 }
 
 WORDS = {
+    "first approximation in speeds": "primera aproximación en cuasivelocidades",
     str(Word.ASYMPTOTIC): "asintóticamente estable",
     str(Word.ASYMPTOTIC_BUT_TURNED): "asintóticamente estable salvo una rotación del espacio",
     str(Word.ASYMPTOTIC_BUT_STEADY): "asintóticamente estable salvo el paso a un movimiento estacionario cercano",

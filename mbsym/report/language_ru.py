@@ -8,6 +8,8 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "В квазискоростях и положениях: $\\dot x = A x$ для отклонений $x$ величин $([[names]])$ от $([[values]])$.",
+    "Unit vectors keep their lengths and the angles between them: zero roots of $A$ that belong to no motion: [[count]].": "Единичные векторы сохраняют длины и углы между собой: нулевых корней $A$, не отвечающих никакому движению, столько: [[count]].",
     "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Задачи 4--6 изложены в обобщённых координатах и скоростях. Вблизи движения они и состояние в квазискоростях (и единичных векторах) --- гладкие функции друг друга, поэтому устойчивость в тех и других одна и та же.",
     "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is what the loads supply.": "Уравнения Кейна (то же — уравнения Больцмана — Гамеля) в квазискоростях $[[speeds]]$: слева — то, чего требует движение, справа — то, что дают нагрузки.",
     "Kinematic equations:": "Кинематические уравнения:",
@@ -300,6 +302,7 @@ SENTENCES = {
 }
 
 WORDS = {
+    "first approximation in speeds": "первое приближение в квазискоростях",
     str(Word.ASYMPTOTIC): "асимптотически устойчиво",
     str(Word.ASYMPTOTIC_BUT_TURNED): "асимптотически устойчиво с точностью до поворота пространства",
     str(Word.ASYMPTOTIC_BUT_CYCLIC): (

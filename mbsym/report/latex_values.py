@@ -147,6 +147,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "DEPENDS": Word.DEPENDS,
         "ENERGY": ENERGY,
         "decided": decided,
+        "state": analysis.optional("first_order") if system.speeds and 5 in found else None,
         "claims": analysis.claims,
         "outcomes": Counter(claim_line(result).word for result in analysis.claims),
         "repair": repair,

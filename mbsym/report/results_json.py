@@ -91,6 +91,14 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
             found["reactions"] = reaction_data(stage.value, tied, write)
         else:
             unavailable["reactions"] = _failure(stage.failure)
+    state = analysis.optional("first_order") if system.speeds and 5 in problems else None
+    if state is not None:
+        found["first_order"] = {
+            "speeds": list(state.names),
+            "values": [write(x) for x in state.values],
+            "A": [[write(x) for x in row] for row in state.A],
+            "relations": state.relations,
+        }
     accepted = accepted_inertias(system)
     if accepted:
         found["accepted_inertias"] = [{"body": name, "violation": reason} for name, reason in accepted.items()]

@@ -61,6 +61,9 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
         )
     if len(found.subsystems) > 1:
         yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
+    state = analysis.optional("first_order") if analysis.system.speeds else None
+    if state is not None:
+        yield f"in speeds and positions: x' = A x, x = ({', '.join(state.names)})"
 
 
 def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:

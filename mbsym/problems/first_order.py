@@ -1,0 +1,152 @@
+"""Problem 5 in speeds and positions: the first approximation x' = A x about a steady motion.
+
+x are deviations of the positions s on which the equations depend, and of the speeds u.  With  M u' = f,  s' = g  and
+u' = 0, s' = 0 on the motion
+
+    delta s' = (dg/dx) x,      M_0 delta u' = (df/dx) x,      so that      A = [dg/dx; M_0^-1 df/dx].
+
+Deviations of unit vectors are not free: e_0 . delta e = 0 and the like, one zero root of A for each that belongs to no
+motion.  Where the motion is not steady in these variables there is no such A.
+
+Second route: with T = d(s, u)/d(q, q') on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Column, Matrix, column
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import rate_on_motion, unperturbed_with, unsteady
+from mbsym.mechanics.speeds import SpeedForm, Variable
+from mbsym.mechanics.variables import ring_environment
+from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.speeds import SpeedEquations
+
+
+@dataclass(frozen=True, repr=False)
+class FirstOrder(Shown):
+    """``names`` of x, positions first; their ``values`` on the motion; A (k x k).
+
+    ``relations``: how many combinations of the deviations of unit vectors are zero.
+    """
+
+    names: tuple[str, ...]
+    values: Column
+    A: Matrix
+    relations: int
+
+    @property
+    def terms(self) -> int:
+        return self.A.terms
+
+
+def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilibrium) -> FirstOrder:
+    """A in closed form.  Raises NoClosedForm where the motion does not exist, or is not steady in these variables."""
+    ring = form.ring
+    if equilibrium.impossible:
+        raise NoClosedForm("the given motion does not exist")
+    variables = _variables(form, equations)
+    plain, at = _motion(form, equilibrium)
+    values = {x.index: _value(form, x, at) for x in variables}
+    varying = {name for value in values.values() for name in unsteady(plain, value)}
+    if varying:
+        raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
+    on = dict(at) | values
+    rates = [form.rates[x.name] for x in variables[: len(variables) - len(form.speeds)]]
+    forcing = [x.polynomial for x in equations.forcing]
+    slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in (*rates, *forcing)]
+    mass = [[ring.substitute(x, on) for x in row] for row in equations.mass_matrix.polynomials]
+    m = len(rates)
+    lower = _solved(ring, mass, slopes[m:])
+    if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
+        raise NoClosedForm("the coefficients of the first approximation vary with time")
+    count = len(equations.relations)
+    return FirstOrder(
+        names=tuple(x.name for x in variables),
+        values=column(ring, list(values.values())),
+        A=Matrix.of(ring, [*slopes[:m], *lower]),
+        relations=count,
+    )
+
+
+def check(
+    form: SpeedForm, equations: SpeedEquations, found: FirstOrder, linear: Linearisation, at: Equilibrium
+) -> Check:
+    """A T = T' + T A_q, with A_q from the matrices of the generalised coordinates and T' along the motion."""
+    ring, names = form.ring, form.system.coordinates
+    plain, motion = _motion(form, at)
+    variables = _variables(form, equations)
+    inner = [_inner(form, x) for x in variables]
+    rows = [
+        [ring.substitute(ring.derivative(y, name), motion) for name in names]
+        + [ring.substitute(ring.velocity_derivative(y, name), motion) for name in names]
+        for y in inner
+    ]
+    routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
+    moving = [[ring.substitute(rate_on_motion(plain, x), motion) for x in row] for row in rows]
+    mass, damping, gyroscopic, stiffness, circulatory = (matrix.polynomials for matrix in linear.matrices)
+    n = range(len(names))
+    below = [
+        [-stiffness[i][j] - circulatory[i][j] for j in n] + [-damping[i][j] - gyroscopic[i][j] for j in n] for i in n
+    ]
+    upper = [[ring.one if j == len(names) + i else ring.zero for j in range(2 * len(names))] for i in n]
+    whole = [*upper, *_solved(ring, mass, below)]
+    left, right = _product(ring, found.A.polynomials, rows), _product(ring, rows, whole)
+    known = [
+        ring.is_zero(ring.reduce(a - b - rate))
+        for one, other, rates in zip(left, right, moving, strict=True)
+        for a, b, rate in zip(one, other, rates, strict=True)
+    ]
+    outcome = FAILED if False in known else UNDECIDED if None in known else EXACT
+    return Check("first approximation in speeds", *routes, outcome, "" if outcome != EXACT else "identical polynomials")
+
+
+def _variables(form: SpeedForm, equations: SpeedEquations) -> list[Variable]:
+    return [*(x for x in form.positions if x.name not in equations.aside), *form.speeds]
+
+
+def _motion(form: SpeedForm, equilibrium: Equilibrium) -> tuple[Scene, Mapping[int, Polynomial]]:
+    """A scene of the coordinates, and the motion in them, conditions and relations used."""
+    system = form.system.without_speeds
+    plain = Scene(system, form.ring, ring_environment(system, form.ring), form.ring, bodies=False)
+    return plain, unperturbed_with(plain, equilibrium.determined(plain))
+
+
+def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
+    """A variable in (q, q')."""
+    for speed, value in zip(form.speeds, form.in_coordinates, strict=True):
+        if speed is variable:
+            return value
+    return form.in_angles(form.ring.context.gen(variable.index))
+
+
+def _value(form: SpeedForm, variable: Variable, at: Mapping[int, Polynomial]) -> Polynomial:
+    return form.ring.substitute(_inner(form, variable), at)
+
+
+def _product(
+    ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]]
+) -> list[list[Polynomial]]:
+    columns = list(zip(*b, strict=True))
+    return [[ring.dot(row, column_) for column_ in columns] for row in a]
+
+
+def _solved(
+    ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Sequence[Polynomial]]
+) -> list[list[Polynomial]]:
+    """matrix^-1 right, by Cramer's rule column by column."""
+    inverse = ring.reciprocal(determinant(ring, matrix))
+    found: list[list[Polynomial]] = [[] for _ in matrix]
+    for values in zip(*right, strict=True):
+        for k in range(len(matrix)):
+            replaced = [[*row[:k], value, *row[k + 1 :]] for row, value in zip(matrix, values, strict=True)]
+            found[k].append(ring.reduce(ring.times(determinant(ring, replaced), inverse)))
+    return found
