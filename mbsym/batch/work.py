@@ -28,6 +28,11 @@ def work(task: Task) -> Finished:
     from mbsym.source.document import load_bytes
 
     system, complaints, text = load_bytes(task.data, task.file)
+    if system is not None and system.constraints:
+        from mbsym.analysis.soundness import complain_of_constraints
+
+        complain_of_constraints(system, complaints)
+        system = None if complaints.errors else system
     told = tuple(map(complaint_row, complaints.sorted()))
     if system is None:
         return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=told))

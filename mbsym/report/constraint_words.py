@@ -53,6 +53,13 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
         )
     if found.integrability is not None:
         yield from _integrable(found.integrability, n - found.position_rank, write)
+    for whole, sentence in (
+        (True, "Integrable by itself (proved): [[rows]]."),
+        (False, "Not integrable by itself (proved): [[rows]]."),
+    ):
+        rows = "; ".join(label(name, write) for name, decided in found.alone if decided is whole)
+        if rows and len(found.alone) > 1:  # of one alone it has been said
+            yield sentence, {"rows": rows}
     yield (
         "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
         {"dependent": write.names(found.dependent), "free": write.names(found.free)},

@@ -125,6 +125,8 @@ SENTENCES = {
     "Reactions in joints": "Reacciones en las articulaciones",
     "Force $R$ and moment $L$ about the connection point that the joint exerts on the body, in its axes; all that acts across the joint is in them.": "Fuerza $R$ y momento $L$ respecto del punto de conexión que la articulación ejerce sobre el cuerpo, en sus ejes; contienen todo lo que actúa a través de la articulación.",
     "With the multipliers, $R + \\sum \\lambda_i R^{(i)}$ and $L + \\sum \\lambda_i L^{(i)}$.": "Con los multiplicadores: $R + \\sum \\lambda_i R^{(i)}$ y $L + \\sum \\lambda_i L^{(i)}$.",
+    "Integrable by itself (proved): [[rows]].": "Integrable por sí sola (demostrado): [[rows]].",
+    "Not integrable by itself (proved): [[rows]].": "No integrable por sí sola (demostrado): [[rows]].",
     "Two points coincide: [[first]] and [[second]].": "Dos puntos coinciden: [[first]] y [[second]].",
     "Two axes are parallel: [[first]] of [[body]] and [[second]] of [[other]].": "Dos ejes son paralelos: [[first]] de [[body]] y [[second]] de [[other]].",
     "Two points keep the distance [[length]]: [[first]] and [[second]].": "Dos puntos mantienen la distancia [[length]]: [[first]] y [[second]].",

@@ -167,6 +167,8 @@ SENTENCES = {
     "Reactions in joints": "Реакции в шарнирах",
     "Force $R$ and moment $L$ about the connection point that the joint exerts on the body, in its axes; all that acts across the joint is in them.": "Сила $R$ и момент $L$ относительно точки соединения, с которыми шарнир действует на тело, в его осях; в них входит всё, что действует через шарнир.",
     "With the multipliers, $R + \\sum \\lambda_i R^{(i)}$ and $L + \\sum \\lambda_i L^{(i)}$.": "С множителями: $R + \\sum \\lambda_i R^{(i)}$ и $L + \\sum \\lambda_i L^{(i)}$.",
+    "Integrable by itself (proved): [[rows]].": "Интегрируема сама по себе (доказано): [[rows]].",
+    "Not integrable by itself (proved): [[rows]].": "Не интегрируема сама по себе (доказано): [[rows]].",
     "Two points coincide: [[first]] and [[second]].": "Две точки совпадают: [[first]] и [[second]].",
     "Two axes are parallel: [[first]] of [[body]] and [[second]] of [[other]].": "Две оси параллельны: [[first]], [[body]], и [[second]], [[other]].",
     "Two points keep the distance [[length]]: [[first]] and [[second]].": "Две точки сохраняют расстояние [[length]]: [[first]] и [[second]].",

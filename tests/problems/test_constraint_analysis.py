@@ -92,6 +92,28 @@ def test_frobenius_decides_one_form(constraint: str, word: str, growth: tuple[in
     assert integrability(constraint) == (word, growth, Sureness.PROVED)
 
 
+@pytest.mark.parametrize(
+    ("constraint", "exact"),
+    [
+        ("velocity: y*x_dot = x*y_dot", True),
+        ("velocity: z_dot = y*x_dot", False),
+        ("velocity: x_dot = Om*sin(s)*a", True),
+        ("velocity: x_dot = y", False),  # dx - y dt
+    ],
+)
+def test_a_form_by_itself(constraint: str, exact: bool) -> None:
+    (found,) = analysed(FREE + f"  - {constraint}").constraints.alone
+    assert found[1] is exact
+
+
+def test_rows_that_are_not_integrable_by_themselves_may_be_together() -> None:
+    """dz = y dx is not, dy = 0 is; both together keep y and z - y x."""
+    found = analysed(FREE + "  - velocity: z_dot = y*x_dot\n  - velocity: y_dot = 0").constraints
+    assert [decided for _, decided in found.alone] == [False, True]
+    assert found.integrability is not None
+    assert found.integrability.word == "holonomic"
+
+
 def test_two_forms_may_be_integrable_together_and_in_part() -> None:
     # dz = y dx alone is not integrable; with dy = 0 it is, and y, z - y x are kept.
     assert integrability("velocity: z_dot = y*x_dot", "velocity: y_dot = 0")[0] == "holonomic"

@@ -20,7 +20,7 @@ from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.constraints import is_holonomic, kind_name
 from mbsym.model.system import System
-from mbsym.problems.constraints.integrability import Field, integrability, undecided
+from mbsym.problems.constraints.integrability import Field, integrability, is_exact_by_itself, undecided
 from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved, Sureness
 
 #: At so many points ranks are taken.
@@ -186,6 +186,11 @@ class _Analysis:
             coordinates=names,
             dependent=tuple(names[k] for k in pivots.columns),
             integrability=self._integrability(found, shifts, holonomic, len(independent) - holonomic, points),
+            alone=tuple(
+                (self.rows[i].name, is_exact_by_itself(self.scene, jacobian[i], shifts[i]))
+                for i in independent
+                if not self.rows[i].name.holonomic
+            ),
             exact_points=points.exact,
             pivots=pivots,
             solved=None if found is None else self._whole(found),

@@ -118,6 +118,41 @@ def along(scene: Scene, field: Field, x: Polynomial) -> Polynomial:
     return ring.reduce(total)
 
 
+def is_exact_by_itself(scene: Scene, row: Sequence[Polynomial], shift: Polynomial) -> bool | None:
+    """Whether one form  omega = J dq + j dt  has an integrating factor: omega ^ d omega = 0; None where undecided.
+
+    Its components are  omega_i (d_j omega_k - d_k omega_j) + cyclic  over coordinates and t.
+    """
+    ring, names = scene.ring, scene.system.coordinates
+    form = [*row, shift]
+    present = [i for i, x in enumerate(form) if not ring.vanishes(x)]
+
+    def slope(x: Polynomial, i: int) -> Polynomial:
+        if i < len(names):
+            return ring.derivative(x, names[i])
+        rate = ring.derivative(x, "t")
+        for item in scene.system.prescribed:
+            rate = rate + ring.times(scene.lower(item.rate), ring.derivative(x, item.name))
+        return rate
+
+    def curl(i: int, k: int) -> Polynomial:
+        return slope(form[k], i) - slope(form[i], k)
+
+    decided: bool | None = True
+    try:
+        for i, j, k in combinations(range(len(form)), 3):
+            if not {i, j, k} & set(present):
+                continue
+            total = ring.times(form[i], curl(j, k)) + ring.times(form[j], curl(k, i)) + ring.times(form[k], curl(i, j))
+            zero = ring.is_zero(ring.reduce(total))
+            if zero is False:
+                return False
+            decided = decided and zero
+    except Failure:
+        return None
+    return decided or None
+
+
 def undecided(imposed: int, rheonomic: bool) -> Integrability:
     """Nothing is known: formulas outgrew their budget."""
     return Integrability((), None, imposed, Sureness.UNDECIDED, rheonomic)

@@ -82,8 +82,9 @@ class Constraints(Shown):
     """Rows that say something, with f, J (m x n), j = velocity at q' = 0, gamma = J' q' + j'.
 
     ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``parameter_conditions``
-    is how many relations between the parameters the position constraints demand.  ``solved`` is None where the formulas
-    outgrow the budget; ``pivots`` say how a program does it.
+    is how many relations between the parameters the position constraints demand.  ``alone`` says of every independent
+    velocity constraint whether it is integrable by itself, on all configurations (None: undecided).  ``solved`` is None
+    where the formulas outgrow the budget; ``pivots`` say how a program does it.
     """
 
     names: tuple[RowName, ...]
@@ -98,6 +99,7 @@ class Constraints(Shown):
     coordinates: tuple[str, ...]
     dependent: tuple[str, ...]
     integrability: Integrability | None
+    alone: tuple[tuple[RowName, bool | None], ...]
     exact_points: bool
     pivots: Pivots
     solved: Solved | None

@@ -74,6 +74,7 @@ def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
             "kept": integrable.kept,
             "known": integrable.sureness.value,
         },
+        "integrable_alone": [{"row": name.label, "integrable": decided} for name, decided in found.alone],
         "dependent": list(found.dependent),
         "independent": list(found.free),
     } | _solved(found.solved, write)
