@@ -18,6 +18,7 @@ from mbsym_cli.options import Options
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.closing import NotClosed
+    from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
     from mbsym_cli.simulation_many import Many
     from mbsym_cli.simulation_request import Asked
@@ -105,3 +106,22 @@ def not_closed(file: Path, found: NotClosed, system: System) -> int:
         complain(file, "  hint: check lengths and the initial position; a start nearer to a closed one may succeed")
     complain(file, "nothing was written.")
     return BAD_INPUT if found.fixed else BROKEN_DOWN
+
+
+def begun_from(file: Path, given: Scenario, with_models: bool) -> Scenario | int:
+    """The scenario with an initial state on its constraints, which is said; the exit code where there is none."""
+    if not given.system.constraints:
+        return given
+    from mbsym.numerics.closing import NotClosed, closed
+    from mbsym.report.constrained_run_words import start_lines
+
+    try:
+        found = closed(given)
+    except NotClosed as error:
+        return not_closed(file, error, given.system)
+    if found.moves:
+        for text in start_lines(found, given.system):
+            complain(file, f"note: {text}")
+    if with_models:
+        complain(file, "note: simpler models are not compared: with constraints they would begin elsewhere")
+    return found.scenario

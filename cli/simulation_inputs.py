@@ -50,12 +50,15 @@ input_options = group(
 )
 
 
-def read_held(file: Path, command: str) -> System | None:
-    """The system of a file with its inputs at the values of the unperturbed motion, which is said."""
+def read_held(file: Path, command: str, constrained: bool = False) -> System | None:
+    """The system of a file with its inputs at the values of the unperturbed motion, which is said.
+
+    A command that is ``constrained`` knows constraints, others refuse them.
+    """
     from mbsym.expressions.tree import text
     from mbsym.model.driven import held
 
-    system = read_description(file, command)
+    system = read_description(file, "" if constrained else command)
     if system is None or not system.inputs:
         return system
     values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)

@@ -85,7 +85,7 @@ def _command(
     """Reads everything, complains about everything, then measures."""
     from mbsym.numerics.methods.table import METHODS
 
-    system = read_held(file, "tradeoff")
+    system = read_held(file, "tradeoff", constrained=True)
     asked = Options()
     given = None if system is None else given_numbers(file, system, settings, asked)[0]
     end = asked.time(texts["--time"])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from mbsym_cli.console import BROKEN_DOWN, INTERRUPTED, OK, complain, console, printable, status
 from mbsym_cli.files import deliver
+from mbsym_cli.simulation_closing import begun_from
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -46,13 +47,16 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.trade_study import studied
 
+    begun = begun_from(file, found, request.fidelity)
+    if isinstance(begun, int):
+        return begun
     with status(request.quiet) as say:
 
         def watch(text: str) -> None:
             say(f"{file.name}: {text}")
 
         try:
-            study = studied(found, methods, request.end, max(request.left, 0.0), request.fidelity, watch)
+            study = studied(begun, methods, request.end, max(request.left, 0.0), request.fidelity, watch)
         except Breakdown as error:
             complain(file, _without_reference(error, request))
             return BROKEN_DOWN

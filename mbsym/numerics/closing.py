@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -51,13 +51,20 @@ class Move:
 class Closed:
     """``scenario`` begins on its constraints; ``moves`` are the values that had to be changed beyond roundings.
 
-    ``closest`` says whether the position is the closest one, or only one near it; ``fixed`` are the values that stayed.
+    ``closest`` says whether the position is the closest one, or only one near it; ``fixed`` are the values that stayed,
+    ``left_out`` the velocities that the description does not give.
     """
 
     scenario: Scenario
     moves: tuple[Move, ...] = ()
     closest: bool = True
     fixed: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def given_stays(self) -> bool:
+        """Whether only values were changed that were left out."""
+        return all(move.name in self.left_out for move in self.moves)
 
 
 @dataclass(frozen=True)
@@ -86,44 +93,62 @@ class NotClosed(Failure):
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     """The scenario with the closest initial state that its constraints allow; itself where there are none.
 
-    ``fixed`` names coordinates and velocities whose values must stay.  Raises NotClosed.
+    ``fixed`` names coordinates and velocities whose values must stay.  Where the coordinates that the description calls
+    dependent, and the velocities that were left out, can be fitted by themselves, what was given stays as well.  Raises
+    NotClosed.
     """
     if not scenario.system.constraints:
         return Closed(scenario)
     constraints = Dynamics(scenario).constraints
     assert constraints is not None
-    names = (*scenario.system.coordinates, *scenario.system.velocities)
-    search = _Search(
-        constraints, np.array([name not in fixed for name in names]), tuple(n for n in names if n in fixed)
-    )
-    start = np.array([float(x) for x in scenario.state])
+    system, n = scenario.system, len(scenario.system.coordinates)
+    names = (*system.coordinates, *system.velocities)
+    held = tuple(name for name in names if name in fixed)
     exact = _Exact(constraints)
     if exact.satisfied(scenario.state):
-        return Closed(scenario, fixed=search.fixed)
-    position, closest = search.position(start)
-    state = search.velocity(np.concatenate([position, start[search.n :]]))
-    found = exact.refined(scenario.state, state, search)
+        return Closed(scenario, fixed=held)
+    start = np.array([float(x) for x in scenario.state])
+    given = {
+        *(name for name in system.coordinates if system.dependent and name not in system.dependent),
+        *(name for name in system.velocities if scenario.unstated and name not in scenario.unstated),
+    }
+    searches = [_Search(constraints, names, held)]
+    if given:
+        searches.insert(0, _Search(constraints, names, tuple(name for name in names if name in given or name in held)))
+    position, closest = _first(searches, lambda search: search.position(start))
+    there = np.concatenate([position, start[n:]])
+    state = _first(searches, lambda search: search.velocity(there))
+    found = _first(searches, lambda search: exact.refined(scenario.state, state, search))
     moves = [
         Move(name, float(old), float(new))
         for name, old, new in zip(names, scenario.state, found, strict=True)
         if abs(old - new) > MOVED * (1 + abs(old))
     ]
     moved = {name for name, old, new in zip(names, scenario.state, found, strict=True) if old != new}
-    n = search.n
-    new = replace(
-        scenario,
-        positions=tuple(found[:n]),
-        velocities=tuple(found[n:]),
-        typed={name: value for name, value in scenario.typed.items() if name not in moved},
-    )
-    return Closed(new, tuple(moves), closest, search.fixed)
+    typed = {name: value for name, value in scenario.typed.items() if name not in moved}
+    new = replace(scenario, positions=tuple(found[:n]), velocities=tuple(found[n:]), typed=typed)
+    return Closed(new, tuple(moves), closest, held, scenario.unstated)
+
+
+T = TypeVar("T")
+
+
+def _first(searches: Sequence[_Search], find: Callable[[_Search], T]) -> T:
+    """What the first of them finds; raises what the last one raises."""
+    for search in searches[:-1]:
+        try:
+            return find(search)
+        except NotClosed:
+            continue
+    return find(searches[-1])
 
 
 class _Search:
     """The way to the constraints in float64, with some values free."""
 
-    def __init__(self, constraints: Constraints, free: Any, fixed: tuple[str, ...]) -> None:
+    def __init__(self, constraints: Constraints, names: Sequence[str], fixed: tuple[str, ...]) -> None:
         self.constraints, self.fixed = constraints, fixed
+        free = np.array([name not in fixed for name in names])
         self.n, self.h = constraints.size, constraints.holonomic
         self._free = free[: self.n], free[self.n :]
 
@@ -278,6 +303,10 @@ class _Exact:
                 for k, change in enumerate(weights @ _shortest(rows, right)):
                     found[k + n * velocity] += scale * Fraction(float(change))
             found = [_short(x) for x in found]
+        if not self.satisfied(found):
+            left = zip(self._constraints.names, self.residuals(found), strict=False)
+            gaps = [Gap(name, abs(float(x))) for name, x in left]
+            raise NotClosed(np.array([float(x) for x in found]), gaps, search.fixed)
         return tuple(found)
 
 

@@ -77,6 +77,7 @@ class Scenario:
 
     ``prescribed`` gives (initial, rate) of every prescribed quantity; ``typed`` keeps the initial positions as they
     were written (pi/2 is exact there).  The system has no inputs any more: ``inputs`` are what they have become.
+    ``unstated`` are the velocities that were left out, and are zero where no constraint says otherwise.
     """
 
     system: System
@@ -86,6 +87,7 @@ class Scenario:
     prescribed: Mapping[str, tuple[Fraction, Fraction]]
     typed: Mapping[str, Expression] = field(default_factory=dict)
     inputs: tuple[Driven, ...] = ()
+    unstated: tuple[str, ...] = ()
 
     @property
     def state(self) -> tuple[Fraction, ...]:
@@ -131,7 +133,8 @@ def scenario(
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     typed = {name: entry.position for name, entry in given.items() if entry.position is not None}
     became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
-    return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became)
+    unstated = tuple(velocity_name(name) for name in system.coordinates if given[name].velocity is None)
+    return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
 
 
 def changed(found: Scenario, **parameters: Fraction) -> Scenario:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsym.numerics import fidelity
+from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.fidelity import ModelError
 from mbsym.numerics.methods.interface import Method
@@ -44,15 +45,20 @@ def studied(
 ) -> Study:
     """The study from 0 to ``end``, in ``budget`` seconds (some more where these are too few for a reference).
 
-    Raises Breakdown where there is no reference solution up to ``end``, Failure where the equations have no program.
+    Of a system with constraints the initial state is the closest one that satisfies them, and no simpler models are
+    compared, which would begin beside them.
+
+    Raises NotClosed, Breakdown where there is no reference solution up to ``end``, Failure where the equations have no
+    program.
     """
     until = time.perf_counter() + budget
+    scenario = closed(scenario).scenario
     dynamics = Dynamics(scenario)
     watch("reference solution")
     seconds, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
     truth = whole_reference(dynamics, end, seconds, watch, at_most)
     models: tuple[ModelError, ...] = ()
-    if with_models:
+    if with_models and not scenario.system.constraints:
         places = np.unique(np.linspace(0, len(truth.times) - 1, PLACES).astype(int))
         method = METHODS["lsoda" if truth.way == IMPLICIT else "dop853"]
         models = fidelity.measured(scenario, method, truth.times[places].tolist(), watch, truth.scale)

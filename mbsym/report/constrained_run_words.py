@@ -56,6 +56,11 @@ def start_lines(closed: Closed, system: System) -> Iterator[str]:
     if not closed.moves:
         yield f"the initial state satisfies the constraints{held}"
         return
+    if closed.given_stays:
+        yield f"the initial state satisfies the constraints; velocities that were left out follow from them{held}"
+        shown = [f"{x.name} = {with_unit(f'{x.found:.9g}', pretty(unit_of(system, x.name)))}" for x in closed.moves]
+        yield ", ".join(shown[:MOST_MOVES]) + (", ..." if len(shown) > MOST_MOVES else "")
+        return
     how = "closest state" if closed.closest else "state near it (not certain to be the closest)"
     yield f"what was given does not satisfy the constraints: begun from the {how} that does, by the mass matrix{held}"
     largest = sorted(closed.moves, key=lambda move: -abs(move.found - move.given) / (1 + abs(move.given)))

@@ -219,7 +219,7 @@ def replace_value(found: Scenario, **values: Fraction) -> Scenario:
 
 def test_the_closest_start_is_found() -> None:
     """From (1, -1) the closest point of the circle is (1, -1)/sqrt(2); the velocity keeps its tangential part."""
-    given = scenario(described(PENDULUM.replace("{x: 3/5, y: -4/5}", "{x: {position: 1, velocity: 1}, y: -1}")))
+    given = scenario(described(PENDULUM.replace("{x: 3/5, y: -4/5}", "{x: {position: 1, velocity: 1}, y: {position: -1, velocity: 0}}")))
     found = closed(given)
     assert [float(x) for x in found.scenario.positions] == pytest.approx([1 / sqrt(2), -1 / sqrt(2)], abs=1e-12)
     assert [float(x) for x in found.scenario.velocities] == pytest.approx([0.5, 0.5], abs=1e-12)
@@ -261,6 +261,33 @@ def test_a_singular_start_is_named() -> None:
     found = simulate(scenario(described(text + start)), Request(time=1.0))
     assert found.ended is not None
     assert found.ended.kind == SINGULAR_CONSTRAINTS
+
+
+def test_velocities_that_were_left_out_follow_from_those_that_are_given() -> None:
+    """The crank turns at 0.2, as it was said to; the others follow to the digits of SymPy's test."""
+    text = FOUR_BAR + "initial: {q1: {position: 2.1, velocity: 0.2}, q2: 0.6655470375077588, q3: 2.527408138024188}"
+    found = closed(scenario(described(text)))
+    assert found.given_stays
+    truth = json.loads((REFERENCES / "sympy_four_bar.json").read_text())["parameters"]["u"]
+    assert [float(x) for x in found.scenario.velocities] == pytest.approx([float(x) for x in truth], abs=1e-12)
+
+
+def test_coordinates_called_dependent_are_fitted_to_the_others() -> None:
+    text = PENDULUM.replace("initial: {x: 3/5, y: -4/5}", "dependent: [y]\ninitial: {x: 1/2, y: -1}")
+    assert [float(x) for x in closed(scenario(described(text))).scenario.positions] == pytest.approx(
+        [0.5, -sqrt(3) / 2], abs=1e-15
+    )
+
+
+def test_tradeoff_tells_from_where_it_begins_and_what_does_not_apply(tmp_path: Path) -> None:
+    (tmp_path / "s.yaml").write_text(PENDULUM.replace("3/5", "1/2"), encoding="utf-8")
+    words = ["tradeoff", tmp_path / "s.yaml", "--time", 2, "--budget", 6, "--out", tmp_path / "out", "--methods"]
+    result = CliRunner().invoke(main, [str(word) for word in [*words, "rk4,rk45,lsoda"]])
+    assert result.exit_code == 0, result.output
+    assert "what was given does not satisfy the constraints" in result.stderr
+    assert "simpler models are not compared" in result.stderr
+    assert "lsoda does not keep to constraints" in result.stdout
+    assert "measured order" in result.stdout
 
 
 # --- redundant rows ---
