@@ -219,7 +219,11 @@ def replace_value(found: Scenario, **values: Fraction) -> Scenario:
 
 def test_the_closest_start_is_found() -> None:
     """From (1, -1) the closest point of the circle is (1, -1)/sqrt(2); the velocity keeps its tangential part."""
-    given = scenario(described(PENDULUM.replace("{x: 3/5, y: -4/5}", "{x: {position: 1, velocity: 1}, y: {position: -1, velocity: 0}}")))
+    given = scenario(
+        described(
+            PENDULUM.replace("{x: 3/5, y: -4/5}", "{x: {position: 1, velocity: 1}, y: {position: -1, velocity: 0}}")
+        )
+    )
     found = closed(given)
     assert [float(x) for x in found.scenario.positions] == pytest.approx([1 / sqrt(2), -1 / sqrt(2)], abs=1e-12)
     assert [float(x) for x in found.scenario.velocities] == pytest.approx([0.5, 0.5], abs=1e-12)
