@@ -151,6 +151,11 @@ def _growing(analysis: Analysis) -> tuple[str, ...]:
     """
     system = analysis.system
     names = (*turning(analysis.parameters_scene), *(item.name for item in system.prescribed), "t")
+    if system.constraints:
+        names = tuple(dict.fromkeys((*names, *sorted(analysis.reduced.expansion.base.turning))))
+        held = {name for x in expressions(system.constraints) for name in _outside(x)}
+        if held & set(names):
+            return tuple(name for name in names if name in held)
     angles = [angle for body in system.bodies for angle in body.rotation.angles]
     plain = [x for body in system.bodies for x in (*body.connection_point, *body.mass_centre)]
     told = {name for x in (*plain, *expressions(system.loads)) for name in _outside(x)}

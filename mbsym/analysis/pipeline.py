@@ -371,8 +371,8 @@ class Analysis(Stages):
     def _stability(self) -> Stability:
         scene, linear = self.parameters_scene, self.judgeable
         found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
-        if found.numerical is None or not found.numerical.word.open:
-            return found
+        if found.numerical is None or not found.numerical.word.open or self.system.constraints:
+            return found  # what looks further at open verdicts knows the open tree alone
         from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
 
         return open_verdicts.decided(found, scene, self.equilibrium)

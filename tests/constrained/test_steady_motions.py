@@ -120,6 +120,9 @@ def test_the_upright_disc_rolls_above_its_critical_spin() -> None:
     )
     assert fast.stability.numerical is not None
     assert fast.stability.numerical.word is Word.UNDECIDED
+    shipped = mbsym.load(SYSTEMS / "rolling-disc.yaml").stability.numerical  # 3 r w^2 = 19.5 > g
+    assert shipped is not None
+    assert shipped.word is Word.UNDECIDED
     assert slow.stability.numerical is not None
     assert slow.stability.numerical.word is Word.UNSTABLE
 
@@ -176,3 +179,11 @@ motion: {{a: 0, c: 0}}
 def test_constraints_that_move_take_power(tie: str, law: EnergyLaw) -> None:
     """With J q' + j = 0 and j != 0 constraint forces do work: nothing is claimed about the energy."""
     assert described(TIED.format(tie=tie)).balance.law is law
+
+
+def test_a_constraint_that_grows_with_time_is_not_judged() -> None:
+    """b = exp(t) a^3: of third order at any time, and not small at all times alike."""
+    tied = TIED.format(tie="relation: c = 2*a + a**3*exp(t)")
+    stage = described(tied).stage(6)
+    assert stage.failure is not None
+    assert "not known to be small at all times alike" in stage.failure.reason

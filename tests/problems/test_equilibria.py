@@ -20,6 +20,7 @@ from test_spectrum import SHAFT
 
 import mbsym
 from mbsym.algebra import krawczyk
+from mbsym.algebra.failures import Constrained
 from mbsym.algebra.polynomial_systems import Limits, Solutions, context, solve
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.mechanics.charts import joints
@@ -668,6 +669,10 @@ loads:
 def test_the_described_motion_is_listed_and_judged_as_problem_6_does(path: Path) -> None:
     """Another route to every verdict: problem 6 judges matrices by quadratisation, with symbols, at the same values."""
     a = mbsym.load(path)
+    if a.system.constraints:
+        with pytest.raises(Constrained):
+            equilibria(a.system, {})
+        return
     try:
         judged = a.stability.numerical
     except Unavailable:
