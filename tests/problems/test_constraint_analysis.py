@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,9 +14,11 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix, column
+from mbsym.mechanics.constraints.states import Manifold
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import Constraints, Embedded, Sureness
 from mbsym.problems.constraints.checks import check_embedded, check_rows
+from mbsym.problems.constraints.integrability import by_program
 
 SLEIGH = """
 mbsym: 1
@@ -127,6 +130,31 @@ def test_two_forms_may_be_integrable_together_and_in_part() -> None:
     # w exp(-x^2) is kept, the contact form keeps nothing: growth 2, 3 in 4 dimensions.
     assert (found.integrability.word, found.integrability.growth[:2], found.integrability.kept) == ("partly", (2, 3), 1)
     assert found.integrability.sureness is not Sureness.UNDECIDED
+
+
+@pytest.mark.parametrize("text", [SLEIGH, SPHERE, FREE + "  - velocity: z_dot = x*y_dot - y*x_dot"])
+def test_brackets_of_programs_span_what_brackets_of_formulas_do(text: str) -> None:
+    analysis = analysed(text)
+    found, programs = analysis.constraints, programs_of(analysis)
+    manifold = Manifold(analysis.system, analysis.ring, programs)
+    states = [one.state for one in manifold.states(2)]
+    assert by_program(found.coordinates, programs, found.pivots, found.position_rank, states) == found.integrability
+
+
+def test_programs_say_nothing_where_brackets_do_not_span_all() -> None:
+    analysis = analysed(FREE + "  - velocity: y*x_dot = x*y_dot")
+    found, programs = analysis.constraints, programs_of(analysis)
+    states = [one.state for one in Manifold(analysis.system, analysis.ring, programs).states(2)]
+    assert by_program(found.coordinates, programs, found.pivots, found.position_rank, states) is None
+
+
+def test_the_bicycle_is_nonholonomic() -> None:
+    """Its formulas are too long for the ring: seven dimensions of configurations are reached by brackets of brackets."""
+    found = mbsym.load(Path(__file__).parents[2] / "systems" / "bicycle.yaml", (1,)).constraints
+    assert (found.position_rank, found.velocity_rank, len(found.free)) == (1, 5, 3)
+    assert found.integrability is not None
+    assert (found.integrability.word, found.integrability.growth[-1]) == ("nonholonomic", 7)
+    assert found.integrability.sureness is Sureness.PROVED
 
 
 # --- ranks and counts ---

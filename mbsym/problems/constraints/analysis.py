@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +21,7 @@ from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.constraints import is_holonomic, kind_name
 from mbsym.model.system import System
-from mbsym.problems.constraints.integrability import Field, integrability, is_exact_by_itself, undecided
+from mbsym.problems.constraints.integrability import Field, by_program, integrability, is_exact_by_itself, undecided
 from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved, Sureness
 
 #: At so many points ranks are taken.
@@ -185,7 +186,7 @@ class _Analysis:
             parameter_conditions=self._parameter_conditions(points, holonomic),
             coordinates=names,
             dependent=tuple(names[k] for k in pivots.columns),
-            integrability=self._integrability(found, shifts, holonomic, len(independent) - holonomic, points),
+            integrability=self._integrability(found, pivots, shifts, holonomic, len(independent) - holonomic, points),
             alone=tuple(
                 (self.rows[i].name, is_exact_by_itself(self.scene, jacobian[i], shifts[i]))
                 for i in independent
@@ -209,17 +210,27 @@ class _Analysis:
             return None
 
     def _integrability(
-        self, found: Embedding | None, shifts: Sequence[Polynomial], holonomic: int, imposed: int, points: _Points
+        self,
+        found: Embedding | None,
+        pivots: Pivots,
+        shifts: Sequence[Polynomial],
+        holonomic: int,
+        imposed: int,
+        points: _Points,
     ) -> Integrability | None:
         if imposed <= 0:
             return None
         rheonomic = self._is_rheonomic(shifts)
-        if found is None:
-            return undecided(imposed, rheonomic)
-        try:
-            return integrability(self.scene, found, rheonomic, holonomic, points.rank)
-        except Failure:
-            return undecided(imposed, rheonomic)
+        if found is not None:
+            with suppress(Failure):
+                return integrability(self.scene, found, rheonomic, holonomic, points.rank)
+        if not rheonomic:
+            with suppress(Failure, ZeroDivisionError):
+                states = [one.state for one in points.states]
+                known = by_program(self.system.coordinates, self.programs, pivots, holonomic, states)
+                if known is not None:
+                    return known
+        return undecided(imposed, rheonomic)
 
     def _ranked(self, jacobian: list[list[Any]]) -> Eliminated:
         """Independent rows: holonomic ones count before velocity constraints, each kind in the order of the file."""

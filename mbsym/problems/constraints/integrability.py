@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import Any
 
+from mbsym.algebra.derivative import directional
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.mechanics.constraints.embedding import Embedding, basis_vector
+from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, embedded
+from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.oracle import State
 from mbsym.problems.constraints.result import Integrability, Sureness
 
 #: A vector field on the coordinates and t: the components of the coordinates, then that of t.
@@ -34,17 +40,29 @@ def integrability(
         return None
     fields = _fields(scene, found, shift_matters)
     whole = n - position_rank + shift_matters
-    growth = [len(fields)]
-    layer, seen, bounded = list(fields), list(fields), True
-    reached, sure = rank(seen)
-    bounded = bounded and sure
+    growth, bounded = _growth(fields, whole, lambda x, y: bracket(scene, x, y), lambda x: is_nothing(ring, x), rank)
+    # A rank that is reached is proved; that it goes no further only where the ring says so.
+    reached = growth[-1]
+    proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, found, shift_matters))
+    sureness = Sureness.PROVED if proved else Sureness.NUMERICAL
+    return Integrability(growth, whole - reached, imposed, sureness, shift_matters)
+
+
+def _growth(
+    fields: Sequence[Any],
+    whole: int,
+    bracketed: Callable[[Any, Any], Any],
+    vanishes: Callable[[Any], bool],
+    rank: Callable[[Sequence[Any]], tuple[int, bool]],
+) -> tuple[tuple[int, ...], bool]:
+    """The ranks of fields, with their brackets, and so on, and whether it is proved that these are no greater."""
+    growth, layer, seen = [len(fields)], list(fields), list(fields)
+    reached, bounded = rank(seen)
     for _ in range(MOST_STEPS):
         if reached == whole:
-            break
-        new = [x for a in fields for b in layer if not is_nothing(ring, x := bracket(scene, a, b))]
-        before = reached
-        kept: list[Field] = []
-        for one in new:
+            return tuple(growth), bounded
+        before, kept = reached, []
+        for one in (x for a in fields for b in layer if not vanishes(x := bracketed(a, b))):
             more, sure = rank([*seen, one])
             if more > reached:
                 kept.append(one)
@@ -56,14 +74,41 @@ def integrability(
                 break
         growth.append(reached)
         if reached == before:
-            break
+            return tuple(growth), bounded
         layer = kept
-    else:
-        bounded = False
-    # A rank that is reached is proved; that it goes no further only where the ring says so.
-    proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, found, shift_matters))
-    sureness = Sureness.PROVED if proved else Sureness.NUMERICAL
-    return Integrability(tuple(growth), whole - reached, imposed, sureness, shift_matters)
+    return tuple(growth), False
+
+
+def by_program(
+    coordinates: Sequence[str], rows: ConstrainedPrograms, pivots: Pivots, position_rank: int, points: Sequence[State]
+) -> Integrability | None:
+    """The same where closed formulas outgrow their budget: fields and brackets as straight-line programs.
+
+    For constraints without time.  That the brackets span everything at one certified point is a proof; that they do not
+    at these points is none, and nothing is said then.  Raises Failure as the program does.
+    """
+    program, n = rows.tree.program, len(coordinates)
+    inputs = [rows.environment[name] for name in coordinates]
+    sides = [(program.zero, program.zero)] * len(rows.names)
+    found = embedded(program, rows.jacobian, sides, pivots)
+    fields = [tuple(basis_vector(program, found, place)) for place in range(len(found.free))]
+
+    def bracketed(a: Sequence[Node], b: Sequence[Node]) -> tuple[Node, ...]:
+        forwards, back = directional(program, b, inputs, a), directional(program, a, inputs, b)
+        return tuple(x - y for x, y in zip(forwards, back, strict=True))
+
+    def rank(vectors: Sequence[Sequence[Node]]) -> tuple[int, bool]:
+        best = 0
+        for point in points:
+            flat = program.evaluate([x for v in vectors for x in v], point.values, point.numbers)
+            best = max(best, eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n)).rank)
+        return best, best == len(vectors)
+
+    whole, imposed = n - position_rank, len(found.dependent) - position_rank
+    growth, _ = _growth(fields, whole, bracketed, lambda x: all(map(program.vanishes, x)), rank)
+    if growth[-1] < whole:
+        return None
+    return Integrability(growth, 0, imposed, Sureness.PROVED, rheonomic=False)
 
 
 def _is_involutive(scene: Scene, found: Embedding, shift_matters: bool) -> bool:
