@@ -75,6 +75,7 @@ def command(
 
     What is up to date is not derived again: the same description (comments and layout do not matter), options and
     version of mbsym, and every file as it was written.  A batch that was stopped or killed goes on where it was.
+    Results of a description that was deleted since the last batch go with it, but for files that somebody changed.
 
     With --appendix, OUT/appendix.tex joins the appendices of all systems: a section each, labels that differ, no
     preamble; a document needs amsmath and \\input{build/appendix}.

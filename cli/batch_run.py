@@ -22,6 +22,7 @@ from mbsym.batch.task import Asked, Budget
 from mbsym.expressions.counting import counted
 from mbsym.report.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch_folders import Found, chosen, found_in, share
+from mbsym_cli.batch_gone import forget_gone
 from mbsym_cli.batch_machine import memory_is_bounded
 from mbsym_cli.batch_store import FolderStore
 from mbsym_cli.batch_table import complaints, totals, watcher
@@ -70,10 +71,14 @@ def run(request: Request) -> int:
     if request.budget.memory and not memory_is_bounded():
         print("--memory has no effect here: this system has no such bound", file=sys.stderr)
     summary, stopped = _summed_up(request, places, found, started)
+    wanted = {place.folder for place in found.places}
+    gone = forget_gone(request.out, summary_name(request), request.folders, wanted)
     whole = write_files(request, summary)
     if request.output_format != "text":
         sys.stdout.write(_for_programs(request, summary))
     elif not request.quiet:
+        for folder in gone:
+            print(f"{printable(request.out / folder)}: removed, its description is gone")
         where = printable(request.out / summary_name(request))
         print(f"{totals(summary)}; {summary.seconds:.2f} s; {where}")
     if stopped:

@@ -275,3 +275,38 @@ except SystemExit as ended:
     done = subprocess.run([sys.executable, "-c", program], cwd=place, capture_output=True, text=True, check=True)
     assert "1 up to date" in done.stdout
     assert done.stdout.splitlines()[-1] == "0"
+
+
+# --- descriptions that are gone ---------------------------------------------------------------------------------------
+
+
+def test_results_of_a_deleted_description_go_and_nothing_else(place: Path) -> None:
+    """What somebody has changed or put there stays, and so does what another batch wrote of another folder."""
+    folder_of(place / "in", b=pendulum(), c=pendulum(), d=pendulum())
+    folder_of(place / "other", e=pendulum())
+    batch("in", "other", "-o", "out", *QUICK, cwd=place)
+    assert {"a", "b", "c", "d", "e"} <= {path.parent.name for path in (place / "out").rglob("outcome.json")}
+    (b,), (c,), (d,), (e,) = ([path.parent for path in (place / "out").rglob(f"{n}/outcome.json")] for n in "bcde")
+    (c / "own.txt").write_text("mine")
+    (d / "results.json").write_text("changed")
+    for name in "bcd":
+        (place / "in" / f"{name}.yaml").unlink()
+    (place / "other" / "e.yaml").unlink()
+    done = batch("in", "-o", "out", *QUICK, cwd=place)
+    assert done.stdout.count("removed, its description is gone") == 3
+    assert not b.exists()
+    assert {path.name for path in c.iterdir()} - {".mbsym.json"} == {"own.txt"}
+    assert {path.name for path in d.iterdir()} - {".mbsym.json"} == {"results.json"}
+    assert (e / "outcome.json").exists()  # nobody asked about its folder
+    assert [Path(one["file"]).name for one in summary(place / "out")["systems"]] == ["a.yaml"]
+
+
+@pytest.mark.parametrize("folder", ["../victim", "/victim", "", "."])
+def test_a_summary_leads_nowhere_else(folder: str, place: Path) -> None:
+    shutil.copytree(place / "out", place / "victim")
+    told = summary(place / "out")
+    told["systems"].append({**told["systems"][0], "file": "in/gone.yaml", "folder": folder})
+    (place / "out" / "summary.json").write_text(json.dumps(told))
+    before = files_of(place / "victim")
+    assert "removed" not in batch("in", "-o", "out", *QUICK, cwd=place).stdout
+    assert files_of(place / "victim") == before
