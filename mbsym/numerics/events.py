@@ -13,7 +13,8 @@ What the run cannot tell apart is not told apart.  A step is wrong by about tol 
     blur = tol sum_i |dg/dx_i| (1 + |x_i|)        (and by the rounding of t, eps |t dg/dt|);
 
 g has passed zero when it has left the blur on the other side, and *touches* zero where it comes back on the same side.
-A touch may be two passages or none; it is recorded with direction 0 for events in both directions, and stops nothing.
+Where it comes to zero and stays there to the end, as friction brings a motion to rest,
+it has come down or up to it.  A touch may be two passages or none; it is recorded with direction 0 for events in both directions, and stops nothing.
 """
 
 from __future__ import annotations
@@ -94,10 +95,15 @@ def sampled(pieces: Sequence[Piece]) -> Any:
 
 @dataclass
 class _Course:
-    """How far one event has been followed: the sign of g, and where it was nearest to zero since it lost that."""
+    """How far one event has been followed: the sign of g, and where it was nearest to zero since it lost that.
+
+    ``stays``: since then it has been within the blur all along some part of the motion, as where friction holds: it
+    was nearest where it came.
+    """
 
     sign: Sign = field(default_factory=Sign)
     near: tuple[float, Piece] | None = None
+    stays: bool = False
     left: bool = False  # whether g has ever been outside the blur
 
 
@@ -115,6 +121,7 @@ class Watcher:
         self._waiting: list[Piece] = []
         self._found: list[Occurrence] = []
         self._beyond = 0
+        self._sizes = np.zeros(len(self.events))
         self._start = 0.0
         self.ended: Occurrence | None = None
 
@@ -142,7 +149,7 @@ class Watcher:
             return self.ended is not None
         values = self._values(sampled(waiting))
         found = series(values.reshape(len(self.events), len(waiting), NODES))
-        free, signs = free_of_zeros(found), np.sign(found[..., 0])
+        free, signs = free_of_zeros(found) & ~self._faint(found), np.sign(found[..., 0])
         met: list[Occurrence] = []
         for event, course in enumerate(self._courses):
             same = np.ones(len(waiting), bool)
@@ -154,6 +161,14 @@ class Watcher:
                 met += self._within(event, piece, piece.start, piece.end, found[event, place], blur, DEPTH)
         self._keep(met)
         return self.ended is not None
+
+    def _faint(self, found: Any) -> Any:
+        """Pieces (events, pieces) on which g may come within the tolerance of zero, in parts of its largest value."""
+        with np.errstate(invalid="ignore"):
+            sizes = np.sum(np.abs(found), axis=-1)
+            self._sizes = np.fmax(self._sizes, np.nanmax(sizes, axis=1, initial=0.0))
+            least = 2 * np.abs(found[..., 0]) - sizes
+            return least <= self._tolerance * self._sizes[:, None]
 
     def finish(self, end: float) -> Occurrences:
         """Everything that was found up to ``end``; what has begun there and is not over counts as having happened."""
@@ -204,7 +219,9 @@ class Watcher:
             if course.sign.last == 0 and passage is passed[0] and begins:
                 time = self._start
             met.append(self._occurrence(event, where, time, passage.turn))
-        if sign.near and (course.near is None or not course.sign.near or passed or nearest > -1):
+        stays = course.sign.near and not passed and float(np.sum(np.abs(known))) <= blur
+        course.stays = sign.near and (course.stays or stays)
+        if sign.near and not stays and (course.near is None or not course.sign.near or passed or nearest > -1):
             course.near = (start + 0.5 * (nearest + 1) * (end - start), piece)
         course.sign, course.left = sign, course.left or sign.last != 0
         return met
@@ -274,7 +291,7 @@ class Watcher:
         time, piece = course.near
         state = np.asarray(piece(np.array([time])), dtype=float)[:, 0]
         slope = float(self._slopes[event](np.concatenate(([time], state)))[1])
-        turn = -course.sign.last if slope * course.sign.last < 0 else 0
+        turn = -course.sign.last if course.stays or slope * course.sign.last < 0 else 0
         found = self._occurrence(event, piece, time, turn)
         return [found]
 

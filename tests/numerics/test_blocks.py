@@ -106,3 +106,16 @@ def test_a_narrow_load_in_a_block_is_met(monkeypatch: pytest.MonkeyPatch) -> Non
     assert run_of("dop853", load).fill(ROWS)[1, -1] == pytest.approx(wanted, abs=1e-6)
     monkeypatch.setattr(blocks, "harmless", lambda kind, found: np.ones(found.shape[:-1], bool))
     assert abs(run_of("rk45", load).fill(ROWS)[1, -1] - wanted) > 0.1
+
+
+@pytest.mark.parametrize("method", ["dop853", "rk45", "rk4", "radau", "bdf", "taylor"])
+def test_every_method_counts_the_same_events_where_friction_holds(method: str) -> None:
+    """x'' = -x - 0.3 sign x' from x = 1: x' passes zero at pi, x = -0.4, and comes to rest at 2 pi, x = -0.2."""
+    if method == "taylor":
+        pytest.importorskip("heyoka")
+    analysis = mbsym.loads(f"{LINE}{force('-0.3*sign(x_dot)')}initial: {{x: 1}}\n")
+    more = {"step": 0.01} if METHODS[method].traits.fixed else {}
+    found = mbsym.simulate(analysis, 20, method=method, events=["x_dot = 0"], **more).events
+    assert found.times == pytest.approx([0, np.pi, 2 * np.pi], abs=1e-7)
+    assert list(found.turns) == [-1, 1, -1]
+    assert found.states[0] == pytest.approx([1, -0.4, -0.2], abs=1e-7)

@@ -30,6 +30,9 @@ from mbsym.numerics.methods.passed import MOST_KEPT, Narrow, Passed
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.sides import Sides, endless, feature_kernel
 
+#: What a method of fixed step is taken to leave of a g that is 0 where a step ended.
+OF_FIXED_STEP = 1e-12
+
 #: So many switches where nothing moves between them end the run.
 MOST_TOGETHER = 24
 
@@ -91,7 +94,9 @@ class LandingRun:
         self._longest = _longest(method, setting)
         self._runs: dict[int | None, Run] = {}
         self.work, self.passed = Work(), Passed()
-        self._leaving = Leaving(self._positive, self._switches.looked_for, setting.tolerance or 0.0, self.passed)
+        self._leaving = Leaving(
+            self._positive, self._switches.looked_for, setting.tolerance or OF_FIXED_STEP, self.passed
+        )
         first = method.start(dynamics, setting, scalar, initial, at) if not self._count else None
         start = np.array([float(x) for x in dynamics.scenario.state]) if initial is None else np.asarray(initial)
         if first is not None:

@@ -33,7 +33,7 @@ class Leaving:
 
     def first(self, piece: Piece) -> tuple[float, tuple[int, ...]]:
         """The first time at which switches leave their sides in a piece, and which do so then; (end, ()) if none."""
-        if not self._looked_for:
+        if not self._looked_for or piece.end - piece.start <= TOGETHER * max(1.0, abs(float(piece.end))):
             return piece.end, ()
         found: list[tuple[float, int]] = []
         whole = along(self._values, piece, piece.start, piece.end)
