@@ -149,7 +149,7 @@ def test_programs_say_nothing_where_brackets_do_not_span_all() -> None:
 
 
 def test_the_bicycle_is_nonholonomic() -> None:
-    """Its formulas are too long for the ring: seven dimensions of configurations are reached by brackets of brackets."""
+    """Its formulas are too long for the ring: brackets of brackets reach all seven dimensions of configurations."""
     found = mbsym.load(Path(__file__).parents[2] / "systems" / "bicycle.yaml", (1,)).constraints
     assert (found.position_rank, found.velocity_rank, len(found.free)) == (1, 5, 3)
     assert found.integrability is not None

@@ -111,7 +111,10 @@ class _Points:
         """The rank of fields, the greatest at the points; proved to be no greater only where it is full."""
         best = 0
         for carrier in self.carriers:
-            rows = [[carrier(x) for x in field] for field in fields]
+            try:
+                rows = [[carrier(x) for x in field] for field in fields]
+            except ZeroDivisionError:  # the dependent velocities are singular just there
+                continue
             best = max(best, eliminated(rows, range(len(rows[0]))).rank)
         return best, best == len(fields)
 

@@ -100,7 +100,10 @@ def by_program(
     def rank(vectors: Sequence[Sequence[Node]]) -> tuple[int, bool]:
         best = 0
         for point in points:
-            flat = program.evaluate([x for v in vectors for x in v], point.values, point.numbers)
+            try:
+                flat = program.evaluate([x for v in vectors for x in v], point.values, point.numbers)
+            except ZeroDivisionError:  # the dependent velocities are singular just there
+                continue
             best = max(best, eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n)).rank)
         return best, best == len(vectors)
 
