@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
+    ONE,
     Derivation,
     Expression,
     Name,
@@ -107,7 +108,7 @@ def _short(hint: str, instead: str = "leave the relative velocity out: it is the
 def _rates(system: System) -> dict[str, Expression]:
     rates: dict[str, Expression] = {name: Name(velocity_name(name)) for name in system.coordinates}
     rates.update({prescribed.name: prescribed.rate for prescribed in system.prescribed})
-    return rates
+    return {**rates, "t": ONE}
 
 
 # --- masses and inertias ---------------------------------------------------------------------------------------------
@@ -220,7 +221,7 @@ def _is_enough(system: System, body: Body, index: int) -> bool:
     """
     if system.newtonian_fields:
         return False
-    moving = {*system.coordinates, *(one.name for one in system.prescribed)}
+    moving = {*system.coordinates, *(one.name for one in system.prescribed), "t"}
     bodies = {one.name: one for one in system.bodies}
     direction: list[float] | None = [float(k == index) for k in range(3)]  # in the axes after the turn; None: unknown
     part, passed = body, 0

@@ -11,7 +11,8 @@ SYSTEM = {
     "name": "what the system is called in reports",
     "description": "a sentence or two about it",
     "parameters": "constants: names with a sign word, a number, or {sign, value, meaning}; or a plain list of names",
-    "prescribed": "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}",
+    "prescribed": "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}; "
+    "other functions of t may stand in joints",
     "inputs": "known functions of time that are chosen later, for forces and torques: {u: {meaning, unit}}",
     "outputs": "what is measured: {y: theta}, in coordinates, velocities, parameters and inputs",
     "tables": "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",

@@ -79,9 +79,9 @@ class Allowed:
 
 
 NUMBER = Allowed("a numerical value", (), KINKED)
-ANGLE = Allowed("a rotation angle", ("coordinate", "prescribed", "parameter"))
-RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter"))
-VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter"))
+ANGLE = Allowed("a rotation angle", ("coordinate", "prescribed", "parameter", "time"))
+RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter", "time"))
+VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter", "time"))
 POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"), ("abs",))
 DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"), ("abs",))
 FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"), KINKED)

@@ -149,7 +149,7 @@ def inertia_shape(inertia: Inertia) -> list[Shape]:
 
 def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
     """For each body the coordinates that a reader would infer if no body listed its own that it could infer."""
-    declared = {parameter.name for parameter in system.parameters}
+    declared = {"t"} | {parameter.name for parameter in system.parameters}
     declared |= {prescribed.name for prescribed in system.prescribed} | set(system.input_names)
     bare = [
         tuple(dict.fromkeys(name for angle in body.rotation.angles if (name := angle_name(angle)) is not None))

@@ -203,6 +203,7 @@ def angular_velocity(system: System, body: str) -> Vector:
                 spin[axis - 1] = add(spin[axis - 1], multiply(slope, Name(velocity_name(coordinate))))
             for item in system.prescribed:
                 spin[axis - 1] = add(spin[axis - 1], multiply(differentiate(angle, item.name), item.rate))
+            spin[axis - 1] = add(spin[axis - 1], differentiate(angle, "t"))
     return spin[0], spin[1], spin[2]
 
 
