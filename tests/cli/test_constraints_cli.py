@@ -1,0 +1,76 @@
+"""Constraints at the command line: complaints with places and exit code 2, what is refused by name, units."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym_cli.main import main
+
+ROOT = Path(__file__).parents[2]
+
+TEXT = """mbsym: 1
+name: Wheel
+parameters: {m: positive, r: positive}
+bodies:
+  - {name: wheel, attached to: 0, mass: m, rotation: {axes: [3], angles: [phi]}, connection point: [x, y, 0],
+     coordinates: [x, y, phi]}
+constraints:
+  - relation: x = r*phi
+"""
+
+
+def mbsym(*arguments: object) -> Result:
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "wheel.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_contradictions_end_with_2_and_nothing_written(tmp_path: Path) -> None:
+    path = written(tmp_path, TEXT + "  - relation: x = r*phi + 1\n  - relation: y = 0\n")
+    for command in (("run", path, "--out", tmp_path / "out"), ("check", path)):
+        done = mbsym(*command)
+        assert done.exit_code == 2
+        assert done.stderr.count("error[contradictory-constraints]") == 2
+        assert "wheel.yaml:8:5" in done.stderr
+        assert "wheel.yaml:9:5" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_check_counts_coordinates_and_constraints(tmp_path: Path) -> None:
+    done = mbsym("check", written(tmp_path, TEXT))
+    assert done.exit_code == 0
+    assert "3 coordinates and 1 constraint" in done.stdout
+    assert "degree" not in done.stdout
+
+
+@pytest.mark.parametrize("command", [("equilibria",), ("floquet",)])
+def test_what_does_not_know_constraints_refuses_by_name(tmp_path: Path, command: tuple[str, ...]) -> None:
+    name, *options = command
+    done = mbsym(name, written(tmp_path, TEXT), *options)
+    assert done.exit_code == 2
+    assert f"error[constraints]: 'mbsym {name}' does not take constraints into account yet" in done.stderr
+    assert "wheel.yaml:8:5" in done.stderr
+
+
+def test_dimensions_of_constraints_are_checked(tmp_path: Path) -> None:
+    path = written(tmp_path, TEXT + "  - relation: x = phi\nunits: {x: m, y: m, r: m, phi: rad, m: kg}\n")
+    done = mbsym("check", path)
+    assert done.exit_code == 2
+    assert "error[dimension]" in done.stderr
+    assert "wheel.yaml:9:" in done.stderr
+    assert "set equal" in done.stderr
+
+
+def test_both_spellings_keep_constraints(tmp_path: Path) -> None:
+    for name in ("four-bar", "rolling-disc"):
+        out = tmp_path / f"{name}.txt"
+        assert mbsym("convert", ROOT / "systems" / f"{name}.yaml", "--out", out).exit_code == 0
+        assert mbsym("check", out).exit_code == 0
+        assert "Constraint description (1)" in out.read_text(encoding="utf-8")
