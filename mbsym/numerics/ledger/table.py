@@ -58,6 +58,10 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
     LEFT_OUT: measured.simpler_model,
 }
 
+#: Those that hold whatever constraints there are, and in any speeds: the others take the system for an open tree whose
+#: velocities are those of its coordinates (no momentum is constant merely because L does not hold its coordinate).
+OF_ANY_SYSTEM = frozenset((MASSLESS, POINTS, AXES, TURNS, ENTRIES, SUBSYSTEMS, NOT_ASKED))
+
 
 def ledger(analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> Ledger:
     """What this run left out, why that is safe, and what it saved; call it when the run itself is over.
@@ -68,7 +72,10 @@ def ledger(analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = 
     work = Work(analysis, seconds, wanted)
     found: list[Saving] = []
     unmeasured = []
+    tied = bool(analysis.system.constraints or analysis.system.speeds)
     for kind, savings in KINDS.items():
+        if tied and kind not in OF_ANY_SYSTEM:
+            continue
         try:
             found += [saving for saving in savings(work) if saving.saves]
         except OutOfTime:

@@ -1,0 +1,27 @@
+"""The ledger of systems with constraints or speeds says nothing that holds of open trees alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import mbsym
+from mbsym.numerics.kinds import CYCLIC
+from mbsym.numerics.ledger.table import OF_ANY_SYSTEM, ledger
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+
+
+@pytest.mark.parametrize("name", ["rolling-disc", "four-bar", "gyrostat-poisson"])
+def test_no_momentum_is_called_constant_because_a_coordinate_is_not_in_the_lagrangian(name: str) -> None:
+    """Rolling acts on x, y and spin; the loop on q1, which does not occur in T either."""
+    analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+    kinds = {saving.kind for saving in ledger(analysis).savings}
+    assert CYCLIC not in kinds
+    assert kinds <= OF_ANY_SYSTEM
+
+
+def test_it_is_said_of_an_open_tree() -> None:
+    kinds = {saving.kind for saving in ledger(mbsym.load(SYSTEMS / "spherical-pendulum.yaml")).savings}
+    assert CYCLIC in kinds
