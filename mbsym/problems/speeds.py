@@ -24,7 +24,7 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import KINDS, force_function
+from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
@@ -100,7 +100,7 @@ def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
     ring, loads = form.ring, scene.system.loads
     kane = Kane(form, scene)
     needed, supplied = kane.inertia(), kane.active(loads)
-    others = kane.active([load for load in loads if KINDS[type(load)].force_function is None])
+    others = kane.active([load for load in loads if not load.conservative])
     still = {u.rate_index: ring.zero for u in form.speeds}
     forcing = [ring.reduce(b - ring.substitute(a, still)) for a, b in zip(needed, supplied, strict=True)]
     mass = [[a.derivative(u.rate_index) for u in form.speeds] for a in needed]
