@@ -13,8 +13,8 @@ What the run cannot tell apart is not told apart.  A step is wrong by about tol 
     blur = tol sum_i |dg/dx_i| (1 + |x_i|)        (and by the rounding of t, eps |t dg/dt|);
 
 g has passed zero when it has left the blur on the other side, and *touches* zero where it comes back on the same side.
-Where it comes to zero and stays there to the end, as friction brings a motion to rest,
-it has come down or up to it.  A touch may be two passages or none; it is recorded with direction 0 for events in both directions, and stops nothing.
+Where it comes to zero and stays there to the end, as friction brings a motion to rest, it has come down or up to it.
+A touch may be two passages or none; it is recorded with direction 0 for events in both directions, and stops nothing.
 """
 
 from __future__ import annotations
