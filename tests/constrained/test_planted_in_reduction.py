@@ -1,0 +1,63 @@
+"""Mistakes planted where constrained systems are expanded: the multipliers of the self-check find each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import mbsym
+from mbsym.mechanics.constraints import expansion, perturbed
+from mbsym.problems.checks import FAILED
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+
+
+def _without_slopes(original: Callable[..., Any]) -> Callable[..., Any]:
+    """Y_x forgotten: only J on the motion is used."""
+    return lambda *_: {}
+
+
+def _without_rates(original: Callable[..., Any]) -> Callable[..., Any]:
+    """J' q' forgotten: what accelerations take from velocities."""
+
+    def wrong(scene: Any, row: Any, key: str, places: range, forms: Any) -> Any:
+        return {} if key == "h" and places.start > 0 else original(scene, row, key, places, forms)
+
+    return wrong
+
+
+def _one_sign(original: Callable[..., Any]) -> Callable[..., Any]:
+    """The dependent deviations with the other sign."""
+    return lambda form: form
+
+
+MISTAKES = [
+    ("bicycle", expansion, "_bent", _without_slopes),
+    ("cartesian-pendulum", expansion, "_bent", _without_slopes),
+    ("bicycle", expansion, "_substituted", _without_rates),
+    ("rolling-disc", expansion, "_negative", _one_sign),
+    ("bicycle", expansion, "_negative", _one_sign),
+]
+
+
+@pytest.mark.parametrize(("name", "module", "function", "mistake"), MISTAKES)
+def test_a_mistake_is_found(
+    monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str, mistake: Callable[..., Any]
+) -> None:
+    monkeypatch.setattr(module, function, mistake(getattr(module, function)))
+    analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+    found = analysis.check("perturbed motion")
+    assert found is not None
+    assert found.outcome == FAILED
+
+
+def test_forces_of_the_constraints_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sign of the projected forcing: problem 4's own check is the one that finds it, where there is any force."""
+    original = perturbed._dot
+    monkeypatch.setattr(perturbed, "_dot", lambda scene, u, v: original(scene, u, v) + scene.ring.one)
+    analysis = mbsym.load(SYSTEMS / "cartesian-pendulum.yaml")
+    with pytest.raises(mbsym.analysis.Unavailable):
+        _ = analysis.equilibrium
