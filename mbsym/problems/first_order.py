@@ -51,6 +51,8 @@ class FirstOrder(Shown):
 def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilibrium) -> FirstOrder:
     """A in closed form.  Raises NoClosedForm where the motion does not exist, or is not steady in these variables."""
     ring = form.ring
+    if form.system.inputs:
+        raise NoClosedForm("inputs: x' = A x + B v is derived in coordinates only")
     if equilibrium.impossible:
         raise NoClosedForm("the given motion does not exist")
     variables = _variables(form, equations)

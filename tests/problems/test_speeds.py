@@ -297,3 +297,33 @@ def test_a_planted_mistake_in_the_program_is_found(tmp_path, monkeypatch):
     found = load(tmp_path, GYROSTAT.format(told=POISSON))
     assert found.stage(3).failure is None
     assert found.check("straight-line program").outcome == FAILED
+
+
+INPUT = """
+mbsym: 1
+name: A torque along an axis of the body
+parameters: {A: positive, B: positive, C: positive}
+inputs: {M1: {meaning: torque}}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}
+    mass: 0
+    inertia about: joint
+    inertia: [A, B, C]
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: {gamma: 3}
+loads:
+  - torque: {body: body, components: [M1, 0, 0], axes: body}
+motion: {theta: {value: pi/4}}
+"""
+
+
+def test_an_input_is_supplied_and_conserves_nothing(tmp_path):
+    """A p' + (C - B) q r = M1; no energy, no momentum; x' = A x alone would hide what the input does."""
+    found = load(tmp_path, INPUT)
+    assert list(found.equations.supplied) == expected(found, ["M1", "0", "0"])
+    assert found.equations.kinematic == []
+    assert found.integrals == ()
+    assert "inputs" in found.stage_of("first_order").failure.reason
+    assert [found.check(name).outcome for name in CHECKED] == [EXACT] * 4

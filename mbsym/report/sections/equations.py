@@ -121,7 +121,8 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     n = len(found.forcing)
     if found.in_speeds:
         own = cast("SpeedEquations", found)
-        yield f"Kane's equations in {', '.join(own.speeds)}; with {', '.join(name for name, _ in own.kinematic)}"
+        others = ", ".join(name for name, _ in own.kinematic)
+        yield f"Kane's equations in {', '.join(own.speeds)}" + (f"; with {others}" if others else "")
     terms = sum(x.terms for x in found.forcing)
     size = counted(found.mass_matrix.terms, "term")
     yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
