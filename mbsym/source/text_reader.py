@@ -20,10 +20,6 @@ from mbsym.source.labels import (
     ASSUMPTIONS,
     BETWEEN,
     BODY,
-    CONSTRAINT_BODIES,
-    CONSTRAINT_TYPE,
-    CONSTRAINT_VECTORS,
-    ENDS,
     HEADER,
     LOAD_BODIES,
     LOAD_EXPRESSION,
@@ -44,7 +40,7 @@ def read_text(text: str, complaints: Complaints) -> Node | None:
     if not lines:
         complaints.error("empty", "there is no description in this file")
         return None
-    return _TextReader(complaints).document(lines)
+    return TextReader(complaints).document(lines)
 
 
 @dataclass(slots=True)
@@ -55,7 +51,7 @@ class _Block:
     lines: list[Scalar] = field(default_factory=list)
 
 
-class _TextReader:
+class TextReader:
     """Blocks to entries of the top-level mapping."""
 
     def __init__(self, complaints: Complaints) -> None:
@@ -345,43 +341,11 @@ class _TextReader:
         """The blocks ``Constraint description (1)``, ... as a list of {kind: data}."""
         found = [block for block in blocks if self.kind(block) == "constraint"]
         self.check_numbers(found)
-        return _list_entry("constraints", found, self.constraint)
+        if not found:
+            return []
+        from mbsym.source.text_constraints import constraint  # few texts have any
 
-    def constraint(self, block: _Block) -> Mapping | None:
-        found = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
-        kinds = [value for label, value in found if word_of(label.text) == CONSTRAINT_TYPE]
-        if len(kinds) != 1:
-            how = "no 'Type of constraint'" if not kinds else "a second 'Type of constraint'"
-            place = block.heading.span if not kinds else kinds[1].span
-            self.error("missing-key" if not kinds else "repeated-key", f"this constraint has {how}", place)
-            return None
-        data = [(label, value) for label, value in found if word_of(label.text) != CONSTRAINT_TYPE]
-        return Mapping((Entry(kinds[0], self.constraint_data(kinds[0], data)),), block.heading.span)
-
-    def constraint_data(self, kind: Scalar, data: list[tuple[Scalar, Scalar]]) -> Node:
-        """An equation, a pair of ends, or a record that may hold a pair as its ``between``."""
-        if len(data) == 1 and word_of(data[0][0].text) == LOAD_EXPRESSION:
-            return data[0][1]
-        entries: list[Entry] = []
-        ends: tuple[list[Entry], list[Entry]] = ([], [])
-        for label, value in data:
-            word = word_of(label.text)
-            node: Node = value
-            if word in CONSTRAINT_BODIES:
-                node = self.body_reference(value)
-            elif word in CONSTRAINT_VECTORS:
-                node = self.items(value)
-            if word in ENDS:
-                which, key = ENDS[word]
-                ends[which].append(Entry(_key(label, key), node))
-            else:
-                entries.append(Entry(_key(label, word), node))
-        pair = Sequence(tuple(Mapping(tuple(x), x[0].key.span if x else kind.span) for x in ends), kind.span)
-        if any(ends) and not entries:
-            return pair
-        if any(ends):
-            entries.append(Entry(Scalar("between", kind.span, literal=False), pair))
-        return Mapping(tuple(entries), kind.span)
+        return _list_entry("constraints", found, lambda block: constraint(self, block.heading, block.lines))
 
     def claim(self, block: _Block) -> Mapping:
         """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
