@@ -99,7 +99,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         source=fields.text("source"),
         symbols=read_symbols(fields.get("latex"), reading),
         language=_language(fields, reading),
-        order=_order(fields, reading),
+        order=_coordinates(fields, "order", "an order of coordinates", reading),
         constraints=constraints,
         dependent=dependent,
         reactions=_reactions(fields, [body.name for body in bodies], reading),
@@ -127,10 +127,10 @@ def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[t
     node, dependent = fields.get("constraints"), fields.get("dependent")
     if node is None and dependent is None:
         return (), ()
-    from mbsym.source.constraints import read_constraints, read_dependent
+    from mbsym.source.constraints import read_constraints
 
     found = read_constraints(node, bodies, reading)
-    named = read_dependent(dependent, reading)
+    named = _coordinates(fields, "dependent", "a dependent coordinate", reading)
     if dependent is not None and node is None:
         message = "nothing depends on anything: there are no 'constraints'"
         reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
@@ -159,11 +159,11 @@ def _language(fields: Fields, reading: Reading) -> str:
     return "" if node is None else reading.word(node, "'language'", LANGUAGES) or ""
 
 
-def _order(fields: Fields, reading: Reading) -> tuple[str, ...]:
-    node = fields.get("order")
-    allowed = Allowed("an order of coordinates", ("coordinate",))
+def _coordinates(fields: Fields, key: str, what: str, reading: Reading) -> tuple[str, ...]:
+    """A list of coordinates, none twice."""
+    node, allowed = fields.get(key), Allowed(what, ("coordinate",))
     found: list[str] = []
-    for item in () if node is None else reading.items(node, "'order'"):
+    for item in () if node is None else reading.items(node, f"'{key}'"):
         scalar = reading.scalar(item, "a coordinate")
         if scalar is None or not reading.scope.check_name(scalar.text, scalar.span, allowed):
             continue

@@ -229,20 +229,6 @@ def _called(body: str) -> str:
     return "the inertial frame" if body == INERTIAL else f"'{body}'"
 
 
-def read_dependent(node: Node | None, reading: Reading) -> tuple[str, ...]:
-    """The coordinates that are to be expressed by the others."""
-    allowed = Allowed("a dependent coordinate", ("coordinate",))
-    found: list[str] = []
-    for item in () if node is None else reading.items(node, "'dependent'"):
-        scalar = reading.scalar(item, "a coordinate")
-        if scalar is None or not reading.scope.check_name(scalar.text, scalar.span, allowed):
-            continue
-        if scalar.text in found:
-            reading.error("repeated-key", f"{ascii_safe(scalar.text)} is given twice", scalar.span)
-        found.append(scalar.text)
-    return tuple(found)
-
-
 _READERS: dict[str, Callable[[_One], Constraint | None]] = {
     "coincide": _coincide,
     "parallel": _parallel,
