@@ -40,6 +40,7 @@ from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
 from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.latex_description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 from mbsym.report.sections.stability import root_text
@@ -77,7 +78,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "speed": lambda name: speed(name, names),
         "speed_form": lambda one: speed_form(one, names, [body.name for body in system.bodies].index(one.body) + 1),
         "expression": lambda value: expression(value, names),
-        "points": lambda value: Markup(", ".join(shown.math(point_of_table(x, y, names)) for x, y in value)),
+        "points": lambda value: Markup(
+            _points([shown.math(point_of_table(x, y, names)) for x, y in shown_points(value)], len(value))
+        ),
         "vector": lambda values: Markup(shown.row([expression(x, names) for x in values])),
         "tensor": lambda rows: Markup(shown.table([[expression(x, names) for x in line] for line in rows])),
         "printed": lambda value: expression(value, printed),
@@ -260,3 +263,9 @@ def _code(analysis: Analysis) -> list[str] | None:
     lines = [f"{name} = {text}" for name, text in body.assignments]
     lines += [f"M[{i + 1}, {j + 1}] = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
     return lines + [f"f[{i + 1}] = {text}" for i, text in enumerate(body.results[len(upper) :])]
+
+
+def _points(written: list[str], count: int) -> str:
+    """The points of a table; of many the first and the last."""
+    half = len(written) // 2
+    return ", ".join(written if len(written) == count else [*written[:half], "\u2026", *written[half:]])
