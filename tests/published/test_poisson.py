@@ -7,6 +7,9 @@ import pytest
 from conftest import SHIPPED, reference
 
 import mbsym
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.formulas.formula import Formula
 from mbsym.problems.checks import EXACT
 
 FREE = """
@@ -73,3 +76,46 @@ def test_without_an_orientation_of_its_own_the_trajectory_holds_speeds_alone() -
     assert np.allclose(run["w3"], 1.0)
     with pytest.raises(KeyError):
         run["gamma1"]
+
+
+PANES = """
+mbsym: 1
+name: Two particles between rotating panes
+parameters: {m1: positive, m2: positive, L: positive, g: positive, omega: positive}
+prescribed: {chi: {rate: omega}}
+bodies:
+  - {name: panes, attached to: 0, rotation: {axes: [2], angles: [chi]}, mass: 0}
+  - name: first
+    attached to: panes
+    rotation: {axes: [3], angles: [q3]}
+    connection point: [q1, q2, 0]
+    coordinates: [q1, q2, q3]
+    mass: m1
+    speeds: {u1: q1_dot*cos(q3) + q2_dot*sin(q3), u2: q2_dot*cos(q3) - q1_dot*sin(q3)}
+  - {name: second, attached to: first, mass: m2, mass centre: [L, 0, 0]}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+"""
+
+
+def test_kane_and_levinsons_particles_between_rotating_panes() -> None:
+    """Dynamics: Theory and Applications (1985), exercise 11.1: u1', u2', u3' as the book answers."""
+    (exercise,) = [x for x in reference("kane_levinson_expressions")["reference"]["items"] if x["ex"] == "11.1"]
+    analysis = mbsym.loads(PANES)
+    equations = analysis.equations
+    assert equations.speeds == ("u1", "u2", "q3_dot")
+    book = []
+    for answer in exercise["answer"]:
+        text = answer.partition("=")[2].replace("^", "**").replace("sin q3", "sin(q3)").replace("cos q3", "cos(q3)")
+        for old, new in (
+            ("omega**2 q1 cos(q3)", "omega**2*q1*cos(q3)"), ("omega**2 q1 sin(q3)", "omega**2*q1*sin(q3)"),
+            ("omega**2 cos**2 q3", "omega**2*cos(q3)**2"), ("omega**2 sin(q3) cos(q3)", "omega**2*sin(q3)*cos(q3)"),
+            ("g sin", "g*sin"), ("g cos", "g*cos"), ("u2 u3", "u2*u3"), ("u3 u1", "u3*u1"), (") L m2/", ")*L*m2/"),
+        ):  # fmt: skip
+            text = text.replace(old, new)
+        tree = parse_expression(text.replace("u3", "q3_dot"), Complaints(), lambda _start, _end: Span(1, 1))
+        assert tree is not None, text
+        book.append(Formula(analysis.ring, analysis.parameters_scene.lower(tree)))
+    for row, force in zip(equations.mass_matrix, equations.forcing, strict=True):
+        assert sum((entry * rate for entry, rate in zip(row, book, strict=True)), 0 * force) == force
+    assert analysis.check("equations of motion").outcome == EXACT
