@@ -30,7 +30,9 @@ from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
 from mbsym.source.settings import read_comparisons
 
 _CONSTANTS = ("parameter", "notation", "abbreviation")
-_PLACES = ("coordinate", "velocity", "speed", "unit vector", "prescribed", "time", "input", *_CONSTANTS)
+#: An integral of a system with inputs holds none of them: nobody knows how they change.
+_WITHOUT_INPUTS = ("coordinate", "velocity", "speed", "unit vector", "prescribed", "time", *_CONSTANTS)
+_PLACES = (*_WITHOUT_INPUTS, "input")
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
 #: Kinds that are about constants alone.
@@ -44,7 +46,7 @@ _MISSPELT = 0.8
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
     found = []
-    allowed = Allowed("an abbreviation", (*_PLACES, "acceleration"))
+    allowed = Allowed("an abbreviation", (*_WITHOUT_INPUTS, "acceleration"))
     entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
     reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
     for entry in entries:
@@ -187,7 +189,8 @@ class _Reader:
         if self.word.startswith(_CONSTANT_KINDS):
             return Allowed(what, (*_CONSTANTS, *(["variable"] if variable else [])))
         accelerations = ("acceleration",) if self.kind.accelerations else ()
-        return Allowed(what, (*_PLACES, *accelerations))
+        places = _WITHOUT_INPUTS if self.word == "first integral" else _PLACES
+        return Allowed(what, (*places, *accelerations))
 
     def equals(self, variable: str) -> tuple[Expression, str]:
         """The expression; and its text, where it is a decimal number about one state, digits included."""

@@ -23,7 +23,6 @@ from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import constants
 from mbsym.mechanics.variables import ring_environment, ring_of
-from mbsym.model.driven import held
 from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
 from mbsym.numerics.scenario import Incomplete, Scenario, scenario
@@ -72,7 +71,7 @@ class Work:
     def __init__(self, analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> None:
         self.analysis = analysis
         self.wanted = wanted
-        self.system = held(analysis.system)
+        self.system = analysis.system
         self._end = time.perf_counter() + seconds
 
     # --- numbers ---
@@ -206,6 +205,7 @@ class Symbols:
 
     def __init__(self, system: System) -> None:
         moving = (*system.coordinates, *system.velocities, *(item.name for item in system.prescribed))
+        moving = (*moving, *system.input_names)
         self._taken = [*system.parameter_names, *moving, *(item.name for item in system.notation)]
         self.made: list[Parameter] = []
 
@@ -228,7 +228,8 @@ def changed_bodies(system: System, change: Callable[[Body], Body], symbols: Symb
 
 def moving_names(system: System) -> frozenset[str]:
     """Everything that changes with the state or the time."""
-    return frozenset((*system.coordinates, *system.velocities, *(item.name for item in system.prescribed), "t"))
+    driven = (*(item.name for item in system.prescribed), *system.input_names)
+    return frozenset((*system.coordinates, *system.velocities, *driven, "t"))
 
 
 def holds(ring: Ring, x: Polynomial, name: str) -> bool:

@@ -100,7 +100,8 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     if claim.right is not None:
         return examined_condition(derived, claim, about)
     symbols = Symbols.of(derived)
-    claimed = symbols.polynomial(derived.parameters_scene, claim)
+    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":
         return examined_integral(derived, claim, about, in_parameters(derived, claimed))
     return examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))

@@ -321,6 +321,7 @@ def rate_at_states(
                 chosen[velocity_name(name)] = Fraction(source.choice((-1, 1)) * source.randint(1, 6), 2)
                 if positive is not None and name not in positive:
                     chosen[name] *= 3 * source.choice((-1, 1))
+            chosen |= {name: Fraction(source.randint(1, 6), 2) for name in system.input_names}
             chosen |= {name: -abs(chosen[name]) for name in negative if name in chosen}
             try:
                 values = _state(system, chosen)

@@ -42,7 +42,7 @@ def is_moving(derived: Derived, x: Polynomial) -> bool:
     degrees = x.degrees()
     if any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind in _MOTION):
         return True
-    prescribed = (item.name for item in derived.system.prescribed)
+    prescribed = (*(item.name for item in derived.system.prescribed), *derived.system.input_names)
     return bool(ring.dependencies(x, [*derived.system.coordinates, *derived.system.velocities, *prescribed, "t"]))
 
 
