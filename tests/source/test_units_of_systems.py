@@ -40,7 +40,18 @@ TETHER = {
 }
 FIXED = {"g": "m/s^2", "x0": "m", "y0": "m", "z0": "m", "lx": "N*m*s", "lz": "kg*m^2/s"}
 SMALL = dict.fromkeys(("epsilon", "delta1", "delta2"), "1")
+BICYCLE = {
+    **dict.fromkeys(("w", "c", "rR", "rF", "xB", "zB", "xH", "zH"), "m"),
+    **dict.fromkeys(("mR", "mB", "mH", "mF"), "kg"),
+    **dict.fromkeys(("IRxx", "IRyy", "IBxx", "IByy", "IBzz", "IBxz"), MOMENTS),
+    **dict.fromkeys(("IHxx", "IHyy", "IHzz", "IHxz", "IFxx", "IFyy"), MOMENTS),
+    "g": "m/s^2",
+    "v": "m/s",
+    "lam": "rad",
+    "roll": "rad",
+}
 UNITS = {
+    "bicycle": BICYCLE,
     "cart-pendulum": {"m0": "kg", "m1": "kg", "l0": "m", "l1": "m", "g": "m/s^2", "F": "N", "x": "m", "q1": "rad"},
     "cart-pole": {"M": "kg", "m": "kg", "J": MOMENTS, "l": "m", "c": "N*s/m", "gamma": "N*m*s", "F": "N", "p": "m"},
     "cartesian-pendulum": {"m": "kg", "L": "m", "g": "m/s^2", "x": "m", "y": "m"},
