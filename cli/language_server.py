@@ -47,10 +47,11 @@ class Server(LanguageServer):
         """Reads a document and publishes what there is to complain about."""
         document = self.workspace.get_text_document(uri)
         text = document.source
-        name = Path(unquote(urlsplit(uri).path)).name
+        parts = urlsplit(uri)
+        path = Path(unquote(parts.path))
         found: list[types.Diagnostic] = []
         if says_so(text):
-            system, complaints = read(text, name)
+            system, complaints = read(text, path.name, path.parent if parts.scheme == "file" else None)
             if system is not None and (uri not in self.seen or self.seen[uri].system != system):
                 self.seen[uri] = Seen(system, Analysis(system))
             lines = text.splitlines()

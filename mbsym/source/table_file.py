@@ -43,8 +43,8 @@ class Rows:
 def read_points(folder: Path | None, file: str, columns: tuple[str, str]) -> Rows:
     """The points in two columns, by their names or numbers from 1 on, of a file in a folder."""
     if folder is None:
-        hint = "write the points into the description, or give mbsym the description as a file"
-        return _refused("a description that is no file has no files beside it", hint)
+        hint = "give mbsym this description as a file of its own, or write the points into it"
+        return _refused("files beside a description are read with it only: not in a batch, nor beside a text", hint)
     wanted = PurePosixPath(file)
     if wanted.is_absolute() or ".." in wanted.parts or "\\" in file or ":" in file:
         return _refused("a file of points stands beside the description, or in a folder below", "as in data/wind.csv")
