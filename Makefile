@@ -80,6 +80,7 @@ consumers: $(READY)
 bench: robot-data
 	$(BIN)/python tests/bench/run.py
 	$(BIN)/python tests/bench/rows_bench.py
+	$(BIN)/python tests/bench/loops_bench.py
 
 # What can be made again; reports are the user's.
 clean:

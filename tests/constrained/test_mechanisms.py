@@ -145,6 +145,29 @@ def test_a_branch_that_does_not_fit_is_refused(monkeypatch: pytest.MonkeyPatch) 
     assert found.ended.kind == SINGULAR_CONSTRAINTS
 
 
+def test_bricard_moves_though_a_count_of_its_rows_says_that_it_cannot() -> None:
+    """Five angles and five rows, one of which follows from the others: one freedom (Baker, Mech. Mach. Theory, 1980).
+
+    Its trihedral form with right angles keeps  cos A + cos B + cos A cos B = 0  between neighbouring hinges, and every
+    second hinge turns alike; here A = pi/2 - a1, B = pi/2 + a2.
+    """
+    found = simulate(shipped("bricard"), Request(10.0, tolerance=1e-12, samples=201))
+    known = found.dynamics.constraints
+    assert known is not None
+    assert (len(known), len(known.redundant), known.freedom) == (5, 1, 1)
+    a = [found[f"a{k}"] for k in range(1, 6)]
+    assert np.max(np.abs(a[0])) > 1
+    one, two = np.sin(a[0]), -np.sin(a[1])
+    assert np.max(np.abs(one + two + one * two)) < 1e-13
+    assert np.max(np.abs(a[0] + a[2])) < 1e-12
+    assert np.max(np.abs(a[1] + a[3])) < 1e-12
+    assert np.max(np.abs(a[0] + a[4])) < 1e-12
+    assert found.drift is not None
+    assert max(found.drift.largest) < 1e-13  # of the row that is left out, too
+    assert found.conservation.standing is Standing.PROVED
+    assert found.conservation.change < 1e-10
+
+
 # --- the shape of SUNDIALS' table ---
 
 

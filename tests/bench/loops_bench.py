@@ -1,0 +1,120 @@
+"""Closed loops of the IFToMM library: error against references, seconds, and what others published.
+
+    python tests/bench/loops_bench.py [--large]
+
+Each problem at the loosest tolerance of dop853 (decades) with which the error at the end is within the target.  Seconds
+are processor time of the run alone, median of some, and of everything before it: reading, equations, machine code.
+Published times are from other machines, and at errors that their authors did not all state: they show orders of
+magnitude, nothing else.  ``--large`` adds forty four-bars, whose machine code takes a minute.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS / "constrained"))
+
+from test_mechanisms import ANGLES, chain, described, four_bars, reference, shipped  # noqa: E402
+
+from mbsym.numerics.closing import closed  # noqa: E402
+from mbsym.numerics.dynamics import Dynamics  # noqa: E402
+from mbsym.numerics.methods.interface import Setting  # noqa: E402
+from mbsym.numerics.methods.table import METHODS  # noqa: E402
+from mbsym.numerics.scenario import Scenario  # noqa: E402
+
+REPEATS = 5
+
+
+@dataclass(frozen=True)
+class Problem:
+    """``wrong`` is the error of the states at ``end``; ``published`` what others say they need, and who."""
+
+    name: str
+    made: Callable[[], Scenario]
+    end: float
+    target: float
+    wrong: Callable[[Dynamics, Any], float]
+    published: str = ""
+
+
+def bob(dynamics: Dynamics, state: Any) -> float:
+    truth = [float(x) for x in reference("iftomm_a01_pendulum")["reference"]["xy"]["10"]]
+    return float(np.max(np.abs(state[:2] - truth)))
+
+
+def first_bar(truth: tuple[float, float]) -> Callable[[Dynamics, Any], float]:
+    def wrong(dynamics: Dynamics, state: Any) -> float:
+        angle = state[dynamics.system.coordinates.index("th0")]
+        return float(np.max(np.abs(np.array([-np.sin(angle), np.cos(angle)]) - truth)))
+
+    return wrong
+
+
+def squeezed(dynamics: Dynamics, state: Any) -> float:
+    truth = reference("andrews_squeezer")["reference"]["recomputed_t003"]["q"]
+    names = dynamics.system.coordinates
+    return max(abs(float(state[names.index(name)]) - float(x)) for name, x in zip(ANGLES, truth, strict=True))
+
+
+def by_one_angle(number: int, end: float) -> tuple[float, float]:
+    """B0 of ``number`` four-bars at ``end``: they move as one pendulum, I th'' = G sin th, th'(0) = 1."""
+    from scipy.integrate import solve_ivp
+
+    inertia, weight = (number + 1) / 3 + number, ((number + 1) / 2 + number) * 9.81
+    run = solve_ivp(
+        lambda t, x: [x[1], weight / inertia * np.sin(x[0])], (0, end), [0, 1], "DOP853", rtol=3e-14, atol=1e-15
+    )
+    return float(np.sin(run.y[0, -1])), float(np.cos(run.y[0, -1]))
+
+
+PENDULUM = chain(1).replace("initial: {x0: 1", "initial: {x0: -1")
+
+
+def problems(large: bool) -> Iterator[Problem]:
+    yield Problem("A01 pendulum, Cartesian", lambda: described(PENDULUM), 10.0, 1e-6, bob)
+    x, y = (float(value) for value in reference("iftomm_a02_n_four_bar")["reference"]["recomputed"]["N=2"]["10"])
+    told = "OpenSim 3.2: 0.455 s (i5-4570)"
+    for target in (1e-3, 1e-6, 1e-9):
+        yield Problem("A02 two four-bars", lambda: described(four_bars(2)), 10.0, target, first_bar((x, y)), told)
+    if large:
+        wrong = first_bar(by_one_angle(40, 20.0))
+        yield Problem("A02 forty four-bars", lambda: described(four_bars(40)), 20.0, 1e-3, wrong)
+    for target in (1e-4, 1e-8, 1e-12):
+        yield Problem("A03 Andrews' squeezer", lambda: shipped("andrews-squeezer"), 0.03, target, squeezed)
+
+
+def measured(problem: Problem) -> str:
+    begun = time.process_time()
+    dynamics = Dynamics(closed(problem.made()).scenario)
+    for power in range(-3, -15, -1):
+        run = METHODS["dop853"].start(dynamics, Setting(tolerance=10.0**power))
+        if power == -3:
+            before = time.process_time() - begun
+        error = problem.wrong(dynamics, run.advance(problem.end))
+        if error <= problem.target:
+            break
+    spent = []
+    for _ in range(REPEATS):
+        run = METHODS["dop853"].start(dynamics, Setting(tolerance=10.0**power))
+        started = time.process_time()
+        run.advance(problem.end)
+        spent.append(time.process_time() - started)
+    told = f"tolerance 1e{power}, error {error:.1e}, {run.work.steps} steps, {np.median(spent) * 1e3:.3g} ms"
+    return f"{problem.name}: {told} (before: {before:.2f} s)" + (f"; {problem.published}" if problem.published else "")
+
+
+def main() -> None:
+    for problem in problems("--large" in sys.argv[1:]):
+        print(measured(problem), flush=True)
+
+
+if __name__ == "__main__":
+    main()
