@@ -26,7 +26,8 @@ from flint import arb, ctx, fmpq, fmpq_mat
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.zero_sets import UNDECIDED, Zero, Zeros, ZeroSet, zero_sets
+from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
+from mbsym.algebra.zero_sets import zero_sets
 from mbsym.expressions.angles import linear_form
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.kinematics import Scene
