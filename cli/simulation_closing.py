@@ -125,3 +125,16 @@ def begun_from(file: Path, given: Scenario, with_models: bool) -> Scenario | int
     if with_models:
         complain(file, "note: simpler models are not compared: with constraints they would begin elsewhere")
     return found.scenario
+
+
+def begun_at(given: Scenario | None, request: Request) -> Scenario | None:
+    """With the initial state that a run takes; what was given where there is an answer to that question only later."""
+    if given is None or not given.system.constraints or request.earlier is None:
+        return given
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.closing import closed
+
+    try:
+        return closed(given, request.fixed).scenario
+    except Failure:
+        return given

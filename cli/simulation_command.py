@@ -14,7 +14,7 @@ from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_choice import with_goal
-from mbsym_cli.simulation_closing import check_constrained
+from mbsym_cli.simulation_closing import begun_at, check_constrained
 from mbsym_cli.simulation_continue import going_on
 from mbsym_cli.simulation_inputs import read_laws
 from mbsym_cli.simulation_many import Many, read_many
@@ -46,7 +46,7 @@ def simulated(
     wanted = read_request(system, texts, flags, asked)
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, system, asked))
-    wanted = replace(wanted, request=going_on(wanted.request, given, typed, asked))
+    wanted = replace(wanted, request=going_on(wanted.request, begun_at(given, wanted.request), typed, asked))
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, typed, asked)
     wanted = with_goal(further["choosing"], system, wanted, settings, typed, carried(context), asked)

@@ -283,6 +283,19 @@ def test_coordinates_called_dependent_are_fitted_to_the_others() -> None:
     )
 
 
+def test_a_run_goes_on_from_the_state_that_it_began_with(tmp_path: Path) -> None:
+    """That is not the one in the description, and is found again."""
+    text = PENDULUM.replace("3/5", "1/2")
+    assert called(tmp_path, text).exit_code == 0
+    earlier = tmp_path / "out" / "simulation.json"
+    words = ["simulate", tmp_path / "s.yaml", "--time", 2, "--out", tmp_path / "on", "-f", "csv", "--continue", earlier]
+    result = CliRunner().invoke(main, [str(word) for word in words])
+    assert result.exit_code == 0, result.output
+    last = (tmp_path / "on" / "trajectory.csv").read_text().splitlines()[-1].split(",")
+    assert float(last[0]) == 2
+    assert float(last[1]) ** 2 + float(last[2]) ** 2 == pytest.approx(1, abs=1e-13)
+
+
 def test_tradeoff_tells_from_where_it_begins_and_what_does_not_apply(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(PENDULUM.replace("3/5", "1/2"), encoding="utf-8")
     words = ["tradeoff", tmp_path / "s.yaml", "--time", 2, "--budget", 6, "--out", tmp_path / "out", "--methods"]
