@@ -14,7 +14,8 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
   So a damped part beside an undamped one is stable if both have K > 0 and **one energy** of both does not grow, which
   is to be said (``one_energy``); if stability of the damped part rests on its roots alone, nothing covers both, and
   the whole is critical.
-* UNDAMPED: a part that gyroscopic forces stabilise, beside others without dissipation.
+* UNDAMPED: a part that gyroscopic forces stabilise, beside others without dissipation; K of the whole is not positive
+  definite if that of one part is not (``INDEFINITE``), and then the whole is stabilised by these forces only.
 * IDLE: nothing but constant momenta, which every other statement survives (they are parameters).
 """
 
@@ -36,6 +37,7 @@ class Flaw(Enum):
     CYCLIC = auto()  # cyclic coordinates may drift
     TURNED = auto()  # a turned spin does not come back
     STEADY = auto()  # a disturbed steady motion may tend to another one of its family
+    INDEFINITE = auto()  # what is bounded without dissipation is so by gyroscopic forces: K is not positive definite
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
     UNSTABLE = auto()
@@ -72,7 +74,7 @@ LAW = (
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
-    Row(Word.GYROSCOPIC, Ground.UNDAMPED),
+    Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
 
@@ -84,7 +86,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
     Word.ASYMPTOTIC_BUT_STEADY: ({Ground.DECAYS}, {Flaw.STEADY}),
     Word.STABLE: ({Ground.ENERGY, Ground.UNDAMPED}, set()),
     Word.STABLE_BUT_CYCLIC: ({Ground.ENERGY, Ground.UNDAMPED}, {Flaw.CYCLIC}),
-    Word.GYROSCOPIC: ({Ground.UNDAMPED}, set()),
+    Word.GYROSCOPIC: ({Ground.UNDAMPED}, {Flaw.INDEFINITE}),
     Word.CRITICAL: (set(), set()),
     Word.UNDECIDED: (set(), {Flaw.OPEN}),
     Word.DEPENDS: (set(), {Flaw.DEPENDS}),
@@ -198,14 +200,15 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     every = implied(shown)
     if not grounds and Fact.BOUNDED not in every:
         return undecided(why_not)
-    gyroscopic = Fact.STIFFNESS_POSITIVE not in every or Ground.ENERGY in grounds
-    if gyroscopic and every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.MASS_POSITIVE}:
+    if every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.MASS_POSITIVE}:
         grounds[Ground.UNDAMPED] = ()
     flaws = {Flaw.TURNED} if Fact.LEFT_BUT_TURNED in every else set()
     if Fact.LEFT_BUT_STEADY in every:
         flaws.add(Flaw.STEADY)
     if flaws:  # the energy of a free spin has its minimum at given angular momentum only
         grounds = {ground: names for ground, names in grounds.items() if ground is Ground.DECAYS}
+    if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and Fact.STIFFNESS_POSITIVE not in every:
+        flaws.add(Flaw.INDEFINITE)
     row = row_of({*grounds}, flaws)
     theorem = found.get(row.ground)
     told = reasons or ((reason_of(theorem),) if theorem is not None else ())

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from flint import fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
 import mbsym
@@ -275,6 +275,12 @@ def test_combined_verdicts_against_counted_roots(parts: list[Block], known: bool
         assert energy
 
 
+#: K > 0 of which no energy is known, beside a part that gyroscopic forces stabilise.
+LASTING = Block([[1]], [[0]], [[0]], [[1]], [[0]])
+GYRO = Block([[1, 0], [0, 1]], [[0, 0], [0, 0]], [[0, 3], [-3, 0]], [[-1, 0], [0, -1]], [[0, 0], [0, 0]])
+
+
+@example(parts=[LASTING, GYRO], known=False)
 @given(parts=st.lists(blocks(), min_size=2, max_size=3), known=st.booleans())
 @settings(max_examples=300, deadline=None)
 def test_parts_and_whole_are_judged_alike(parts: list[Block], known: bool) -> None:
