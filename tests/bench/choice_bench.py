@@ -2,7 +2,7 @@
 
     python tests/bench/choice_bench.py [scene ...]
 
-The plan's setting and a ladder of all other methods, arithmetics and tolerances (third of a decade) or steps (factors
+The plan's setting and a ladder of methods (midpoint rules and SciPy's explicit ones apart), arithmetics and tolerances (third of a decade) or steps (factors
 of sqrt 2) are run over the whole time, in one process, interleaved; the cheapest of those whose true error reaches the
 target is what the plan is held against:
 
@@ -100,8 +100,7 @@ def scene_of(name: str) -> Scene:
 def outcome(name: str, target: float, say: Callable[[str], None] = lambda text: None) -> Outcome:
     """One scene at one target.
 
-    The rivals integrate the equations as they were described, the plan's those of its model and without what rests: a
-    better model is a part of the choice.
+    All integrate the plan's equations, without what rests: methods and settings are compared, not models.
     """
     scene = scene_of(name)
     given = scenario(mbsym.loads(scene.text).system)
