@@ -2,9 +2,9 @@
 
     python tests/bench/choice_bench.py [scene ...]
 
-The plan's setting and a ladder of methods (midpoint rules and SciPy's explicit ones apart), arithmetics and tolerances
-(third of a decade) or steps (factors of sqrt 2) are run over the whole time, in one process, interleaved; the cheapest of those whose true error reaches the
-target is what the plan is held against:
+The plan's setting and a ladder of methods (midpoint rules and SciPy's explicit ones apart), arithmetics and
+tolerances (third of a decade) or steps (factors of sqrt 2) are run over the whole time, in one process, interleaved;
+the cheapest of those whose true error reaches the target is what the plan is held against:
 
     ratio = processor time of the plan's setting / that of the cheapest other one
 
