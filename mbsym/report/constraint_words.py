@@ -60,10 +60,11 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
         rows = "; ".join(label(name, write) for name, decided in found.alone if decided is whole)
         if rows and len(found.alone) > 1:  # of one alone it has been said
             yield sentence, {"rows": rows}
-    yield (
-        "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
-        {"dependent": write.names(found.dependent), "free": write.names(found.free)},
-    )
+    if found.dependent and found.free:
+        yield (
+            "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
+            {"dependent": write.names(found.dependent), "free": write.names(found.free)},
+        )
 
 
 def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
@@ -85,8 +86,8 @@ def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
         yield "This holds where [[value]].", {"value": write.nonzero(value)}
     if not found.holonomic:
         yield (
-            "Velocities are constrained besides coordinates, so D, G, K and N are no more than the symmetric and skew "
-            "parts of two matrices: they are not those of forces of a kind.",
+            "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric "
+            "and skew parts of two matrices: nothing is said about forces of a kind.",
             {},
         )
 

@@ -176,3 +176,37 @@ def test_a_parallelogram_swings_as_a_pendulum() -> None:
 def test_a_motion_that_breaks_a_constraint_does_not_exist() -> None:
     analysis = described(PARALLELOGRAM.replace("motion: {a: 0, b: 0, c: 0}", "motion: {a: 0, b: 0, c: {rate: g}}"))
     assert not analysis.equilibrium.satisfied
+
+
+ONE_LENGTH = """
+mbsym: 1
+name: Parallelogram of one length
+parameters: {m: positive, l: positive, k: positive}
+bodies:
+  - {name: left, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: m, mass centre: [l, 0, 0]}
+  - {name: coupler, attached to: left, connection point: [l, 0, 0], rotation: {axes: [3], angles: [b]}, mass: m,
+     mass centre: [l, 0, 0]}
+  - {name: right, attached to: 0, connection point: [2*l, 0, 0], rotation: {axes: [3], angles: [c]}, mass: m,
+     mass centre: [l, 0, 0]}
+loads:
+  - spring: {coordinate: a, stiffness: k}
+constraints:
+  - coincide: [{body: coupler, point: [2*l, 0, 0]}, {body: right, point: [l, 0, 0]}]
+motion: {a: 0, b: 0, c: 0}
+"""
+
+
+def test_lengths_of_zero_close_no_loop() -> None:
+    """phi is homogeneous in l: l = 0 solves it, where J = 0 and nothing can be learnt."""
+    analysis = described(ONE_LENGTH)
+    found = analysis.equations.constraints
+    assert found is not None
+    assert (found.position_rank, found.velocity_rank, found.redundant) == (2, 2, ())
+    assert found.parameter_conditions == 0
+
+
+def test_the_flat_parallelogram_is_singular() -> None:
+    """There it may leave into the crossed one: J loses its rank, and no first approximation is given."""
+    stage = described(ONE_LENGTH).stage(5)
+    assert stage.failure is not None
+    assert stage.failure.code == "singular"

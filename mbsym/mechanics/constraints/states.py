@@ -120,7 +120,10 @@ class Manifold:
         return Rationals(tangents, self.ring.angles), values | {"pi": fmpq(355, 113)}
 
     def _linear(self, numbers: Algebra, values: dict[str, Any]) -> dict[str, Any] | None:
-        """phi = 0 solved as if it were linear; None if it was not."""
+        """phi = 0 solved as if it were linear; None if it was not, or only by parameters that vanish.
+
+        Where all lengths are multiples of one, phi is homogeneous in it: lengths of 0 close any loop, and say nothing.
+        """
         names = self._unknowns
         slopes = self._slopes(names)
         nodes = [*self._positions, *(x for row in slopes for x in row)]
@@ -132,7 +135,8 @@ class Manifold:
         for i, column in done.pivots:
             changed[names[column]] = values[names[column]] + done.rows[i][n]
         left = self.program.evaluate(self._positions, changed, numbers)
-        return changed if all(x == 0 for x in left) else None
+        vanished = any(changed[name] == 0 for name in self.system.parameter_names if name in changed)
+        return changed if all(x == 0 for x in left) and not vanished else None
 
     def _slopes(self, names: Sequence[str]) -> tuple[tuple[Node, ...], ...]:
         inputs = [self.found.environment[name] for name in names]
@@ -168,15 +172,20 @@ class Manifold:
             if name in values:
                 values[name] = arb(source.randint(-300, 300)) / 100
         if self._positions:
-            values = self._root(values)
+            try:
+                values = self._root(values, self.system.coordinates)
+            except ZeroDivisionError:  # parameters may be tied, too
+                further = [x for x in self._unknowns if x not in self.system.coordinates]
+                values = self._root(values, (*self.system.coordinates, *further))
+                if any(not is_certain(values[name]) for name in further):
+                    raise
         return OnManifold(State(Balls(values), self._moving(Balls(values), values, source)), False)
 
-    def _root(self, values: dict[str, Any]) -> dict[str, Any]:
-        """A proved root of phi near a place, in the unknowns that phi depends on most there.
+    def _root(self, values: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:
+        """A proved root of phi near a place, in those of the names that phi depends on most there.
 
         Raises SingularPoint or NoValue as the rows do, ZeroDivisionError where no root was proved.
         """
-        names = [*self.system.coordinates, *(x for x in self._unknowns if x not in self.system.coordinates)]
         slopes = self._slopes(names)
         flat = [x for row in slopes for x in row]
         m, n = len(self._positions), len(names)

@@ -100,7 +100,7 @@ CONSERVATIVE = "conservative"
 def kind_of(system: LinearSystem) -> str:
     """Words for the acting forces: conservative, gyroscopic conservative, dissipative, circulatory, ..."""
     if system.nonholonomic is not None:
-        return "nonholonomic"
+        return "constrained in velocities"
     damped, gyroscopic = not is_zero(system.D), not is_zero(system.G)
     words = ["gyroscopic"] if gyroscopic else []
     if damped:
