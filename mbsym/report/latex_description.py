@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
@@ -180,6 +181,10 @@ def load_in_words(load: Load, names: LatexNames, escaped: Callable[[str], str], 
     return _Loads(names, escaped, language).text(load)
 
 
+#: A formula of a sentence that is written with more characters may be broken.
+LONGEST_IN_LINE = 160
+
+
 def constraint_in_words(
     constraint: Constraint, names: LatexNames, escaped: Callable[[str], str], language: Language
 ) -> str:
@@ -188,14 +193,29 @@ def constraint_in_words(
 
     write = _Loads(names, escaped, language)
     medium = Medium(
-        lambda left, right: f"${write.math(left)} = {write.math(right)}$",
-        lambda value: f"${write.math(value)}$",
-        lambda value: f"${write.vector(value)}$",
+        lambda left, right: _breakable(f"{write.math(left)} = {write.math(right)}"),
+        lambda value: _breakable(write.math(value)),
+        lambda value: _breakable(write.vector(value)),
         write.frame,
         write.point,
     )
     said, values = described(constraint, medium)
     return language.sentence(said, **values)
+
+
+def _breakable(formula: str) -> str:
+    """A formula in the line; a long one may be broken before a sign, a factor in brackets and after a comma."""
+    if len(formula) <= LONGEST_IN_LINE:
+        return f"${formula}$"
+    parts, depth = [], 0
+    for piece in re.split(r"(\\[{}]|[{}]| [+-] |,\\; ?| \(| \\cos| \\sin)", formula):
+        depth += (piece == "{") - (piece == "}")
+        if depth == 0 and piece.startswith(" "):
+            piece = f" \\penalty0{piece}"
+        elif depth == 0 and piece.startswith(","):
+            piece = f"{piece}\\penalty0 "
+        parts.append(piece)
+    return f"${''.join(parts)}$"
 
 
 class _Loads:

@@ -40,7 +40,9 @@ def long() -> Analysis:
 def test_every_shipped_formula_is_printed() -> None:
     for path in sorted(SHIPPED.glob("*.yaml")):
         analysis = mbsym.load(path)
-        results = [analysis.stage(number).value for number in (1, 2, 3, 7)]
+        # Nobody prints T of the bicycle (2604 terms) or its right-hand sides; what is printed of it is problem 5.
+        shown = (5,) if path.stem == "bicycle" else (1, 2, 3, 7)
+        results = [analysis.stage(number).value for number in shown]
         assert not withheld(results, PAPER), path.name
 
 

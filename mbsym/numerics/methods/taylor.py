@@ -132,7 +132,7 @@ class Series:
     def __call__(self, times: Any) -> Any:
         """The states (2n, m) at m times."""
         at = np.asarray(times)
-        share = at - self.start
+        share = np.asarray(at - self.start, self.coefficients.dtype)
         total = np.zeros((len(self.arrived), len(at)), self.coefficients.dtype)
         for column in self.coefficients.T[::-1]:
             total = total * share + column[:, None]
