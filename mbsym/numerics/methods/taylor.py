@@ -132,11 +132,11 @@ class Series:
     def __call__(self, times: Any) -> Any:
         """The states (2n, m) at m times."""
         at = np.asarray(times)
-        share = np.asarray(at - self.start, self.coefficients.dtype)
+        share = at - self.start
         total = np.zeros((len(self.arrived), len(at)), self.coefficients.dtype)
         for column in self.coefficients.T[::-1]:
             total = total * share + column[:, None]
-        return np.where(at == self.reached, self.arrived[:, None], total)
+        return np.where(at == self.reached, self.arrived[:, None], total).astype(self.coefficients.dtype, copy=False)
 
 
 class TaylorRun(Stepping):
