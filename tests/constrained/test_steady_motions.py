@@ -187,3 +187,20 @@ def test_a_constraint_that_grows_with_time_is_not_judged() -> None:
     stage = described(tied).stage(6)
     assert stage.failure is not None
     assert "not known to be small at all times alike" in stage.failure.reason
+
+
+def test_a_speed_that_forces_determine_makes_no_family() -> None:
+    """Drive and drag along the blade, F = c v: other speeds are no motions, and no zero root asks for them."""
+    drive = (
+        "loads:\n"
+        "  - force: {body: sleigh, point: [0, 0, 0], components: [F, 0, 0], axes: sleigh}\n"
+        "  - rayleigh: c*(x_dot**2 + y_dot**2)/2\n"
+        "constraints:"
+    )
+    found = changed("sleigh.yaml", ("constraints:", drive), ("parameters:", "parameters:\n  F: 6\n  c: 2"))
+    assert [str(x) for x in found.equilibrium.conditions] != []
+    assert all(part.theory.zero_power == 1 for part in found.stability.subsystems)  # of x and of the heading
+    numerical = found.stability.numerical
+    assert numerical is not None
+    assert not numerical.because(Because.MORE_ZERO_ROOTS)
+    assert numerical.because(Because.NOT_CLOSED)  # a force that turns with the heading is not seen through

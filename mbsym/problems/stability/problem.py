@@ -253,23 +253,25 @@ def _prepared_parts(
     )
     if linear.constrained is None or linear.constrained.holonomic:
         return prepared
+    about, free = linear.constrained, equilibrium.satisfied
     return tuple(
-        replace(
-            part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, linear.constrained, signs))
-        )
+        replace(part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, about, signs, free)))
         for part in prepared
     )
 
 
-def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs) -> NonholonomicForm:
-    """What is known of a subsystem of a nonholonomic system besides its matrices."""
+def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool) -> NonholonomicForm:
+    """What is known of a subsystem of a nonholonomic system besides its matrices.
+
+    ``free``: the motion exists for all parameters, so that those which stand in it alone make a family of motions.
+    """
     from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
 
     closed = isinstance(balance, ConstrainedBalance) and balance.closed
     at = [about.speeds.index(name) for name in part.coordinates]
     return NonholonomicForm(
         idle=tuple(i for i, name in enumerate(part.coordinates) if name in about.idle),
-        family=about.dimension(at, signs),
+        family=about.dimension(at, signs) if free else 0,
         drifts=bool(about.idle),
         open_names=() if closed else about.idle,
     )
