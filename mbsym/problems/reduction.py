@@ -105,7 +105,7 @@ def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction
             for name, rate in zip(names, found.base.rates, strict=True)
             if name not in given and not rate.is_zero()
         ),
-        assumed=tuple(Formula(ring, x) for x in found.assumed),
+        assumed=tuple(Formula(ring, x) for k, x in enumerate(found.assumed) if x not in found.assumed[:k]),
         holonomic=len(found.coordinates) == len(found.speeds),
         family=tuple(
             (

@@ -204,3 +204,18 @@ def test_a_speed_that_forces_determine_makes_no_family() -> None:
     assert numerical is not None
     assert not numerical.because(Because.MORE_ZERO_ROOTS)
     assert numerical.because(Because.NOT_CLOSED)  # a force that turns with the heading is not seen through
+
+
+@pytest.mark.parametrize(("p", "word"), [("1", Word.STABLE), ("0", Word.UNDECIDED)])
+def test_what_was_divided_by_must_not_vanish_at_the_values(p: str, word: Word) -> None:
+    """p c = q a gives c = q a/p, but a = 0 and c free where p = 0."""
+    text = TIED.format(tie="relation: p*c = q*a").replace(
+        "{m: positive, l: positive, g: positive}",
+        f"{{m: 1, l: 1, g: 10, p: {{sign: real, value: {p}}}, q: {{sign: real, value: 1}}}}",
+    )
+    found = described(text)
+    about = found.linearisation.constrained
+    assert about is not None
+    assert [str(x) for x in about.assumed] == ["p"]
+    assert found.stability.numerical is not None
+    assert found.stability.numerical.word is word

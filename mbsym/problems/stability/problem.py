@@ -148,7 +148,7 @@ def stability(
     values = parameter_values(scene, equilibrium)
     prepared = _prepared_parts(scene, balance, linear, equilibrium, signs)
     judged = tuple(_judge(scene, part, values, balance) for part in prepared)
-    numerical = _motion_at(scene, equilibrium, values)
+    numerical = _motion_at(scene, equilibrium, values) or _solved_at(scene, linear, values)
     spectra: tuple[Spectrum, ...] = ()
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
@@ -332,7 +332,7 @@ class ExactVerdicts:
                 fits = False
             if not fits:
                 return undecided(Because.NOT_THE_VALUE, name)
-        elsewhere = _motion_at(self.scene, self.equilibrium, values)
+        elsewhere = _motion_at(self.scene, self.equilibrium, values) or _solved_at(self.scene, self.linear, values)
         if elsewhere is not None:
             return elsewhere
         there, found = self.balance.at(values), []
@@ -490,6 +490,19 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
             return undecided(Because.MOTION_NOT_THERE, str(condition), f"{size:.6g}")
         if not value.is_zero():
             return undecided(Because.MOTION_OPEN, str(condition))
+    return None
+
+
+def _solved_at(scene: Scene, linear: Linearisation, values: Mapping[str, Any] | None) -> Verdict | None:
+    """ "undecided" where the given values are not shown to keep what was divided by when constraints were expanded."""
+    if values is None or linear.constrained is None:
+        return None
+    numbers = _numbers(scene.ring, values)
+    for assumed in linear.constrained.assumed:
+        if scene.ring.evaluate(assumed.polynomial, numbers).contains(0):
+            return undecided(
+                Because.NO_EQUATIONS, f"Other quantities are dependent there: {assumed} is not known to differ from 0."
+            )
     return None
 
 
