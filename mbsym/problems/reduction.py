@@ -5,7 +5,13 @@ The motion exists where the constraints hold on it and the forces that they do n
     f(q, t) = 0,    J q' + j = 0,    J q'' + (J' q' + j') = 0,    Y^T (M q'' - f) = 0    (J Y = 0),
 
 and its first approximation is that of the independent quantities (``mbsym.mechanics.constraints.perturbed``): dependent
-ones are expanded, not solved for.  Coordinates that no equation of the speeds feels drop out.
+ones are expanded, not solved for.  Coordinates that no equation of the speeds feels drop out.  A coordinate that is
+felt although its velocity is dependent (the place of a sphere in a dish, where it is told by its angles) follows the
+others by an equation of first order of its own,
+
+    A eta' + B eta + C x = 0,      x_f' = S eta + T x,
+
+so that M has a row of zeros for it.
 
 Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapters III and V; A. V. Karapetyan,
 "On the problem of steady motions of nonholonomic systems", J. Appl. Math. Mech. 44 (1980).
@@ -16,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mbsym.algebra.failures import Constrained, SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
@@ -38,10 +44,12 @@ class Reduction(Shown):
     """Which quantities the first approximation of a constrained system is about.
 
     ``coordinates`` and ``speeds`` are the independent ones, ``dependent_coordinates`` and ``dependent_speeds`` the
-    others; ``idle`` are independent coordinates that no equation of the speeds depends on.  ``rates`` are velocities of
-    the motion that follow from the constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every
-    constraint is one between coordinates, as it is given.  ``family``: the derivatives of each speed's coordinate and
-    of the speed by the parameters that stand in the motion only: by these the description gives a family of motions.
+    others; ``idle`` are independent coordinates that no equation of the speeds depends on, ``following`` those that are
+    felt although their velocities are dependent.  ``rates`` are velocities of the motion that follow from the
+    constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every constraint is one between
+    coordinates, as it is given.  ``family``: the derivatives of the coordinate, and of its velocity, by the parameters
+    that stand in the motion only, of every speed and then of all that follow: by these the description gives a family
+    of motions.
     """
 
     coordinates: tuple[str, ...]
@@ -53,16 +61,23 @@ class Reduction(Shown):
     assumed: tuple[Formula, ...]
     holonomic: bool
     family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
+    following: tuple[str, ...] = ()
 
-    def dimension(self, speeds: Sequence[int], signs: Signs) -> int:
-        """In how many dimensions the motions of the family differ in these speeds and their coordinates, at least.
+    @property
+    def about(self) -> tuple[str, ...]:
+        """The coordinates of the first approximation: those of the speeds, then those that follow."""
+        return (*self.speeds, *self.following)
 
-        Coordinates that drop out are not counted.
+    def dimension(self, places: Sequence[int], signs: Signs) -> int:
+        """In how many dimensions the motions of the family differ in these coordinates and their speeds, at least.
+
+        ``places`` are among those of ``about``.  Coordinates that drop out are not counted.
         """
         rows: list[Row] = []
-        for k in speeds:
-            values, rates = self.family[k]
-            for line in (rates,) if self.speeds[k] in self.idle else (values, rates):
+        for k in places:
+            (values, rates), name = self.family[k], self.about[k]
+            lines = (rates,) if name in self.idle else (values,) if name in self.following else (values, rates)
+            for line in lines:
                 rows.append({p: x.polynomial for p, x in enumerate(line)})
         if not rows or not rows[0]:
             return 0
@@ -93,6 +108,7 @@ def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction
     given = {entry.coordinate for entry in scene.system.motion}
     independent, speeds = set(found.coordinates), set(found.speeds)
     needed = {found.coordinates[j] for j in felt(found, equations)}
+    following = sorted(needed - speeds)
     parameters = _of_the_motion_alone(scene)
     return Reduction(
         coordinates=tuple(names[i] for i in found.coordinates),
@@ -112,8 +128,9 @@ def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction
                 tuple(_by(ring, found.base.values[i], index) for index in parameters),
                 tuple(_by(ring, found.base.rates[i], index) for index in parameters),
             )
-            for i in found.speeds
+            for i in (*found.speeds, *following)
         ),
+        following=tuple(names[i] for i in following),
     )
 
 
@@ -133,24 +150,28 @@ def _of_the_motion_alone(scene: Scene) -> list[int]:
 
 
 def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> Linearisation:
-    """Problem 5 of a constrained system.
+    """Problem 5 of a constrained system: the equations of the speeds, and x_f' - S eta - T x = 0 of what follows.
 
-    Raises Constrained where a coordinate that is felt has a dependent speed, so that there is no form of second order;
-    SingularPoint, NoClosedForm.
+    Raises SingularPoint, NoClosedForm.
     """
     names, ring = scene.system.coordinates, scene.ring
     found, equations, about = reduced.expansion, reduced.equations, reduced.about
-    needed = {found.coordinates[j] for j in felt(found, equations)}
-    following = [names[i] for i in sorted(needed) if i not in found.speeds]
-    if following:
-        raise Constrained(
-            f"no first approximation of second order: the velocities of {', '.join(following)} are dependent",
-            remedy="name other coordinates as 'dependent', such that these have independent velocities",
-        )
     place = {i: j for j, i in enumerate(found.coordinates)}
-    position = [[row[place[i]] if i in place else ring.zero for i in found.speeds] for row in equations.C]
-    a, b, c, d = (ScalarMatrix(ring, rows) for rows in (equations.A, equations.B, position, equations.gains))
-    parts = (a, b, c, d)
+    following = [names.index(name) for name in about.following]
     inputs = found.scene.system.input_names
-    whole = assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about.speeds)
+    nothing = [ring.zero] * len(following)
+
+    def at(row: Sequence[Polynomial]) -> list[Polynomial]:
+        return [row[place[i]] if i in place else ring.zero for i in (*found.speeds, *following)]
+
+    mass, velocity = ([[*row, *nothing] for row in rows] for rows in (equations.A, equations.B))
+    position, gains = [at(row) for row in equations.C], [list(row) for row in equations.gains]
+    for f in following:
+        mass.append([ring.zero] * len(about.about))
+        velocity.append([*(-x for x in equations.S[place[f]]), *(ring.one if f == k else ring.zero for k in following)])
+        position.append([-x for x in at(equations.T[place[f]])])
+        gains.append([ring.zero] * len(inputs))
+    a, b, c, d = (ScalarMatrix(ring, rows) for rows in (mass, velocity, position, gains))
+    parts = (a, b, c, d)
+    whole = assemble(scene, equilibrium, parts, "constraints expanded, equations projected", inputs, about.about)
     return replace(whole, constrained=about)

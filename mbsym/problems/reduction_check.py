@@ -65,7 +65,8 @@ def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation
         place = _Disturbed(system, ring, about, dependent, balls)
         free = place.free_residuals()
         rows = {name: free[name].b for name in about.speeds}
-        direction = [place.direction[name] for name in about.speeds]
+        rows |= dict.fromkeys(about.following, place.state.numbers.zero)  # their velocities follow from the rows
+        direction = [place.direction[name] for name in about.about]
         return matrix_pairs(ring, linear, dependent, place.state, direction, place.pushes, rows)
 
     exact = has_rational_states(system, ring, dependent)

@@ -82,6 +82,12 @@ def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
         yield "On the motion the constraints demand [[rates]].", {"rates": write.rates(found.rates)}
     if found.idle:
         yield "No equation of these velocities depends on [[names]].", {"names": write.names(found.idle)}
+    if found.following:
+        yield (
+            "The equations depend on [[names]], of which the velocities are dependent: each of them has an equation of "
+            "first order of its own, and M has a row of zeros for it.",
+            {"names": write.names(found.following)},
+        )
     for value in found.assumed:
         yield "This holds where [[value]].", {"value": write.nonzero(value)}
     if not found.holonomic:

@@ -107,6 +107,7 @@ SENTENCES = {
     "The first approximation is about the independent velocities, those of [[free]], and what they depend on.": "La primera aproximación trata de las velocidades independientes, las de [[free]], y de aquello de lo que dependen.",
     "Dependent coordinates are expanded about the motion, not solved for: [[names]].": "Las coordenadas dependientes se desarrollan en torno al movimiento, sin despejarlas: [[names]].",
     "On the motion the constraints demand [[rates]].": "En el movimiento las ligaduras exigen [[rates]].",
+    "The equations depend on [[names]], of which the velocities are dependent: each of them has an equation of first order of its own, and M has a row of zeros for it.": "Las ecuaciones dependen de [[names]], cuyas velocidades son dependientes: cada una tiene su propia ecuación de primer orden, y M tiene para ella una fila de ceros.",
     "No equation of these velocities depends on [[names]].": "Ninguna ecuación de estas velocidades depende de [[names]].",
     "This holds where [[value]].": "Esto vale donde [[value]].",
     "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric and skew parts of two matrices: nothing is said about forces of a kind.": "Hay ligaduras en las velocidades además de en las coordenadas, de modo que D, G, K y N se toman solo como las partes simétrica y antisimétrica de dos matrices: nada se dice de fuerzas de una clase.",

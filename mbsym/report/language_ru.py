@@ -149,6 +149,7 @@ SENTENCES = {
     "The first approximation is about the independent velocities, those of [[free]], and what they depend on.": "Первое приближение составлено для независимых скоростей [[free]] и величин, от которых они зависят.",
     "Dependent coordinates are expanded about the motion, not solved for: [[names]].": "Зависимые координаты разложены в окрестности движения, а не выражены явно: [[names]].",
     "On the motion the constraints demand [[rates]].": "На движении связи требуют [[rates]].",
+    "The equations depend on [[names]], of which the velocities are dependent: each of them has an equation of first order of its own, and M has a row of zeros for it.": "Уравнения зависят от [[names]], скорости которых зависимы: для каждой из этих координат есть собственное уравнение первого порядка, а в M ей отвечает нулевая строка.",
     "No equation of these velocities depends on [[names]].": "Ни одно из уравнений для этих скоростей не зависит от [[names]].",
     "This holds where [[value]].": "Это верно там, где [[value]].",
     "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric and skew parts of two matrices: nothing is said about forces of a kind.": "Связи наложены не только на координаты, но и на скорости, поэтому D, G, K и N — понимаются лишь как симметричные и кососимметричные части двух матриц: о природе сил ничего не утверждается.",

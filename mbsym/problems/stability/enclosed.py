@@ -16,6 +16,7 @@ from flint import acb_mat, arb, arb_mat, ctx
 
 from mbsym.algebra.matrices import components
 from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, drifting, undecided
 from mbsym.problems.stability.word import Word
@@ -114,18 +115,9 @@ def _semidefinite(rows: Rows) -> bool:
     return _positive([[rows[i][j] for j in kept] for i in kept])
 
 
-def eigenvalues(m: Rows, c: Rows, k: Rows) -> tuple[list[Any] | None, bool]:
+def eigenvalues(m: Rows, c: Rows, k: Rows, following: Sequence[int] = ()) -> tuple[list[Any] | None, bool]:
     """(balls around all roots of M x'' + C x' + K x = 0, whether they are isolated from each other)."""
-    size = len(m)
-    mass = arb_mat(size, size, [x for row in m for x in row])
-    position = mass.solve(arb_mat(size, size, [x for row in k for x in row]))
-    velocity = mass.solve(arb_mat(size, size, [x for row in c for x in row]))
-    first = acb_mat(2 * size, 2 * size)
-    for i in range(size):
-        first[i, size + i] = 1
-        for j in range(size):
-            first[size + i, j] = -position[i, j]
-            first[size + i, size + j] = -velocity[i, j]
+    first = acb_mat(state_matrix(arb_mat, m, c, k, following))
     try:
         return list(first.eig()), True
     except ValueError:

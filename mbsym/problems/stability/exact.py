@@ -17,6 +17,7 @@ from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, implied
 from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, undecided
 from mbsym.problems.stability.word import Word
@@ -41,9 +42,10 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     to positive factors of the rows).
     """
     m, d, g, k, n = (_evaluate(matrix, point) for matrix in system.matrices)
-    if m.det() == 0:
+    try:
+        a = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
+    except ZeroDivisionError:
         return PointVerdict(undecided(Because.MASS_SINGULAR), (), None)
-    a = _first_order(m, d + g, k + n)
     characteristic = tuple(a.charpoly().coeffs())
     roots = count_roots(characteristic)
     if system.nonholonomic is not None:
@@ -74,7 +76,7 @@ def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSys
 def _judge(system: LinearSystem, matrices: Sequence[Numbers]) -> Verdict:
     m, d, g, k, n = matrices
     conservative = system.conservative
-    a = _first_order(m, d + g, k + n)
+    a = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist())
     roots = count_roots(a.charpoly().coeffs())
     facts = _facts(m, d, g, k, n, conservative)
     if roots.right:
@@ -189,20 +191,6 @@ def _number(entry: Polynomial, point: Mapping[int, Fraction]) -> Any:
     if missing:
         raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
     return fmpq(entry(*(rational(point.get(i, 0)) for i in range(context.nvars()))))
-
-
-def _first_order(m: Numbers, c: Numbers, k: Numbers) -> Numbers:
-    """The matrix of (q, q')' = A (q, q')."""
-    n = m.nrows()
-    inverse = m.inv()
-    position, velocity = inverse * k, inverse * c
-    a = fmpq_mat(2 * n, 2 * n)
-    for i in range(n):
-        a[i, n + i] = 1
-        for j in range(n):
-            a[n + i, j] = -position[i, j]
-            a[n + i, n + j] = -velocity[i, j]
-    return a
 
 
 def is_positive(matrix: Numbers) -> bool:

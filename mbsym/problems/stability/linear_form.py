@@ -14,13 +14,15 @@ class NonholonomicForm:
 
     ``idle`` are indices of coordinates that do not occur in the nonlinear equations, their columns in K + N vanish;
     ``family``: in so many dimensions the steady motions of the subsystem lie near the given one.  ``drifts``: the whole
-    system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders.
+    system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders.  ``following``
+    are indices of coordinates whose rows are of first order, those of M zero.
     """
 
     idle: tuple[int, ...] = ()
     family: int = 0
     drifts: bool = False
     open_names: tuple[str, ...] = ()
+    following: tuple[int, ...] = ()
 
     def zeros(self, power: int) -> int:
         """How many roots are zero, of ``power`` of the determinant, besides those of idle coordinates."""
@@ -71,6 +73,17 @@ class LinearSystem:
     @property
     def matrices(self) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix]:
         return self.M, self.D, self.G, self.K, self.N
+
+    @property
+    def following(self) -> tuple[int, ...]:
+        """Indices of coordinates whose equations are of first order."""
+        return () if self.nonholonomic is None else self.nonholonomic.following
+
+    @property
+    def kinetic(self) -> Matrix:
+        """M without the zero rows and columns of what follows."""
+        kept = [i for i in range(self.size) if i not in self.following]
+        return tuple(tuple(self.M[i][j] for j in kept) for i in kept)
 
     @property
     def facts(self) -> frozenset[Fact]:

@@ -21,6 +21,7 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 from mbsym.algebra.roots import count_roots
 from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, undecided
 
@@ -40,7 +41,7 @@ def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
 
 
 def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
-    """The exact verdict; ``first_order`` is the rational matrix of (x, x')' = A (x, x')."""
+    """The exact verdict; ``first_order`` is the rational matrix of ``state_matrix``."""
     size = first_order.nrows()
     kept = [i for i in range(size) if i not in form.idle]
     entries = first_order.tolist()
@@ -64,14 +65,9 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
         size = len(matrices[0])
         m, d, g, k, n = (arb_mat(size, size, [x for row in rows for x in row]) for rows in matrices)
         try:
-            position, velocity = m.solve(k + n), m.solve(d + g)
+            first = state_matrix(arb_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), form.following)
         except ZeroDivisionError:
             return undecided(Because.MASS_SINGULAR)
-        first = arb_mat(2 * size, 2 * size)
-        for i in range(size):
-            first[i, size + i] = 1
-            for j in range(size):
-                first[size + i, j], first[size + i, size + j] = -position[i, j], -velocity[i, j]
         right = _to_the_right([arb(x) for x in first.charpoly().coeffs()[zero_power:]])
     if right is None:
         return undecided(Because.NEAR_BORDER)

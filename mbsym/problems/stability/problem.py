@@ -173,7 +173,9 @@ def _spectrum(
         return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
     if point is not None:
         return None
-    return from_matrices(part.coordinates, _matrices_at(scene, linear, part.coordinates, values))
+    about = linear.constrained
+    following = [i for i, name in enumerate(part.coordinates) if about is not None and name in about.following]
+    return from_matrices(part.coordinates, _matrices_at(scene, linear, part.coordinates, values), following)
 
 
 def _matrices_at(
@@ -268,12 +270,13 @@ def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs, fre
     from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
 
     closed = isinstance(balance, ConstrainedBalance) and balance.closed
-    at = [about.speeds.index(name) for name in part.coordinates]
+    at = [about.about.index(name) for name in part.coordinates]
     return NonholonomicForm(
         idle=tuple(i for i, name in enumerate(part.coordinates) if name in about.idle),
         family=about.dimension(at, signs) if free else 0,
         drifts=bool(about.idle),
         open_names=() if closed else about.idle,
+        following=tuple(i for i, name in enumerate(part.coordinates) if name in about.following),
     )
 
 

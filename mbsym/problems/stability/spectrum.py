@@ -33,7 +33,7 @@ def from_characteristic(coordinates: Sequence[str], characteristic: Sequence[Any
     return Spectrum(tuple(coordinates), tuple(Root(_times(x.ball, scale), x.multiplicity) for x in found))
 
 
-def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows]) -> Spectrum | None:
+def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows], following: Sequence[int] = ()) -> Spectrum | None:
     """From M, D, G, K, N in balls; None where M is singular or the roots cannot be enclosed.
 
     Roots that lie together are listed one by one.
@@ -43,7 +43,7 @@ def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows]) -> Spectrum
     velocity, position = ([[x[i][j] + y[i][j] for j in size] for i in size] for x, y in ((d, g), (k, n)))
     try:
         with ctx.workprec(PRECISION):
-            found, _ = eigenvalues(m, velocity, position)
+            found, _ = eigenvalues(m, velocity, position, following)
     except ZeroDivisionError:
         return None
     if found is None:

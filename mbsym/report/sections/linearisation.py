@@ -39,6 +39,7 @@ def _reduction(about: Reduction, write: Write) -> dict[str, Any]:
         "dependent_coordinates": list(about.dependent_coordinates),
         "dependent_speeds": list(about.dependent_speeds),
         "idle": list(about.idle),
+        **({"following": list(about.following)} if about.following else {}),
         "rates": {name: write(rate) for name, rate in about.rates},
         "assumed_nonzero": [write(x) for x in about.assumed],
         "holonomic": about.holonomic,

@@ -1,0 +1,110 @@
+"""Coordinates that are felt although their velocities are dependent: x_f' = S eta + T x beside the equations of speeds.
+
+A sleigh of speed v whose blade does not slip, y' = v phi to first order, and which a spring at b ahead of the blade
+pulls to the line y = 0 with -k (y + b phi).  About the blade
+
+    (J + m a^2) phi'' + m a v phi' + k b (y + b phi) = 0,        y' - v phi = 0,
+
+so that (J + m a^2) z^3 + m a v z^2 + k b^2 z + k b v = 0, and Hurwitz demands  m a v k b^2 > (J + m a^2) k b v,  which
+is m a (b - a) > J.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from mbsym.analysis import approximation
+from mbsym.analysis.pipeline import Analysis
+from mbsym.problems.checks import EXACT, FAILED
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.word import Word
+from mbsym.source import read
+
+TEXT = (Path(__file__).parent / "pulled-sleigh.yaml").read_text(encoding="utf-8")
+
+
+def described(text: str = TEXT) -> Analysis:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    return Analysis(system)
+
+
+@pytest.fixture(scope="module")
+def sleigh() -> Analysis:
+    return described()
+
+
+def test_the_matrices_are_those_found_by_hand(sleigh: Analysis) -> None:
+    found = sleigh.linearisation
+    assert found.coordinates == ("x", "phi", "y")
+    assert found.constrained is not None
+    assert (found.constrained.idle, found.constrained.following) == (("x",), ("y",))
+    velocity = [[found.D[i, j].polynomial + found.G[i, j].polynomial for j in range(3)] for i in range(3)]
+    position = [[found.K[i, j].polynomial + found.N[i, j].polynomial for j in range(3)] for i in range(3)]
+    p = {name: sleigh.ring.generator("parameter", name) for name in "mJabkv"}
+    zero, one = sleigh.ring.zero, sleigh.ring.one
+    inertia = p["J"] + p["m"] * p["a"] ** 2
+    assert found.M.polynomials == ((p["m"], zero, zero), (zero, inertia, zero), (zero, zero, zero))
+    assert velocity == [[zero] * 3, [zero, p["m"] * p["a"] * p["v"], zero], [zero, zero, one]]
+    assert position == [[zero] * 3, [zero, p["k"] * p["b"] ** 2, p["k"] * p["b"]], [zero, -p["v"], zero]]
+
+
+def test_the_condition_is_the_one_of_hurwitz(sleigh: Analysis) -> None:
+    _, part = sleigh.stability.subsystems
+    assert part.coordinates == ("phi", "y")
+    assert [str(x) for x in part.characteristic] == ["b*k*v", "b**2*k", "m*a*v", "m*a**2 + J"]
+    assert [(str(x), relation) for _, x, relation in part.conditions] == [("m*a*(b - a) - J", ">")]
+    assert sleigh.stability.verdict.word is Word.DEPENDS
+
+
+@pytest.mark.parametrize(
+    ("b", "word"),
+    [
+        ("4", Word.ASYMPTOTIC_BUT_STEADY),
+        ("sqrt(13)", Word.ASYMPTOTIC_BUT_STEADY),
+        ("sqrt(8)", Word.UNSTABLE),
+        ("2", Word.UNSTABLE),
+        ("3", Word.CRITICAL),
+    ],
+)
+def test_the_verdict_changes_where_the_condition_does(b: str, word: Word) -> None:
+    """J = 2, m = a = 1: the border is b = 3, with a pair of imaginary roots.  Irrational b are judged by enclosures."""
+    found = described(TEXT.replace("b: {sign: positive, value: 4}", f"b: {{sign: positive, value: {b}}}")).stability
+    assert found.numerical is not None
+    assert found.numerical.word is word
+    assert [len(part.roots) for part in found.spectra] in ([1, 3], [2, 3])
+
+
+def test_a_speed_that_is_given_as_a_number_is_no_family() -> None:
+    text = TEXT.replace("{rate: v}", "{rate: 3}")
+    text = text.replace("  v: {sign: positive, value: 3, meaning: speed along the edge}\n", "")
+    verdict = described(text).stability.verdict
+    assert verdict.word is not Word.ASYMPTOTIC_BUT_STEADY
+    numerical = described(text).stability.numerical
+    assert numerical is not None
+    assert numerical.because(Because.MORE_ZERO_ROOTS)
+
+
+def test_multipliers_agree_exactly(sleigh: Analysis) -> None:
+    checks = {check.name: check.outcome for check in sleigh.checks}
+    assert checks["perturbed motion"] == checks["equilibrium"] == checks["constrained motion"] == EXACT
+
+
+@pytest.mark.parametrize("part", ["S", "T"])
+def test_a_wrong_row_of_what_follows_is_found(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """y' = v phi without the term, or with one too many: the check sees it and the verdict falls."""
+    made = approximation.reduced
+
+    def planted(analysis: Analysis) -> object:
+        found = made(analysis)
+        one = found.equations.A[0][0].context().constant(1)
+        rows = [[x + one for x in row] for row in getattr(found.equations, part)]
+        return dataclasses.replace(found, equations=dataclasses.replace(found.equations, **{part: rows}))
+
+    analysis = described()
+    analysis.__dict__["reduced"] = planted(analysis)
+    outcome = {check.name: check.outcome for check in analysis.checks}
+    assert outcome["perturbed motion"] == FAILED
