@@ -146,7 +146,7 @@ def stability(
     ``balance`` knows what the loads without a force function do to the energy and to cyclic momenta in all orders.
     """
     values = parameter_values(scene, equilibrium)
-    prepared = _prepared_parts(scene, balance, linear, equilibrium, signs)
+    prepared = prepared_parts(scene, balance, linear, equilibrium, signs)
     judged = tuple(_judge(scene, part, values, balance) for part in prepared)
     numerical = _motion_at(scene, equilibrium, values) or _solved_at(scene, linear, values)
     spectra: tuple[Spectrum, ...] = ()
@@ -196,7 +196,7 @@ def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[s
 def _enclosed(
     scene: Scene,
     linear: Linearisation,
-    part: _Prepared,
+    part: Prepared,
     values: Mapping[str, Fraction],
     balance: Balance,
     zero_power: int,
@@ -211,9 +211,7 @@ def _enclosed(
     return enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
 
 
-def _judge(
-    scene: Scene, made: _Prepared, values: Mapping[str, Fraction] | None, balance: Balance
-) -> SubsystemStability:
+def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, balance: Balance) -> SubsystemStability:
     point = None if values is None else _point(scene, made.ring, made.system.matrices, values)
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
@@ -222,7 +220,7 @@ def _judge(
 
 
 @dataclass(frozen=True)
-class _Prepared:
+class Prepared:
     """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
 
     coordinates: tuple[str, ...]
@@ -243,11 +241,11 @@ class _Prepared:
         return replace(self.system, conservative=there.law.bounded, driven=driven)
 
 
-def _prepared_parts(
+def prepared_parts(
     scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
-) -> tuple[_Prepared, ...]:
+) -> tuple[Prepared, ...]:
     """Every subsystem, ready to be judged."""
-    elimination = _elimination(scene)
+    elimination = elimination_of(scene)
     spin = None if scene.system.constraints else free_spin(scene.system)
     prepared = tuple(
         _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
@@ -262,7 +260,7 @@ def _prepared_parts(
     )
 
 
-def _form(part: _Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool) -> NonholonomicForm:
+def _form(part: Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool) -> NonholonomicForm:
     """What is known of a subsystem of a nonholonomic system besides its matrices.
 
     ``free``: the motion exists for all parameters, so that those which stand in it alone make a family of motions.
@@ -287,7 +285,7 @@ def _prepared(
     signs: Signs,
     balance: Balance,
     turned: Sequence[Polynomial],
-) -> _Prepared:
+) -> Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
     rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
     idle = tuple(
@@ -306,7 +304,7 @@ def _prepared(
     system = LinearSystem(
         mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven, part.coordinates
     )
-    return _Prepared(part.coordinates, matrices, factor, ring, known, system)
+    return Prepared(part.coordinates, matrices, factor, ring, known, system)
 
 
 class ExactVerdicts:
@@ -322,7 +320,7 @@ class ExactVerdicts:
     ) -> None:
         self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
         self.balance = balance
-        self._parts = _prepared_parts(scene, balance, linear, equilibrium, signs)
+        self._parts = prepared_parts(scene, balance, linear, equilibrium, signs)
 
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         """Right, or "undecided" with the reason."""
@@ -383,7 +381,7 @@ def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], s
     return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept))
 
 
-def _elimination(scene: Scene) -> Elimination:
+def elimination_of(scene: Scene) -> Elimination:
     """The user's second symbols (alpha = (c - b)/a) in place of the first ones (a, b, c)."""
     ring, images = scene.ring, relations(scene)
     first = [index for index, _ in first_symbols(scene)]

@@ -1,0 +1,194 @@
+"""The boundary polynomials of a section: where a verdict of problem 6 may change, labelled by the condition.
+
+On an open connected set of parameters where none of them vanishes the verdict is one and the same, because all that it
+is read off is constant there:
+
+* the inertia (numbers of positive, zero, negative eigenvalues) of M, K and D: the lowest coefficient of
+  det(s - matrix) that is not identically zero does not vanish, so the rank does not change;
+* the numbers of roots to the left of the imaginary axis, on it and to the right: Lambda(lambda) is factored over
+  QQ(axes); a factor f that is no polynomial in lambda^2 has no pair lambda, -lambda unless its last but one Hurwitz
+  minor vanishes (Orlando), one h(lambda^2) has its real roots in mu apart unless its discriminant vanishes; zero roots
+  and roots at infinity show in the first and the last coefficient;
+* whether D, G and N vanish, as a whole or in the rows of cyclic coordinates;
+* what Routh's reduction gives, by the same polynomials of the reduced matrices.
+
+Common roots of two factors h(lambda^2) make no difference on open sets, but on curves: their resultant is among the
+boundaries, so that the verdict on it is looked at.  Without D, G and N all roots in lambda^2 are real and semisimple
+whether they coincide or not, and discriminants and resultants are left out.  Subdiscriminants are not needed besides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from mbsym.algebra.characteristic import (
+    Coefficients,
+    Matrix,
+    Polynomial,
+    characteristic_polynomial,
+    determinant,
+    discriminant,
+    factor_in_lambda,
+    hurwitz_minors,
+    resultant,
+)
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.maps.section import Section
+from mbsym.problems.stability.linear_form import LinearSystem, add, is_potential, is_zero
+from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant
+
+
+class Origin(Enum):
+    """The condition from which a boundary polynomial comes."""
+
+    MASS = "det M"
+    CONSTANT = "constant term"
+    LEADING = "leading coefficient"
+    HURWITZ = "Hurwitz minor"
+    DISCRIMINANT = "discriminant"
+    RESULTANT = "resultant"
+    STIFFNESS = "det K"
+    DAMPING = "det D"
+    UNDAMPED = "D = 0"
+    NOT_GYROSCOPIC = "G = 0"
+    POTENTIAL = "N = 0"
+    CYCLIC = "rows of cyclic coordinates"
+    ENERGY = "sign in the energy law"
+    ASSUMPTION = "assumption"
+    SIGN = "declared sign"
+    INERTIA = "triangle inequality"
+    UNDEFINED = "division"
+
+
+@dataclass(frozen=True)
+class Condition:
+    """``polynomial`` = 0 is where the condition of that origin is an equality.
+
+    ``part`` is the subsystem's number (None: of the whole); ``about`` says more: which factor, assumption or body;
+    ``reduced``: after Routh's reduction.
+    """
+
+    origin: Origin
+    polynomial: Polynomial
+    part: int | None = None
+    about: str = ""
+    reduced: bool = False
+
+
+@dataclass(frozen=True)
+class Boundaries:
+    """``factors``: irreducible over QQ, each once; ``conditions[i]`` those in which ``factors[i]`` stands.
+
+    ``vanishing`` are conditions that are equalities everywhere in the section.
+    """
+
+    factors: tuple[Polynomial, ...]
+    conditions: tuple[tuple[Condition, ...], ...]
+    vanishing: tuple[Condition, ...]
+
+
+def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundaries:
+    """All boundary polynomials of a section, those of ``further`` conditions (admissibility) included.
+
+    Raises TooLargeError where a determinant is beyond its budget.
+    """
+    found = list(further)
+    found += [Condition(Origin.UNDEFINED, x) for x in section.undefined]
+    for number, part in enumerate(section.parts):
+        found += conditions_of(part, number)
+    factors: list[Polynomial] = []
+    places: dict[str, int] = {}
+    conditions: list[list[Condition]] = []
+    vanishing: list[Condition] = []
+    for condition in found:
+        if condition.polynomial == 0:
+            vanishing.append(condition)
+            continue
+        for factor, _ in irreducible_factors(condition.polynomial)[1]:
+            key = str(factor if factor.leading_coefficient() > 0 else -factor)
+            if key not in places:
+                places[key] = len(factors)
+                factors.append(factor)
+                conditions.append([])
+            told = conditions[places[key]]
+            if not any(x.origin is condition.origin and x.part == condition.part for x in told):
+                told.append(condition)
+    return Boundaries(tuple(factors), tuple(map(tuple, conditions)), tuple(vanishing))
+
+
+def conditions_of(system: LinearSystem, part: int, reduced: bool = False) -> Iterator[Condition]:
+    """The boundary polynomials of one subsystem."""
+
+    def told(origin: Origin, polynomial: Polynomial, about: str = "") -> Condition:
+        return Condition(origin, polynomial, part, about, reduced)
+
+    yield told(Origin.MASS, determinant(system.M))
+    if not is_zero(system.K):
+        yield told(Origin.STIFFNESS, _lowest_coefficient(system.K))
+    if not is_zero(system.D):
+        yield told(Origin.DAMPING, _lowest_coefficient(system.D))
+    origins = (Origin.UNDAMPED, Origin.NOT_GYROSCOPIC, Origin.POTENTIAL)
+    for origin, matrix in zip(origins, (system.D, system.G, system.N), strict=True):
+        if not is_zero(matrix):
+            yield told(origin, _common([x for row in matrix for x in row]))
+    yield from _of_roots(system, part, reduced)
+    if not system.cyclic or reduced:
+        return
+    acting = [x for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i]]
+    acting += [system.G[i][j] for i in system.cyclic for j in system.cyclic]
+    if any(x != 0 for x in acting):
+        yield told(Origin.CYCLIC, _common(acting))
+    if momenta_are_constant(system):
+        yield from conditions_of(ignoring_cyclic(system), part, reduced=True)
+
+
+def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condition]:
+    """Where roots may cross the imaginary axis, or meet on it."""
+
+    def told(origin: Origin, polynomial: Polynomial, about: str) -> Condition:
+        return Condition(origin, polynomial, part, about, reduced)
+
+    raw = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    zeros = next((i for i, c in enumerate(raw) if c != 0), len(raw))
+    if zeros == len(raw):
+        return
+    rest, factors = factor_in_lambda(raw[zeros:])
+    if not rest.is_constant():
+        yield told(Origin.LEADING, rest, "content")
+    potential = is_potential(system)
+    even: list[Coefficients] = []
+    for number, (p, _) in enumerate(factors, start=1):
+        about = f"factor {number}" if len(factors) > 1 else ""
+        yield told(Origin.CONSTANT, p[0], about)
+        yield told(Origin.LEADING, p[-1], about)
+        if len(p) <= 2:
+            continue
+        if any(c != 0 for c in p[1::2]):
+            yield told(Origin.HURWITZ, hurwitz_minors(p)[len(p) - 3], about)
+            continue
+        h = p[::2]
+        if not potential:
+            even += [h]
+            if len(h) > 2:
+                yield told(Origin.DISCRIMINANT, discriminant(h), about)
+    for i, left in enumerate(even):
+        for right in even[i + 1 :]:
+            yield told(Origin.RESULTANT, resultant(left, right), "")
+
+
+def _lowest_coefficient(matrix: Matrix) -> Polynomial:
+    """The lowest coefficient of det(s + matrix) that is not identically zero: a sum of principal minors."""
+    n, zero = len(matrix), matrix[0][0] * 0
+    unit = [[zero + (1 if i == j else 0) for j in range(n)] for i in range(n)]
+    nothing = [[zero] * n for _ in range(n)]
+    return next(c for c in characteristic_polynomial(nothing, unit, matrix) if c != 0)
+
+
+def _common(entries: Sequence[Polynomial]) -> Polynomial:
+    """The greatest common divisor: where it vanishes all entries do, but for single points."""
+    found = entries[0] * 0
+    for x in entries:
+        found = found.gcd(x)
+    return found

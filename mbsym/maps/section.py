@@ -1,0 +1,320 @@
+"""A section of the space of parameters: a description with all parameters but one, two or three put in as numbers.
+
+Problem 6's subsystems  M x'' + (D + G) x' + (K + N) x = 0  become matrices of polynomials in the axes with rational
+coefficients.  Every matrix of a part is multiplied by the square of what their entries divide by, so that roots,
+definiteness and verdicts are those of the part wherever the formulas make sense.
+
+The axes, and what is given, may be parameters of the description or symbols of its notation (alpha = (c - b)/a).
+Where symbols are given, the numbers of the description for the parameters in their definitions are not used: they
+would say something else.  Symbols together have to be independent, which the rank of their derivatives at a random
+rational point proves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from fractions import Fraction
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx
+
+from mbsym.algebra.failures import Failure, NoValue, SingularPoint
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.ring import Polynomial
+from mbsym.analysis import Analysis
+from mbsym.expressions.tree import names
+from mbsym.maps.images import Image, Images, Irrational, common_denominator
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
+from mbsym.model.comparison import RELATION_OF_SIGN, holds
+from mbsym.model.system import System, rational
+from mbsym.problems.knowledge import definition_in_parameters
+from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.problem import Prepared, prepared_parts
+
+if TYPE_CHECKING:
+    from mbsym.problems.equilibrium import Equilibrium
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An open interval of a parameter, or of a symbol of the notation."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+
+
+class Fault(Enum):
+    """Why a section cannot be made."""
+
+    MISSING = "no number"
+    RELATED = "a relation gives it"
+    SOLVED = "the motion needs another value, or gives it"
+    DEPENDENT = "not independent of the others"
+    SIGN = "against its declared sign"
+    NOWHERE = "the motion does not exist"
+    IRRATIONAL = "not rational"
+    SINGULAR = "a division by zero"
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """What is wrong with the axes or numbers given; ``name`` whom it is about, ``about`` what else is to be told."""
+
+    fault: Fault
+    name: str
+    about: str = ""
+
+
+class Unfit(Failure):
+    """No section can be made; all complaints at once."""
+
+    code = "section"
+
+    def __init__(self, complaints: Sequence[Complaint]) -> None:
+        super().__init__("; ".join(f"{one.name}: {one.fault.value} {one.about}".rstrip() for one in complaints))
+        self.complaints = tuple(complaints)
+
+
+@dataclass(frozen=True)
+class Section:
+    """``parts`` over ``context``, whose generators are the ``axes`` in their order.
+
+    ``coordinates`` of the parts; ``one_energy``: as in ``verdict.combine``.  ``undefined``: where one of these vanishes
+    the formulas divide by zero, or the equations have another form; nothing is said there.  ``numbers``: what was put
+    in, by name, also from the description; ``images`` carries further formulas in parameters.
+    """
+
+    axes: tuple[Axis, ...]
+    context: Any
+    parts: tuple[LinearSystem, ...]
+    coordinates: tuple[tuple[str, ...], ...]
+    one_energy: bool
+    undefined: tuple[Polynomial, ...]
+    numbers: Mapping[str, Fraction]
+    images: Images
+
+
+def usable(system: System) -> tuple[str, ...]:
+    """The names that axes and settings may have."""
+    return (*system.parameter_names, *(item.name for item in system.notation))
+
+
+def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction]) -> Section:
+    """The section of an analysis with one to three ``axes`` at the values of ``settings``, names as in ``usable``.
+
+    Raises Unfit with all complaints, Unavailable where there is no first approximation to judge.
+    """
+    with analysis.strictly():
+        linear, motion = analysis.judgeable, analysis.equilibrium
+    scene = analysis.parameters_scene
+    chosen = [axis.name for axis in axes]
+    given = {name: value for name, value in settings.items() if name not in chosen}
+    complaints = [*_determined(analysis.system, motion, [*chosen, *given]), *_against_signs(analysis, given)]
+    complaints += _dependent(scene, [*chosen, *given])
+    if complaints:
+        raise Unfit(complaints)
+    given = _remaining(analysis.system, chosen, given, motion) | given
+    context = fmpq_mpoly_ctx.get(tuple(chosen), Ordering.lex)
+    solved = {name: value.polynomial for name, value in motion.solved}
+    images = Images(scene, chosen, context, given, solved)
+    parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
+    balance = analysis.balance.at({name: x for name, x in given.items() if name in analysis.system.parameter_names})
+    undefined: list[Polynomial] = []
+    found = []
+    for part in parts:
+        made, below = _in_axes(part, part.at(balance), images, complaints)
+        if made is not None:
+            found.append(made)
+            undefined += below
+    if complaints:
+        raise Unfit(list(dict.fromkeys(complaints)))
+    _motion_exists(motion, images)
+    for assumed in () if linear.constrained is None else linear.constrained.assumed:
+        undefined += [x for x in _carried(images, assumed.polynomial) if not x.is_constant()]
+    return Section(
+        tuple(axes),
+        context,
+        tuple(found),
+        tuple(part.coordinates for part in parts),
+        balance.law.bounded,
+        tuple(undefined),
+        given,
+        images,
+    )
+
+
+# --- complaints about names -------------------------------------------------------------------------------------------
+
+
+def _determined(system: System, motion: Equilibrium, chosen: Sequence[str]) -> list[Complaint]:
+    """Names that follow from others: through relations, or where the motion exists."""
+    from mbsym.expressions.tree import text
+
+    related = {item.name: f"{item.name} = {text(item.value)}" for item in system.relations}
+    solved = {name: f"{name} = {value}" for name, value in motion.solved}
+    found = [Complaint(Fault.RELATED, name, related[name]) for name in chosen if name in related]
+    return [*found, *(Complaint(Fault.SOLVED, name, solved[name]) for name in chosen if name in solved)]
+
+
+def _against_signs(analysis: Analysis, given: Mapping[str, Fraction]) -> list[Complaint]:
+    """Numbers that contradict a declared sign, or one that the definition of a symbol shows."""
+    words = analysis.signs.words
+    found = []
+    for name, value in given.items():
+        word = words[analysis.ring.index("parameter", name)]
+        relation = RELATION_OF_SIGN.get(word)
+        if relation is not None and not holds(value, relation):
+            found.append(Complaint(Fault.SIGN, name, word))
+    return found
+
+
+def _dependent(scene: Scene, chosen: Sequence[str]) -> list[Complaint]:
+    """Symbols of the notation that are not independent of what else is given.
+
+    The rank of their derivatives by the parameters that are not given is found at a random rational point: a full one
+    proves that they are independent.
+    """
+    ring, images = scene.ring, relations(scene)
+    symbols = [name for name in chosen if name in {item.name for item in scene.system.notation}]
+    if not symbols:
+        return []
+    free = [
+        ring.index("parameter", x.name)
+        for x in scene.system.parameters
+        if x.name not in chosen and ring.index("parameter", x.name) not in images
+    ]
+    generator = Random(20261122)
+    rows: list[list[Any]] = []
+    rank, found = 0, []
+    point = [fmpq(generator.randint(1000, 9999), generator.randint(100, 999)) for _ in range(ring.context.nvars())]
+    for name in symbols:
+        try:
+            top, bottoms = ring.fraction(ring.substitute(definition_in_parameters(scene, name), images))
+            below = ring.one
+            for factor, exponent in bottoms:
+                below = below * factor**exponent
+            row = [_slope(top, below, k, point) for k in free]
+        except (Failure, ZeroDivisionError):
+            found.append(Complaint(Fault.SINGULAR, name))
+            continue
+        table = fmpq_mat([*rows, row]) if row else fmpq_mat(1, 1)
+        if table.rank() == rank + 1:
+            rows, rank = [*rows, row], rank + 1
+        else:
+            found.append(Complaint(Fault.DEPENDENT, name, ", ".join(x for x in chosen if x != name)))
+    return found
+
+
+def _slope(top: Polynomial, below: Polynomial, k: int, point: Sequence[Any]) -> Any:
+    """d(top/below)/dx_k at a point."""
+    n, d = fmpq(top(*point)), fmpq(below(*point))
+    if d == 0:
+        raise SingularPoint("at the random point")
+    return (fmpq(top.derivative(k)(*point)) * d - n * fmpq(below.derivative(k)(*point))) / d**2
+
+
+def _remaining(
+    system: System, chosen: Sequence[str], given: Mapping[str, Fraction], motion: Equilibrium
+) -> dict[str, Fraction]:
+    """The description's own numbers, but for parameters that stand in symbols that are given."""
+    meaning = {item.name: names(item.value) for item in system.notation}
+    meaning |= {item.name: names(item.value) for item in system.relations}
+    spoken: set[str] = set()
+    pending = [x for name in (*chosen, *given) if name in meaning for x in meaning[name]]
+    while pending:
+        name = pending.pop()
+        if name not in spoken:
+            spoken.add(name)
+            pending += meaning.get(name, ())
+    taken = {*chosen, *given, *spoken, *(item.name for item in system.relations), *(name for name, _ in motion.solved)}
+    values = ((item.name, rational(item.value)) for item in system.parameters if item.value is not None)
+    return {name: value for name, value in values if value is not None and name not in taken}
+
+
+# --- matrices ---------------------------------------------------------------------------------------------------------
+
+
+def _in_axes(
+    part: Prepared, system: LinearSystem, images: Images, complaints: list[Complaint]
+) -> tuple[LinearSystem | None, list[Polynomial]]:
+    """The part's matrices in the axes, times the square of their common denominator, and that denominator."""
+    entries = [[[_image(x, part, images, complaints) for x in row] for row in matrix] for matrix in system.matrices]
+    turned = [_image(x, part, images, complaints) for x in system.turned]
+    if any(x is None for matrix in entries for row in matrix for x in row) or any(x is None for x in turned):
+        return None, []
+    below = common_denominator([x for matrix in entries for row in matrix for x in row if x is not None])
+    square = images.context.constant(1) if below.is_constant() else below * below
+
+    def cleared(image: Image | None, by: Polynomial) -> Polynomial:
+        assert image is not None
+        return image[0] * (by / image[1])
+
+    m, d, g, k, n = (tuple(tuple(cleared(x, square) for x in row) for row in matrix) for matrix in entries)
+    bottom = common_denominator([x for x in turned if x is not None]) if turned else below
+    made = replace(system, M=m, D=d, G=g, K=k, N=n, turned=tuple(cleared(x, bottom * bottom) for x in turned))
+    return made, [x for x in (below, bottom) if not x.is_constant()]
+
+
+def _image(x: Polynomial, part: Prepared, images: Images, complaints: list[Complaint]) -> Image | None:
+    """The image of an entry; None where it has none, with what is missing among the complaints."""
+    ring = None if part.ring is images.ring else part.ring
+    found: Image | None = None
+    try:
+        found = images(x, ring)
+    except NoValue as error:
+        complaints.append(Complaint(Fault.MISSING, _missing(error)))
+        complaints += _further(x, ring, images)
+    except Irrational as error:
+        complaints.append(Complaint(Fault.IRRATIONAL, str(error)))
+    except SingularPoint:
+        complaints.append(Complaint(Fault.SINGULAR, str(x)))
+    return found
+
+
+def _further(x: Polynomial, ring: Any, images: Images) -> list[Complaint]:
+    """Everything else in the same entry that has no number."""
+    found = []
+    for k in occurring([x]):
+        try:
+            images(x.context().gen(k), ring)
+        except NoValue as error:
+            found.append(Complaint(Fault.MISSING, _missing(error)))
+        except Failure:
+            pass
+    return found
+
+
+def _missing(error: NoValue) -> str:
+    return str(error.args[0])
+
+
+def _carried(images: Images, p: Polynomial) -> tuple[Polynomial, ...]:
+    """Numerator and denominator of a formula in the axes; nothing where it cannot be had."""
+    try:
+        return images(p)
+    except (Failure, ZeroDivisionError):
+        return ()
+
+
+def _motion_exists(motion: Equilibrium, images: Images) -> None:
+    """Raises Unfit where a condition of problem 4 does not hold in the whole section."""
+    found = []
+    for condition in motion.conditions:
+        try:
+            top, _ = images(condition.polynomial)
+        except NoValue as error:
+            found.append(Complaint(Fault.MISSING, _missing(error)))
+            continue
+        except Failure:
+            found.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
+            continue
+        if top != 0:
+            found.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
+    found += [Complaint(Fault.NOWHERE, f"{condition} = 0") for condition in motion.impossible]
+    if found:
+        raise Unfit(found)
