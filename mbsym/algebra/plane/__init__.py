@@ -1,0 +1,20 @@
+"""Exact arrangements of algebraic curves in a box of the plane, and of points on a line."""
+
+from mbsym.algebra.plane.arrangement import Arc, Arrangement, Corner, CornerKind, Region
+from mbsym.algebra.plane.decomposition import decompose
+from mbsym.algebra.plane.numbers import AlgebraicNumber
+from mbsym.algebra.plane.points import Point
+from mbsym.algebra.plane.projection import Box, Budget
+
+__all__ = [
+    "AlgebraicNumber",
+    "Arc",
+    "Arrangement",
+    "Box",
+    "Budget",
+    "Corner",
+    "CornerKind",
+    "Point",
+    "Region",
+    "decompose",
+]

@@ -1,0 +1,297 @@
+"""Stacks: what lies above one value of x in the box, and how neighbouring stacks are connected.
+
+Between two critical abscissas a *column* lists the curves' branches from below to above, the box's edges being the
+first and the last.  Over a critical abscissa alpha a *fibre* lists the points.  Which point a branch ends in is decided
+exactly: rational separators c between the points of the fibre, and rational l < alpha < r with f(x, c) != 0 for all
+curves, separators and x in [l, r] (Descartes' rule proves it); so the branches that lie between two separators at l, or
+at r, are those that end in the point between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from flint import fmpq
+
+from mbsym.algebra.failures import Defect
+from mbsym.algebra.plane.fields import Extension, OverField
+from mbsym.algebra.plane.numbers import (
+    Integer,
+    Number,
+    Rational,
+    Root,
+    bound,
+    high,
+    low,
+    number,
+    primitive,
+    roots_between,
+    simplest,
+)
+from mbsym.algebra.plane.projection import Abscissa, Box, Curve
+
+#: In place of the number of a curve: the lower and the upper edge of the box.
+BOTTOM, TOP = -1, -2
+
+Ordinate = Any  # a flint.fmpq, an AlgebraicNumber, or an Over
+
+
+@dataclass(frozen=True)
+class Section:
+    """A branch of a curve over a strip, or an edge of the box; ``y`` is where it is over the strip's sample."""
+
+    curve: int
+    y: Root | Rational
+
+
+@dataclass(frozen=True)
+class Column:
+    """What lies over the strip between two abscissas: sections from below to above, edges included."""
+
+    x: Rational
+    sections: tuple[Section, ...]
+
+    def middle(self, cell: int) -> Rational:
+        """A simple rational number between section ``cell`` and the one above it."""
+        return between_simply(self.sections[cell].y, self.sections[cell + 1].y)
+
+
+@dataclass(frozen=True)
+class FibrePoint:
+    """A point over a critical abscissa: the curves through it, how often each meets the vertical line there."""
+
+    y: Ordinate
+    curves: tuple[tuple[int, int], ...]  # (curve, multiplicity of the root; 1 or 2: at least 2)
+
+
+@dataclass(frozen=True)
+class Fibre:
+    """The points over a critical abscissa, the edges of the box included, from below to above.
+
+    ``left[j]``, ``right[j]`` are the first section of the neighbouring column that ends in point j or above; one more
+    entry at the end.  Empty at the edge of the box.
+    """
+
+    abscissa: Abscissa
+    points: tuple[FibrePoint, ...]
+    left: tuple[int, ...]
+    right: tuple[int, ...]
+
+
+def between_simply(below: Any, above: Any) -> Rational:
+    """A rational number with a small denominator in the middle of what lies between two numbers, below < above."""
+    while True:
+        a, b = high(below), low(above)
+        if b > a and all(isinstance(x, fmpq) or x.high - x.low <= (b - a) / 4 for x in (below, above)):
+            return simplest(a + (b - a) / 4, b - (b - a) / 4)
+        for x in (below, above):
+            if not isinstance(x, fmpq):
+                x.halve()
+
+
+def column(curves: Sequence[Curve], box: Box, x: Rational) -> Column:
+    """The branches over a rational x that is not critical."""
+    found: list[tuple[Root, int]] = []
+    for k, curve in enumerate(curves):
+        p = curve.over(x)
+        if p.degree() > 0:
+            found += [(root, k) for root in roots_between(primitive(p), box.y0, box.y1)]
+    # Different numbers: curves meet over critical abscissas only.
+    found.sort(key=lambda pair: _Ordered(pair[0]))
+    sections = [Section(BOTTOM, box.y0), *(Section(k, root) for root, k in found), Section(TOP, box.y1)]
+    return Column(x, tuple(sections))
+
+
+def points_over(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
+    """The points of the curves over a critical abscissa, in the box, with its edges."""
+    found = _over_rational(curves, box, at.x) if at.rational else _over_algebraic(curves, box, at)
+    ends = {BOTTOM: box.y0, TOP: box.y1}
+    for y in ends.values():
+        if not any(isinstance(p.y, fmpq) and p.y == y for p in found):
+            found.append(FibrePoint(y, ()))
+    return sorted(found, key=lambda point: _Ordered(point.y))
+
+
+class _Ordered:
+    """Sorts different numbers."""
+
+    def __init__(self, y: Ordinate) -> None:
+        self.y = y
+
+    def __lt__(self, other: _Ordered) -> bool:
+        return _order(self.y, other.y) < 0
+
+
+def _order(a: Ordinate, b: Ordinate) -> int:
+    """The order of two different numbers, or of one with itself."""
+    if a is b:
+        return 0
+    while high(a) >= low(b) and high(b) >= low(a):
+        for x in (a, b):
+            if not isinstance(x, fmpq):
+                x.halve()
+    return -1 if high(a) < low(b) else 1
+
+
+def _over_rational(curves: Sequence[Curve], box: Box, x: Rational) -> list[FibrePoint]:
+    """All polynomials f(x, .) are factored over the rationals."""
+    through: dict[str, tuple[Integer, dict[int, int]]] = {}
+    for k, curve in enumerate(curves):
+        for factor, power in primitive(curve.over(x)).factor()[1]:
+            if factor.degree() > 0:
+                through.setdefault(str(factor), (factor, {}))[1][k] = int(power)
+    found = []
+    for factor, powers in through.values():
+        roots = [number(root) for root in roots_between(factor, box.y0, box.y1)]
+        roots += [y for y in (box.y0, box.y1) if factor(y) == 0]
+        found += [FibrePoint(y, tuple(sorted(powers.items()))) for y in roots]
+    return found
+
+
+def _over_algebraic(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
+    """The polynomials f(alpha, .) are split into pairwise coprime square-free ones over QQ(alpha).
+
+    Which of them can have common or multiple roots is known beforehand: those whose resultant or discriminant has
+    alpha's minimal polynomial for a factor.
+    """
+    field = Extension(at.x)
+    basis: list[tuple[OverField, dict[int, int]]] = []
+    for k, curve in enumerate(curves):
+        whole = field.trimmed(curve.in_y)
+        if len(whole) < 2:
+            continue
+        pieces = _with_multiplicity(field, whole) if k in at.degenerate else [(field.monic(whole), 1)]
+        for piece, multiplicity in pieces:
+            basis = _refined(field, basis, piece, k, multiplicity, at)
+    for edge, y in ((BOTTOM, box.y0), (TOP, box.y1)):
+        if any(edge in pair for pair in at.meeting):
+            line = field.trimmed([fmpq(-1) * y * _one(field), _one(field)])
+            basis = _refined(field, basis, line, edge, 1, at)
+    found = []
+    for piece, through in basis:
+        on = tuple(sorted((k, m) for k, m in through.items() if k >= 0))
+        for root in field.roots(piece):
+            if BOTTOM in through or TOP in through:
+                found.append(FibrePoint(box.y0 if BOTTOM in through else box.y1, on))
+            elif root.compare(box.y0) > 0 and root.compare(box.y1) < 0:
+                found.append(FibrePoint(root if root.exact is None else root.exact, on))
+            elif root.compare(box.y0) == 0 or root.compare(box.y1) == 0:  # the edge itself is a curve
+                found.append(FibrePoint(root.exact, on))
+    return found
+
+
+def _one(field: Extension) -> Any:
+    return field.modulus * 0 + 1
+
+
+def _with_multiplicity(field: Extension, p: OverField) -> list[tuple[OverField, int]]:
+    """[(simple roots, 1), (multiple ones, 2)], without those that are empty."""
+    p = field.monic(p)
+    common = field.gcd(p, field.derivative(p)) if len(p) > 2 else [_one(field)]
+    if len(common) == 1:
+        return [(p, 1)]
+    every = field.divided(p, common)[0]
+    multiple = field.squarefree(common)
+    simple = field.divided(every, multiple)[0]
+    return [(q, m) for q, m in ((field.monic(simple), 1), (multiple, 2)) if len(q) > 1]
+
+
+def _refined(
+    field: Extension,
+    basis: list[tuple[OverField, dict[int, int]]],
+    piece: OverField,
+    curve: int,
+    multiplicity: int,
+    at: Abscissa,
+) -> list[tuple[OverField, dict[int, int]]]:
+    """The coprime basis with one more polynomial."""
+    found: list[tuple[OverField, dict[int, int]]] = []
+    for have, through in basis:
+        meet = len(piece) > 1 and any(frozenset((curve, k)) in at.meeting for k in through)
+        common = field.gcd(have, piece) if meet else [_one(field)]
+        if len(common) == 1:
+            found.append((have, through))
+            continue
+        piece = field.monic(field.divided(piece, common)[0])
+        rest = field.monic(field.divided(have, common)[0])
+        found.append((common, through | {curve: multiplicity}))
+        if len(rest) > 1:
+            found.append((rest, through))
+    if len(piece) > 1:
+        found.append((piece, {curve: multiplicity}))
+    return found
+
+
+def connected(
+    curves: Sequence[Curve],
+    box: Box,
+    at: Abscissa,
+    points: Sequence[FibrePoint],
+    columns: tuple[Column | None, Column | None],
+) -> Fibre:
+    """The fibre with the sections of the columns to its left and right that end in its points."""
+    separators = [between_simply(a.y, b.y) for a, b in pairwise(points)]
+    along = [(k, c, curve.along(c)) for k, curve in enumerate(curves) for c in separators]
+    lines = [(k, c, primitive(p)) for k, c, p in along if p.degree() > 0]
+    sides = []
+    for column_, sense in zip(columns, (-1, 1), strict=True):
+        sides.append(() if column_ is None else _attached(curves, box, at, separators, lines, column_, sense))
+    return Fibre(at, tuple(points), sides[0], sides[1])
+
+
+def _attached(
+    curves: Sequence[Curve],
+    box: Box,
+    at: Abscissa,
+    separators: Sequence[Rational],
+    lines: Sequence[tuple[int, Rational, Integer]],
+    beside: Column,
+    sense: int,
+) -> tuple[int, ...]:
+    """The first section of a neighbouring column that ends in each point or above."""
+    near = _near(at.x, beside.x, sense, [p for _, _, p in lines])
+    # Sections below each separator at x = near; the bottom edge is one of them.
+    below = [1] * len(separators)
+    for curve in curves:
+        p = curve.over(near)
+        if p.degree() < 1:
+            continue
+        q = primitive(p)
+        count = 0
+        for j, (a, b) in enumerate(pairwise([box.y0, *separators])):
+            count += _count(q, a, b)
+            below[j] += count
+    if separators and below[-1] > len(beside.sections) - 1:
+        raise Defect("branches were lost between two stacks")
+    return (0, *below, len(beside.sections))
+
+
+def _count(p: Integer, a: Rational, b: Rational) -> int:
+    """Roots of a square-free polynomial in (a, b)."""
+    most: int = bound(p, a, b)
+    return most if most < 2 else len(roots_between(p, a, b))
+
+
+def _near(alpha: Number, sample: Rational, sense: int, lines: Sequence[Integer]) -> Rational:
+    """A rational x between alpha and the sample with no zero of any polynomial between alpha and x, ends included."""
+    if isinstance(alpha, fmpq):
+        near = sample
+        for p in lines:
+            while p(near) == 0 or bound(p, min(alpha, near), max(alpha, near)):
+                near = (alpha + near) / 2
+        return near
+    while alpha.low <= sample <= alpha.high:
+        alpha.halve()
+    near = sample
+    for p in lines:
+        while True:
+            a, b = (near, alpha.high) if sense < 0 else (alpha.low, near)
+            if p(a) != 0 and p(b) != 0 and not bound(p, a, b):
+                break
+            alpha.halve()
+            edge = alpha.low if sense < 0 else alpha.high
+            near = (edge + near) / 2
+    return near
