@@ -36,6 +36,7 @@ from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import Prepared, prepared_parts
 
 if TYPE_CHECKING:
+    from mbsym.problems.dissipation import Balance
     from mbsym.problems.equilibrium import Equilibrium
 
 
@@ -59,6 +60,7 @@ class Fault(Enum):
     NOWHERE = "the motion does not exist"
     IRRATIONAL = "not rational"
     SINGULAR = "a division by zero"
+    OUTSIDE = "no point keeps it"
 
 
 @dataclass(frozen=True)
@@ -82,11 +84,13 @@ class Unfit(Failure):
 
 @dataclass(frozen=True)
 class Section:
-    """``parts`` over ``context``, whose generators are the ``axes`` in their order.
+    """``parts`` over ``context``, whose generators are the ``axes`` in their order; ``coordinates`` of the parts.
 
-    ``coordinates`` of the parts; ``one_energy``: as in ``verdict.combine``.  ``undefined``: where one of these vanishes
-    the formulas divide by zero, or the equations have another form; nothing is said there.  ``numbers``: what was put
-    in, by name, also from the description; ``images`` carries further formulas in parameters.
+    ``law`` tells by the signs of the axes whether the energy of the nonlinear system is proved not to grow, ``judged``
+    gives the parts with that; ``parts`` and ``one_energy`` (as in ``verdict.combine``) hold what is proved for all
+    points alike.  ``undefined``: where one of these vanishes the formulas divide by zero, or the equations have another
+    form; nothing is said there.  ``numbers``: what was put in, by name, also from the description; ``images`` carries
+    further formulas in parameters.
     """
 
     axes: tuple[Axis, ...]
@@ -94,9 +98,57 @@ class Section:
     parts: tuple[LinearSystem, ...]
     coordinates: tuple[tuple[str, ...], ...]
     one_energy: bool
+    law: Law
     undefined: tuple[Polynomial, ...]
     numbers: Mapping[str, Fraction]
     images: Images
+
+    @property
+    def asked(self) -> tuple[Polynomial, ...]:
+        """The axes themselves, where signs other than the declared ones may tell more about the energy."""
+        return () if self.one_energy else tuple(self.context.gens())
+
+    def judged(self, signs: Sequence[int]) -> tuple[tuple[LinearSystem, ...], bool]:
+        """(parts, one energy) where the coordinates of a point have these signs."""
+        bounded = self.law(tuple(signs))
+        if bounded == self.one_energy:
+            return self.parts, self.one_energy
+        return tuple(replace(part, conservative=bounded) for part in self.parts), bounded
+
+
+class Law:
+    """Whether the energy is proved not to grow, by the signs (-1, 0, 1) of the axes at a point.
+
+    The proof holds for all points of these signs; without one it is False.
+    """
+
+    def __init__(self, balance: Balance, axes: Sequence[str], given: Mapping[str, Fraction]) -> None:
+        self._balance, self._axes = balance, tuple(axes)
+        self._given = dict(given)
+        self.everywhere = balance.at(self._given).law.bounded
+        self._found: dict[tuple[int, ...], bool] = {}
+
+    def __call__(self, signs: tuple[int, ...]) -> bool:
+        if self.everywhere:
+            return True
+        if signs not in self._found:
+            self._found[signs] = self._prove(signs)
+        return self._found[signs]
+
+    def _prove(self, signs: Sequence[int]) -> bool:
+        ring = self._balance.scene.ring
+        zeros = {name: Fraction(0) for name, sign in zip(self._axes, signs, strict=True) if sign == 0}
+        known = {name: x for name, x in zeros.items() if name in self._balance.scene.system.parameter_names}
+        told = [
+            (ring.generator("parameter", name) * sign, ">")
+            for name, sign in zip(self._axes, signs, strict=True)
+            if sign
+        ]
+        try:
+            there = self._balance.at(self._given | known)
+            return replace(there, signs=self._balance.signs.assuming(told)).law.bounded
+        except ValueError:  # no parameters have these signs
+            return False
 
 
 def usable(system: System) -> tuple[str, ...]:
@@ -123,7 +175,8 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
     solved = {name: value.polynomial for name, value in motion.solved}
     images = Images(scene, chosen, context, given, solved)
     parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
-    balance = analysis.balance.at({name: x for name, x in given.items() if name in analysis.system.parameter_names})
+    known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
+    balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
     undefined: list[Polynomial] = []
     found = []
     for part in parts:
@@ -141,7 +194,8 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         context,
         tuple(found),
         tuple(part.coordinates for part in parts),
-        balance.law.bounded,
+        law.everywhere,
+        law,
         tuple(undefined),
         given,
         images,

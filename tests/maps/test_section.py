@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -14,7 +15,9 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.maps.admissible import admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.verdicts import verdict_at as verdict_at_point
 from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.word import Word
 
 
 def made(name: str, axes: dict[str, tuple[Any, Any]], **settings: Any) -> Section:
@@ -178,3 +181,27 @@ def test_conditions_that_hold_nowhere_are_told() -> None:
     assert any(one.origin is Origin.ASSUMPTION for one in found.vanishing)
     # lambda^2 splits off: the constant term is that of what is left, and does not vanish identically
     assert all(p != 0 for p in found.factors)
+
+
+DAMPED = Path(__file__).parent / "damped.yaml"
+
+
+def test_what_the_energy_does_depends_on_signs_and_is_proved_for_all_points_of_these_signs() -> None:
+    """x'' + b x' + k x = 0 beside y'' + y = 0: stable for b >= 0 < k by the energy of both, which roots do not show."""
+    there = section(mbsym.load(DAMPED), [Axis("b", Fraction(-1), Fraction(1)), Axis("k", Fraction(0), Fraction(1))], {})
+    assert not there.one_energy
+    assert [there.judged((sign, 1))[1] for sign in (-1, 0, 1)] == [False, True, True]
+    said = [verdict_at_point(there, (fmpq(b), fmpq(1, 2))).verdict.word for b in (-1, 0, 1)]
+    assert said == [Word.UNSTABLE, Word.STABLE, Word.STABLE]
+    assert [str(x) for x in there.asked] == ["b", "k"]
+
+
+def test_roots_are_counted_over_all_subsystems() -> None:
+    """x'' + b x' - x/2 = 0: one real root to the right whatever b is; b = -2, k = 5: a pair."""
+    there = section(
+        mbsym.load(DAMPED), [Axis("b", Fraction(-3), Fraction(1)), Axis("k", Fraction(-1), Fraction(9))], {}
+    )
+    found = verdict_at_point(there, (fmpq(1), fmpq(-1, 2)))
+    assert (found.right, found.real_right, found.degree, found.null) == (1, 1, 1, 0)
+    found = verdict_at_point(there, (fmpq(-2), fmpq(5)))
+    assert (found.right, found.real_right, found.degree, found.null) == (2, 0, 0, 0)
