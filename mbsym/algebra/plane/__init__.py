@@ -2,6 +2,7 @@
 
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Corner, CornerKind, Region
 from mbsym.algebra.plane.decomposition import decompose
+from mbsym.algebra.plane.drawing import areas, polyline
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget
@@ -16,5 +17,7 @@ __all__ = [
     "CornerKind",
     "Point",
     "Region",
+    "areas",
     "decompose",
+    "polyline",
 ]
