@@ -1,0 +1,103 @@
+"""Options that name parameters of a section: ``--set p1=2/5``, ranges of axes, and what is wrong with them.
+
+A name is that of a parameter or of a symbol of the notation; a number is rational, ``2/5`` or ``0.4``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from mbsym.expressions.guessing import guess
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.model.system import rational
+from mbsym.source import render_option
+from mbsym_cli.options import MAX_LENGTH, Options
+
+if TYPE_CHECKING:
+    from mbsym.maps.section import Complaint
+    from mbsym.model.system import System
+
+
+def read_settings(texts: Sequence[str], system: System, options: Options) -> dict[str, Fraction]:
+    """``--set name=number``, each name once; every complaint joins those of ``options``."""
+    found: dict[str, Fraction] = {}
+    for text in texts:
+        name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
+        if not equals or not name or len(text) > MAX_LENGTH:
+            told = f"{ascii_safe(text[:80])} gives no value"
+            options.complain("--set", "bad-assignment", told, "write name=number, for example p1=2/5")
+            continue
+        value = read_rational(right, f"--set {ascii_safe(name)}", options)
+        known(name, "--set", system, options)
+        if name in found:
+            options.complain("--set", "repeated-name", f"'{ascii_safe(name)}' is set twice")
+        if value is not None:
+            found[name] = value
+    return found
+
+
+def known(name: str, option: str, system: System, options: Options) -> bool:
+    """Whether a name is a parameter's or a symbol's; if it is not, that is one of the complaints."""
+    from mbsym.maps.section import usable
+
+    names = usable(system)
+    if name in names:
+        return True
+    told = f"there is no parameter called '{ascii_safe(name)}'{guess(name, names)}"
+    options.complain(option, "unknown-name", told)
+    return False
+
+
+def read_rational(text: str, option: str, options: Options) -> Fraction | None:
+    """A rational number, of either sign."""
+    text = " ".join(text.splitlines())
+    complaints = Complaints()
+    value = None
+    if len(text) > MAX_LENGTH:
+        complaints.error("bad-number", "this number is too long")
+    else:
+        parsed = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+        if parsed is not None and not complaints.errors:
+            value = rational(parsed)
+            if value is None:
+                hint = "write it as a fraction or a decimal, 2/5 or 0.4: what is found is exact"
+                complaints.error("bad-number", "a rational number is wanted", Span(1, 1, max(1, len(text))), hint)
+    options.complaints += [render_option(one, text, option) for one in complaints.sorted()]
+    return value
+
+
+def complain_unfit(wrong: Sequence[Complaint], axis_option: str, options: Options) -> None:
+    """Why a section cannot be made: everything at once, each with what to do."""
+    from mbsym.maps.section import Fault
+
+    lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
+    if lacking:
+        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
+        options.complain("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
+    for one in dict.fromkeys(wrong):
+        match one.fault:
+            case Fault.RELATED:
+                told = f"{one.name} follows from other parameters: {one.about}"
+                options.complain(axis_option, "given-by-relation", told, "take those of which its relation is made")
+            case Fault.SOLVED:
+                told = f"{one.name} has one value on the motion only: {one.about}"
+                options.complain(axis_option, "given-by-motion", told, "take those of which its value is made")
+            case Fault.DEPENDENT:
+                told = f"{one.name} is not independent of {one.about or 'the parameters'}"
+                options.complain(axis_option, "not-independent", told, "leave one of them out")
+            case Fault.SIGN:
+                told = f"{one.name} is declared {one.about}, or is by its definition"
+                options.complain("--set", "against-sign", told, "choose a number of that sign")
+            case Fault.NOWHERE:
+                told = f"the motion of the description exists nowhere there: {one.name or one.about}"
+                options.complain("--set", "no-motion", told, "see problem 4 for the conditions")
+            case Fault.IRRATIONAL:
+                told = f"the matrices hold what is no rational number there: {one.name}"
+                options.complain("--set", "irrational", told, "choose values at which roots and angles are rational")
+            case Fault.SINGULAR:
+                options.complain(
+                    "--set", "division-by-zero", f"a division by zero in {one.name}", "choose other values"
+                )
