@@ -3,18 +3,19 @@
 An independent route to the variables of ``mechanics.speeds``: at numbers for q, q', q'' the oracle places all bodies in
 inertial axes as series in time; angular velocities, direction cosines and their rates are read off there, by
 
-    u = form(q, q', omega),      u' = du/dt,      e = columns of A_k^T A_j,
+    u = form(q, q', omega),      u' = du/dt,      e = columns of A_k^T A_j,      e0 = sqrt(1 + tr A_k^T A_j)/2,
 
 and S = du/dq' from the spins that unit velocities give.  Neither Y nor any derivative of a closed formula is used.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Lowering, Scalar
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, Series, State, TaylorSeries
-from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.speeds import OMEGA, Quaternion, Speed
 from mbsym.model.system import velocity_name
 
 
@@ -28,15 +29,29 @@ def completed(oracle: Oracle) -> State:
 
 def variables(oracle: Oracle) -> dict[str, Series]:
     """Speeds and components of unit vectors as series in time, of which the first two coefficients count."""
-    system, found = oracle.system, {}
+    system = oracle.system
+    found: dict[str, Series] = {}
     for body in system.bodies:
         if not body.orientation:
             continue
         own, frame = oracle.moving.axes[body.name], oracle.moving.axes[body.attached_to]
         for vector in body.orientation:
+            if isinstance(vector, Quaternion):
+                found |= dict(zip(vector.components, _quaternion(oracle, own, frame), strict=True))
+                continue
             for i, name in enumerate(vector.components):
                 found[name] = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
     return found | {speed.name: _speed(oracle, speed) for speed in system.speeds}
+
+
+def _quaternion(oracle: Oracle, own: Any, frame: Any) -> list[Series]:
+    """The quaternion with e0 > 0 of A = A_j^T A_k:  4 e0^2 = 1 + tr A,  4 e0 e1 = A32 - A23  and round (Shepperd)."""
+    algebra = TaylorSeries(oracle.numbers, {})
+    a = [[_sum(frame[k][m] * own[k][i] for k in range(3)) for i in range(3)] for m in range(3)]
+    twice = algebra.square_root(algebra.one + a[0][0] + a[1][1] + a[2][2])
+    half, slope = algebra.number(Fraction(1, 2)), algebra.reciprocal(twice)
+    differences = (a[2][1] - a[1][2], a[0][2] - a[2][0], a[1][0] - a[0][1])
+    return [half * twice, *(half * slope * x for x in differences)]
 
 
 def _sum(items: Any) -> Any:

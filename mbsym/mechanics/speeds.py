@@ -1,4 +1,4 @@
-"""Speeds u instead of generalised velocities, and unit vectors instead of angles: the variables of such a system.
+"""Speeds u instead of generalised velocities, unit vectors or a quaternion instead of angles: a system's variables.
 
     u = S(q, t) q' + s0(q, t),      q' = Y (u - s0),      Y = S^-1 = adj(S)/det(S)
 
@@ -8,7 +8,8 @@ of its direction cosines) has its angular velocity among the speeds, and Poisson
 
     e' = e x (omega_k - R omega_j)
 
-take the place of  q' = Y (u - s0)  for its angles.  The state is (s, u): s the coordinates and components that there
+take the place of  q' = Y (u - s0)  for its angles; of one that is told by a quaternion
+e' = 1/2 e o (omega_k - R omega_j)  does.  The state is (s, u): s the coordinates and components that there
 are.  Its derivatives are generators of the ring: u' and s' bear the names ``p_dot``, ``gamma1_dot``.
 """
 
@@ -26,10 +27,12 @@ from mbsym.algebra.matrices import determinant
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
+from mbsym.expressions.tree import divide, number
+from mbsym.mechanics import quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
 from mbsym.mechanics.variables import program_environment, ring_environment
-from mbsym.model.speeds import OMEGA, Speed
+from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
 
 
@@ -53,9 +56,12 @@ class SpeedForm:
     def __init__(self, system: System, ring: Ring) -> None:
         self.system, self.ring = system, ring
         self._plain = ring_environment(system, ring)
-        self.by_vectors = tuple(body for body in system.bodies if body.orientation)
-        #: The angles that unit vectors replace.
-        self.replaced = frozenset(name for body in self.by_vectors for name in body.coordinates)
+        #: The bodies whose place is told by unit vectors or a quaternion.
+        self.oriented = tuple(body for body in system.bodies if body.orientation)
+        self.by_quaternion = tuple(body for body in self.oriented if isinstance(body.orientation[0], Quaternion))
+        self.by_vectors = tuple(body for body in self.oriented if body not in self.by_quaternion)
+        #: The angles that these replace.
+        self.replaced = frozenset(name for body in self.oriented for name in body.coordinates)
         self.coordinates = tuple(name for name in system.coordinates if name not in self.replaced)
         self._solve()
 
@@ -64,7 +70,7 @@ class SpeedForm:
     def _solve(self) -> None:
         ring, system = self.ring, self.system
         scene = Scene(system, ring, self._plain, ring, given=self._given(ring, self._plain, only_vectors=True))
-        known = {speed.name for body in self.by_vectors for speed in system.speeds if _is_own(speed, body)}
+        known = {speed.name for body in self.oriented for speed in system.speeds if _is_own(speed, body)}
         named = [speed for speed in system.speeds if speed.name not in known]
         forms = [self._form(scene, speed) for speed in named]
         rows = [[ring.velocity_derivative(x, name) for name in self.coordinates] for x in forms]
@@ -104,7 +110,7 @@ class SpeedForm:
     def _in_velocities(self) -> list[Polynomial]:
         """Every speed in q', for bodies that are told by vectors and do not turn on what they hang on."""
         ring, given = self.ring, self._given(self.ring, self._plain, only_vectors=True)
-        for body in self.by_vectors:
+        for body in self.oriented:
             scene = Scene(self.system, ring, self._plain, ring, given=given)
             motion = scene.motions[body.name]
             carried = motion.angular_velocity - motion.relative_angular_velocity
@@ -121,18 +127,40 @@ class SpeedForm:
         return [declared.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
 
     @cached_property
-    def variables_in_coordinates(self) -> dict[str, Polynomial]:
-        """Every declared speed and every component of a unit vector, by name, in (q, q', t)."""
-        named = dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
-        vectors = {self.ring.generators[k].name: x for k, x in self._cosines.items()}
-        return {name: vectors.get(name, named.get(name)) for name in self.system.variables}
+    def _plainly(self) -> dict[str, Polynomial]:
+        """Every speed and every position but the components of quaternions, by name, in (q, q', t)."""
+        found = {x.name: self.in_angles(self.ring.context.gen(x.index)) for x in self.positions}
+        return found | dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
+
+    def variables_in_coordinates(self, program: Program) -> dict[str, Node]:
+        """Every declared speed and every component of a unit vector or quaternion, by name, in (q, q', t).
+
+        As nodes of a program whose inputs bear the declared names.
+        """
+        known = self._nodes(program)
+        return {name: known[name] for name in self.system.variables}
 
     def state_in_coordinates(self, program: Program) -> list[Node]:
-        """(s, u) in (q, q', t), as nodes of a program whose inputs bear the declared names."""
-        carry = Carrier(self.ring, program, program_environment(self.system, program))
-        plain = {position.name: self.ring.context.gen(position.index) for position in self.positions}
-        positions = [self.in_angles(x) for x in plain.values()]
-        return [carry(x) for x in (*positions, *self.in_coordinates)]
+        """(s, u) in (q, q', t), in the same way."""
+        known = self._nodes(program)
+        return [known[x.name] for x in (*self.positions, *self.speeds)]
+
+    def _nodes(self, program: Program) -> dict[str, Node]:
+        inputs = program_environment(self.system, program)
+        carry = Carrier(self.ring, program, inputs)
+        halves = {
+            name: node
+            for body in self.by_quaternion
+            for name, node in self.quaternion_of_angles(body, program, inputs).items()
+        }
+        return {name: halves[name] if name in halves else carry(x) for name, x in self._plainly.items()}
+
+    def quaternion_of_angles(self, body: Body, algebra: Algebra, values: Mapping[str, Scalar]) -> dict[str, Scalar]:
+        """The components of a body's quaternion by name: one of the two, smooth in its angles."""
+        lower = Lowering(algebra, values)
+        (quaternion,) = body.orientation
+        turns = [(axis, *lower.angle(divide(angle, number(2)))) for axis, angle in body.rotation.turns()]
+        return dict(zip(quaternion.components, quaternions.of_turns(algebra, turns), strict=True))
 
     def _form(self, scene: Scene, speed: Speed) -> Polynomial:
         spin = scene.motions[speed.body].angular_velocity
@@ -217,12 +245,15 @@ class SpeedForm:
         """s' by name."""
         ring, found = self.ring, dict(self.velocities)
         scene = Scene(self.system, ring, self._in_speeds, ring, given=self._given(ring, self._plain, False))
-        for body in self.by_vectors:
+        for body in self.oriented:
             spin = scene.motions[body.name].relative_angular_velocity
-            for vector in body.orientation:
-                first, second, third = (self._plain[name] for name in vector.components)
-                e = Vector(ring, (first, second, third), body.name)
-                found |= dict(zip(vector.components, e.cross(spin), strict=True))
+            for one in body.orientation:
+                values = [self._plain[name] for name in one.components]
+                if isinstance(one, Quaternion):
+                    rates = [ring.reduce(x) for x in quaternions.rates(ring, values, list(spin))]
+                else:
+                    rates = list(Vector(ring, (values[0], values[1], values[2]), body.name).cross(spin))
+                found |= dict(zip(one.components, rates, strict=True))
         return found
 
     @cached_property
@@ -257,16 +288,42 @@ class SpeedForm:
     # --- relations ---------------------------------------------------------------------------------------------------
 
     def vanishes(self, x: Polynomial) -> bool | None:
-        """Whether x is zero wherever the unit vectors are orthonormal; None where the ring cannot decide.
+        """Whether x is zero wherever unit vectors are orthonormal, quaternions of norm 1; None where it is not known.
 
         Direction cosines made of angles reach all orientations, so that x is zero on them if and only if it is zero
-        with these in its place.
+        with these in its place.  A polynomial vanishes where |e| = 1 if and only if |e|^2 - 1 divides it; behind roots
+        and reciprocals that hold e a zero may hide.
         """
-        return self.ring.is_zero(self.in_angles(x))
+        found = self.ring.is_zero(self.in_angles(x))
+        return None if found is False and self._hides(x) else found
 
     def in_angles(self, x: Polynomial) -> Polynomial:
-        """x with the unit vectors in terms of the angles that they replace."""
-        return self.ring.substitute(x, self._cosines) if self._cosines else x
+        """x with the unit vectors in terms of the angles that they replace, and modulo |e|^2 - 1 of quaternions."""
+        ring = self.ring
+        x = ring.substitute(x, self._cosines) if self._cosines else x
+        for relation in self._norms:
+            if len(x) and any(x.degrees()[k] for k, d in enumerate(relation.degrees()) if d):
+                x = ring.reduce(divmod(x, relation)[1])
+        return x
+
+    @cached_property
+    def _norms(self) -> list[Polynomial]:
+        """|e|^2 - 1 of every quaternion."""
+        found = []
+        for body in self.by_quaternion:
+            total = -self.ring.one
+            for name in body.orientation[0].components:
+                e = self.ring.generator("coordinate", name)
+                total = total + e * e
+            found.append(total)
+        return found
+
+    def _hides(self, x: Polynomial) -> bool:
+        """Whether a root, reciprocal or function that holds a quaternion is in it."""
+        ring, degrees = self.ring, x.degrees()
+        names = [name for body in self.by_quaternion for name in body.orientation[0].components]
+        held = [g.argument for k, g in enumerate(ring.generators[: ring.spare]) if names and degrees[k]]
+        return any(argument is not None and ring.dependencies(argument, names) for argument in held)
 
     @cached_property
     def _cosines(self) -> dict[int, Polynomial]:
@@ -277,6 +334,7 @@ class SpeedForm:
             assert scene is not None
             rows = direction_cosines(ring, scene.motions[body.name].turns, body.attached_to, body.name)
             for vector in body.orientation:
+                assert isinstance(vector, UnitVector)
                 for row, name in enumerate(vector.components):
                     found[ring.index("coordinate", name)] = rows[row][vector.axis - 1]
         return found
@@ -297,7 +355,11 @@ def _is_own(speed: Speed, body: Body) -> bool:
 
 
 def direction_cosines_of(algebra: Algebra, body: Body, values: Mapping[str, Scalar]) -> Tensor:
-    """R^jk, whose columns are the axes of the frame j in the axes of the body, from the unit vectors."""
+    """R^jk, whose columns are the axes of the frame j in the axes of the body, from unit vectors or a quaternion."""
+    first = body.orientation[0]
+    if isinstance(first, Quaternion):
+        rows = quaternions.cosines(algebra, [values[name] for name in first.components])
+        return tensor_of(algebra, rows, body.name, body.attached_to)
     columns = [[values[name] for name in vector.components] for vector in body.orientation]
     return tensor_of(algebra, [[column[i] for column in columns] for i in range(3)], body.name, body.attached_to)
 

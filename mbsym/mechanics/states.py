@@ -12,6 +12,7 @@ from mbsym.algebra.point import Balls, BallsAtRationals, Rationals
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.variables import has_linear_angles
+from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
@@ -37,13 +38,18 @@ def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
     source = random.Random(SEED)
     for _ in range(count):
         values = _values(system, ring, source) | {"pi": fmpq(355, 113)}
-        yield State(Rationals(_tangents(ring, source), ring.angles), values)
+        yield State(Rationals(_tangents(system, ring, source), ring.angles), values)
 
 
-def _tangents(ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
-    return {
+def _tangents(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
+    """Tangents of half angles; with quaternions sines and cosines of half angles are rational, too."""
+    found = {
         name: fmpq(source.randint(-9 * fine, 9 * fine) or fine, source.randint(fine, 9 * fine)) for name in ring.angles
     }
+    if not any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation):
+        return found
+    quarters = {name: x / 10 for name, x in found.items()}  # no quarter turn of 45 degrees
+    return {name: 2 * x / (1 - x * x) for name, x in quarters.items()}
 
 
 def ball_states(system: System, ring: Ring, count: int, fine: int = 1) -> Iterator[State]:
@@ -67,7 +73,7 @@ def enclosed_states(system: System, ring: Ring, count: int, fine: int = 1) -> It
     source = random.Random(SEED)
     for _ in range(count):
         exact = _values(system, ring, source, fine)
-        numbers = BallsAtRationals(_tangents(ring, source, fine), ring.angles, exact)
+        numbers = BallsAtRationals(_tangents(system, ring, source, fine), ring.angles, exact)
         yield State(numbers, {**numbers.values, "pi": arb.pi()})
 
 

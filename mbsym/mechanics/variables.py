@@ -24,11 +24,16 @@ from mbsym.expressions.tree import (
     add,
     children,
     differentiate,
+    divide,
     multiply,
+    names,
+    number,
     sticks,
+    substitute,
     walk,
 )
 from mbsym.model.loads import EXACT
+from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: The sines and cosines of so many constant angles have places in the ring.
@@ -136,6 +141,21 @@ def angles_of(system: System) -> Iterator[Expression]:
                 yield node.argument
 
 
+def half_angles(system: System) -> list[Expression]:
+    """Half of every angle on the unperturbed motion of bodies told by quaternions, but for those that are 0 or turn."""
+    values = {one.coordinate: one.value for one in system.motion if one.rate == ZERO}
+    zeros = dict.fromkeys(system.coordinates, ZERO) if values else {}
+    turning = {one.coordinate for one in system.motion if one.rate != ZERO}
+    found = []
+    for body in system.bodies if zeros else ():
+        if any(isinstance(one, Quaternion) for one in body.orientation):
+            for _, angle in body.rotation.turns():
+                value = substitute(angle, zeros | values)
+                if value != ZERO and not names(angle) & turning:
+                    found.append(divide(value, number(2)))
+    return found
+
+
 def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set[tuple[Fraction, Fraction]]:
     """The different constants (turns, radians), turns*pi + radians, that the angles of a system contain.
 
@@ -170,6 +190,7 @@ def ring_of(
     ``arguments`` are angles under sin and cos besides those of the system; ``moving`` and ``fixed`` names of further
     quantities, those that vary with the state and those that do not.
     """
+    arguments = (*arguments, *half_angles(system))
     adjunctions = 12 + 4 * len(system.loads)
     # Every mass centre has a distance of its own in the exact field, and on the unperturbed motion another one.
     exact = sum(field.order == EXACT for field in system.newtonian_fields)

@@ -34,7 +34,7 @@ from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
-from mbsym.model.speeds import Speed, UnitVector
+from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ class Body:
     gyrostatic_moment: Vector | None = None
     shapes: tuple[Shape, ...] = ()
     speeds: tuple[Speed, ...] = ()
-    orientation: tuple[UnitVector, ...] = ()
+    orientation: tuple[UnitVector | Quaternion, ...] = ()
     span: Span | None = _span()
 
 
@@ -275,7 +275,7 @@ class System(GuessesNames):
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """The names of speeds and of components of unit vectors: what the state holds besides q and q'."""
+        """The names of speeds and components of unit vectors and quaternions: what the state holds besides q and q'."""
         vectors = (name for body in self.bodies for vector in body.orientation for name in vector.components)
         return (*vectors, *(speed.name for speed in self.speeds))
 

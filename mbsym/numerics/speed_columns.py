@@ -1,6 +1,6 @@
-"""Speeds and components of unit vectors along a trajectory of coordinates and generalised velocities.
+"""Speeds and components of unit vectors and quaternions along a trajectory of coordinates and generalised velocities.
 
-    u = S(q, t) q' + s0(q, t),      e = the columns of the direction cosines R(q)
+    u = S(q, t) q' + s0(q, t),      e = the columns of the direction cosines R(q), or turns by half angles, one by one
 
 as the straight-line program of their closed formulas (``mbsym.mechanics.speeds``).
 """
@@ -11,10 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Program
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
@@ -31,11 +30,10 @@ def speed_columns(scenario: Scenario, times: Any, states: Any) -> dict[str, Any]
         return {}
     ring = ring_of(system)
     form = SpeedForm(system, ring)
-    formulas = form.variables_in_coordinates
     program = Program()
-    carry = Carrier(ring, program, program_environment(system, program))
+    formulas = form.variables_in_coordinates(program)
     fresh = bound(scenario)
-    nodes = substituted(program, [carry(x) for x in formulas.values()], fresh)
+    nodes = substituted(program, list(formulas.values()), fresh)
     inputs = ("t", *system.coordinates, *system.velocities)
     kernel = kernels({"speeds": Code(fresh, inputs, tuple(nodes))})["speeds"]
     with np.errstate(all="ignore"):

@@ -6,9 +6,11 @@ u' = 0, s' = 0 on the motion
     delta s' = (dg/dx) x,      M_0 delta u' = (df/dx) x,      so that      A = [dg/dx; M_0^-1 df/dx].
 
 Deviations of unit vectors are not free: e_0 . delta e = 0 and the like, one zero root of A for each that belongs to no
-motion.  Where the motion is not steady in these variables there is no such A.
+motion; so those of a quaternion, e_0 . delta e = 0.  Where the motion is not steady in these variables there is no
+such A.
 
-Second route: with T = d(s, u)/d(q, q') on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q.
+Second route: with T = d(s, u)/d(q, q') on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q;
+the rows of a quaternion there are  de/dq_i = 1/2 e o w_i,  w_i the axis about which q_i turns, in those of the body.
 """
 
 from __future__ import annotations
@@ -19,10 +21,13 @@ from dataclasses import dataclass
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import divide, number, substitute
+from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import rate_on_motion, unperturbed_with, unsteady
+from mbsym.mechanics.motion import motion_values, rate_on_motion, turning, unperturbed_with, unsteady
+from mbsym.mechanics.quaternions import of_turns, rates
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
 from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
@@ -35,13 +40,15 @@ from mbsym.problems.speeds import SpeedEquations
 class FirstOrder(Shown):
     """``names`` of x, positions first; their ``values`` on the motion; A (k x k).
 
-    ``relations``: how many combinations of the deviations of unit vectors are zero.
+    ``relations``: how many combinations of the deviations of unit vectors and quaternions are zero, ``norms`` those of
+    quaternions among them.
     """
 
     names: tuple[str, ...]
     values: Column
     A: Matrix
     relations: int
+    norms: int
 
     @property
     def terms(self) -> int:
@@ -57,16 +64,17 @@ def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilib
         raise NoClosedForm("the given motion does not exist")
     variables = _variables(form, equations)
     plain, at = _motion(form, equilibrium)
-    values = {x.index: _value(form, x, at) for x in variables}
+    turned = _quaternions(form, plain)
+    values = {x.index: turned[x.name] if x.name in turned else _value(form, x, at) for x in variables}
     varying = {name for value in values.values() for name in unsteady(plain, value)}
     if varying:
         raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
     on = dict(at) | values
-    rates = [form.rates[x.name] for x in variables[: len(variables) - len(form.speeds)]]
+    kinematic = [form.rates[x.name] for x in variables[: len(variables) - len(form.speeds)]]
     forcing = [x.polynomial for x in equations.forcing]
-    slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in (*rates, *forcing)]
+    slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in (*kinematic, *forcing)]
     mass = [[ring.substitute(x, on) for x in row] for row in equations.mass_matrix.polynomials]
-    m = len(rates)
+    m = len(kinematic)
     lower = _solved(ring, mass, slopes[m:])
     if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
         raise NoClosedForm("the coefficients of the first approximation vary with time")
@@ -76,6 +84,7 @@ def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilib
         values=column(ring, list(values.values())),
         A=Matrix.of(ring, [*slopes[:m], *lower]),
         relations=count,
+        norms=len(equations.quaternions),
     )
 
 
@@ -86,11 +95,13 @@ def check(
     ring, names = form.ring, form.system.coordinates
     plain, motion = _motion(form, at)
     variables = _variables(form, equations)
-    inner = [_inner(form, x) for x in variables]
+    turned = _quaternion_slopes(form, plain, motion)
     rows = [
-        [ring.substitute(ring.derivative(y, name), motion) for name in names]
+        turned[x.name]
+        if x.name in turned
+        else [ring.substitute(ring.derivative(y, name), motion) for name in names]
         + [ring.substitute(ring.velocity_derivative(y, name), motion) for name in names]
-        for y in inner
+        for x, y in ((x, _inner(form, x)) for x in variables)
     ]
     routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
     moving = [[ring.substitute(rate_on_motion(plain, x), motion) for x in row] for row in rows]
@@ -104,8 +115,8 @@ def check(
     left, right = _product(ring, found.A.polynomials, rows), _product(ring, rows, whole)
     known = [
         ring.is_zero(ring.reduce(a - b - rate))
-        for one, other, rates in zip(left, right, moving, strict=True)
-        for a, b, rate in zip(one, other, rates, strict=True)
+        for one, other, moved in zip(left, right, moving, strict=True)
+        for a, b, rate in zip(one, other, moved, strict=True)
     ]
     outcome = FAILED if False in known else UNDECIDED if None in known else EXACT
     return Check("first approximation in speeds", *routes, outcome, "" if outcome != EXACT else "identical polynomials")
@@ -128,6 +139,45 @@ def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
         if speed is variable:
             return value
     return form.in_angles(form.ring.context.gen(variable.index))
+
+
+def _quaternions(form: SpeedForm, plain: Scene) -> dict[str, Polynomial]:
+    """The components of quaternions on the motion, by name.  Raises NoClosedForm where they turn there."""
+    values = {name: value for name, (value, _) in motion_values(form.system).items()}
+    found: dict[str, Polynomial] = {}
+    for body in form.by_quaternion:
+        used = {name for _, angle in body.rotation.turns() for name in names_in(angle)}
+        varying = used & {*turning(plain), *(item.name for item in form.system.prescribed), "t"}
+        if varying:
+            names = ", ".join(sorted(varying))
+            raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {names}")
+        turns = []
+        for axis, angle in body.rotation.turns():
+            sine, cosine = plain.lower.angle(divide(substitute(angle, values), number(2)))
+            turns.append((axis, sine, cosine))
+        components = body.orientation[0].components
+        found |= dict(zip(components, map(form.ring.reduce, of_turns(form.ring, turns)), strict=True))
+    return found
+
+
+def _quaternion_slopes(form: SpeedForm, plain: Scene, motion: Mapping[int, Polynomial]) -> dict[str, list[Polynomial]]:
+    """d(e)/d(q, q') of every component on the motion, by name:  1/2 e o w_i  and zeros."""
+    ring, names = form.ring, form.system.coordinates
+    found: dict[str, list[Polynomial]] = {}
+    if not form.by_quaternion:
+        return found
+    values = _quaternions(form, plain)
+    moving = Scene(plain.system, ring, plain.environment, ring)
+    for body in form.by_quaternion:
+        components = body.orientation[0].components
+        e, spin = [values[name] for name in components], moving.motions[body.name].relative_angular_velocity
+        columns = []
+        for name in names:
+            axis = [ring.substitute(ring.velocity_derivative(x, name), motion) for x in spin]
+            columns.append([ring.reduce(x) for x in rates(ring, e, axis)])
+        zeros = [ring.zero] * len(names)
+        found |= {name: [*(column[k] for column in columns), *zeros] for k, name in enumerate(components)}
+    return found
 
 
 def _value(form: SpeedForm, variable: Variable, at: Mapping[int, Polynomial]) -> Polynomial:

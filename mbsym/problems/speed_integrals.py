@@ -12,8 +12,8 @@ before zero is decided).  Tried are
 * the components of the linear and angular momentum in inertial axes; with the unit vector gamma along one of them the
   area integral  (A p + h_1) gamma_1 + (B q + h_2) gamma_2 + (C r + h_3) gamma_3;
 * dT/du_r of the declared speeds (C r of a symmetric top);
-* the squares and products of the unit vectors that occur: what these are is known, they are listed because the
-  equations alone keep them.
+* the squares and products of the unit vectors that occur, the norms of quaternions: what these are is known, they are
+  listed because the equations alone keep them.
 
 Others, such as those of Kovalevskaya's and Clebsch's cases, are not looked for; a claim can propose them.
 """
@@ -35,7 +35,7 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.integrals import ENERGY, PROVED, Integral, whole_momenta
 from mbsym.problems.speeds import SpeedEquations, residual
 
-GEOMETRIC, SPEED_MOMENTUM = "unit vectors", "speed momentum"
+GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
 
 
 @dataclass(frozen=True)
@@ -97,12 +97,12 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
     known: list[Polynomial] = []
     for integral, multipliers in _candidates(form, scene, energy, equations):
         x = integral.formula.polynomial
-        geometric = integral.kind == GEOMETRIC
+        geometric = integral.kind in (GEOMETRIC, NORM)
         with suppress(Failure):  # what is too long is not known to be conserved
             proved = bool(multipliers) and field.combines(x, multipliers) is True
             if (proved or field.keeps(x) is True) and (geometric or _is_new(form, x, known)):
                 found.append(integral)
-                if integral.kind not in (ENERGY, GEOMETRIC):
+                if integral.kind not in (ENERGY, GEOMETRIC, NORM):
                     known.append(x)
     assert all(x.formula.ring is ring for x in found)
     return tuple(found)
@@ -129,15 +129,17 @@ def _candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedE
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
-    for k, (name, components) in enumerate(equations.vectors):
-        for other, others in equations.vectors[k:]:
-            pairs = [
-                (ring.generator("coordinate", a), ring.generator("coordinate", b))
-                for a, b in zip(components, others, strict=True)
-            ]
-            product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
-            title = f"length of {name}" if other == name else f"product of {name} and {other}"
-            yield _integral(form, title, GEOMETRIC, name if other == name else f"{name} {other}", product), ()
+    for (name, components), (other, others) in equations.products:
+        pairs = [
+            (ring.generator("coordinate", a), ring.generator("coordinate", b))
+            for a, b in zip(components, others, strict=True)
+        ]
+        product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
+        if name in equations.quaternions:
+            yield _integral(form, f"norm of {name}", NORM, name, product), ()
+            continue
+        title = f"length of {name}" if other == name else f"product of {name} and {other}"
+        yield _integral(form, title, GEOMETRIC, name if other == name else f"{name} {other}", product), ()
 
 
 def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> Integral:

@@ -26,6 +26,7 @@ from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.model.speeds import Quaternion
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 
@@ -34,8 +35,9 @@ from mbsym.problems.equations import Equations
 class SpeedEquations(Equations):
     """M (n x n), f (n) of M u' = f; ``needed`` = ``supplied`` are the same equations before they are sorted.
 
-    ``speeds`` u and ``positions`` s by name, ``rates`` s' in their order.  ``vectors`` are the unit vectors that occur,
-    each with its components; ``aside`` the positions on which no equation depends, nor the rate of another one that
+    ``speeds`` u and ``positions`` s by name, ``rates`` s' in their order.  ``vectors`` are the unit vectors and
+    quaternions that occur, each with its components, three or four, ``owners`` their bodies, ``quaternions`` those of
+    norm 1; ``aside`` the positions on which no equation depends, nor the rate of another one that
     matters: they follow by integration.
     """
 
@@ -45,7 +47,9 @@ class SpeedEquations(Equations):
     rates: Column
     needed: Column
     supplied: Column
-    vectors: tuple[tuple[str, tuple[str, str, str]], ...]
+    vectors: tuple[tuple[str, tuple[str, ...]], ...]
+    owners: tuple[str, ...]
+    quaternions: tuple[str, ...]
     aside: tuple[str, ...]
 
     @property
@@ -65,10 +69,17 @@ class SpeedEquations(Equations):
     @property
     def relations(self) -> tuple[tuple[tuple[str, str], ...], ...]:
         """Pairs of components whose products sum up: to 1 where a vector meets itself, to 0 where it meets another."""
-        found = []
-        for k, (_, first) in enumerate(self.vectors):
-            found += [tuple(zip(first, second, strict=True)) for _, second in self.vectors[k:]]
-        return tuple(found)
+        return tuple(tuple(zip(first, second, strict=True)) for (_, first), (_, second) in self.products)
+
+    @property
+    def products(self) -> tuple[tuple[tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]]], ...]:
+        """Unit vectors and quaternions two by two, each with itself and with the others of its body."""
+        return tuple(
+            (first, second)
+            for k, first in enumerate(self.vectors)
+            for second in self.vectors[k:]
+            if second is first or self.owners[k] == self.owners[self.vectors.index(second)]
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,6 +117,7 @@ def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
     mass = [[a.derivative(u.rate_index) for u in form.speeds] for a in needed]
     names = tuple(s.name for s in form.positions)
     occurring = {s.name for s in form.occurring([*needed, *supplied])}
+    told = [(body.name, one) for body in form.oriented for one in body.orientation if set(one.components) & occurring]
     return SpeedEquations(
         mass_matrix=Matrix.of(ring, mass),
         forcing=column(ring, forcing),
@@ -116,12 +128,9 @@ def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
         rates=column(ring, [form.rates[name] for name in names]),
         needed=column(ring, needed),
         supplied=column(ring, supplied),
-        vectors=tuple(
-            (vector.name, vector.components)
-            for body in form.by_vectors
-            for vector in body.orientation
-            if set(vector.components) & occurring
-        ),
+        vectors=tuple((one.name, one.components) for _, one in told),
+        owners=tuple(owner for owner, _ in told),
+        quaternions=tuple(one.name for _, one in told if isinstance(one, Quaternion)),
         aside=tuple(name for name in names if name not in occurring),
     )
 

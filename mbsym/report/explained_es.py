@@ -6,6 +6,7 @@ _TURNED = "las rotaciones permanentes en torno a otras direcciones del espacio"
 
 EXPLAINED = {
     "length of {}": "longitud de {0}",
+    "norm of {}": "norma de {0}",
     "product of {} and {}": "producto de {0} y {1}",
     # what explains a verdict
     "{} root with positive real part.": "Raíces con parte real positiva: {0}.",

@@ -6,6 +6,7 @@ _TURNED = "перманентных вращений вокруг других �
 
 EXPLAINED = {
     "length of {}": "длина вектора {0}",
+    "norm of {}": "норма кватерниона {0}",
     "product of {} and {}": "произведение векторов {0} и {1}",
     # what explains a verdict
     "{} root with positive real part.": "Корней с положительной вещественной частью: {0}.",

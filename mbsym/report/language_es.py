@@ -14,6 +14,8 @@ SENTENCES = {
     "No equation above depends on $[[names]]$, which follow by integration:": "Ninguna de estas ecuaciones depende de $[[names]]$, que se obtienen por integración:",
     "As $M \\dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero.": "Como $M \\dot u = f$ con $u = ([[speeds]])$; $M$ es simétrica, los elementos que no se escriben son cero.",
     "speeds": "cuasivelocidades",
+    "orientation told by the quaternion $([[names]]) = (\\cos\\frac{\\phi}{2},\\, n \\sin\\frac{\\phi}{2})$ of norm 1, scalar part first: its axes are those of the frame that it hangs on turned by $\\phi$ about $n$; $v = e \\circ v_b \\circ e^*$ brings components in body axes to that frame": "orientación dada por el cuaternión $([[names]]) = (\\cos\\frac{\\phi}{2},\\, n \\sin\\frac{\\phi}{2})$ de norma 1, parte escalar primero: sus ejes son los del sistema anterior girados $\\phi$ en torno a $n$; $v = e \\circ v_b \\circ e^*$ lleva las componentes en ejes del cuerpo a ese sistema",
+    "Quaternions keep their norm: zero roots of $A$ that belong to no motion: [[count]].": "Los cuaterniones conservan su norma: raíces nulas de $A$ que no corresponden a ningún movimiento: [[count]].",
     "told by unit vectors, in its axes, along the axes of the frame that it hangs on": "orientación dada por vectores unitarios de los ejes del sistema anterior, en ejes del cuerpo",
     "axis": "eje",
     "with": "con",

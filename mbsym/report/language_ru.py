@@ -16,6 +16,8 @@ SENTENCES = {
     "No equation above depends on $[[names]]$, which follow by integration:": "Ни одно из этих уравнений не зависит от $[[names]]$; они находятся интегрированием:",
     "As $M \\dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero.": "В виде $M \\dot u = f$, где $u = ([[speeds]])$; матрица $M$ симметрична, невыписанные элементы равны нулю.",
     "speeds": "квазискорости",
+    "orientation told by the quaternion $([[names]]) = (\\cos\\frac{\\phi}{2},\\, n \\sin\\frac{\\phi}{2})$ of norm 1, scalar part first: its axes are those of the frame that it hangs on turned by $\\phi$ about $n$; $v = e \\circ v_b \\circ e^*$ brings components in body axes to that frame": "ориентация задана кватернионом $([[names]]) = (\\cos\\frac{\\phi}{2},\\, n \\sin\\frac{\\phi}{2})$ единичной нормы, скалярная часть первая: оси тела --- оси предыдущей системы, повёрнутые на $\\phi$ вокруг $n$; $v = e \\circ v_b \\circ e^*$ переводит проекции на оси тела в проекции на оси этой системы",
+    "Quaternions keep their norm: zero roots of $A$ that belong to no motion: [[count]].": "Кватернионы сохраняют норму: нулевых корней $A$, не отвечающих никакому движению, столько: [[count]].",
     "told by unit vectors, in its axes, along the axes of the frame that it hangs on": "ориентация задана единичными векторами осей предыдущей системы, в осях тела",
     "axis": "ось",
     "with": "где",

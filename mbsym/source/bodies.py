@@ -11,7 +11,7 @@ from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, is_number, subtract, walk
 from mbsym.model.admissibility import ROUNDING
-from mbsym.model.speeds import UnitVector
+from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector, rational
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, INERTIA, ROTATION
@@ -41,7 +41,7 @@ class Draft:
     coordinates: list[Scalar]
     whole: bool = True  # False: a coordinate was forgotten, or its list cannot be read
     speeds: list[tuple[Scalar, Node]] = field(default_factory=list)
-    orientation: tuple[UnitVector, ...] = ()
+    orientation: tuple[UnitVector | Quaternion, ...] = ()
 
 
 def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:

@@ -31,7 +31,7 @@ from mbsym.source.settings import read_comparisons
 
 _CONSTANTS = ("parameter", "notation", "abbreviation")
 #: An integral of a system with inputs holds none of them: nobody knows how they change.
-_WITHOUT_INPUTS = ("coordinate", "velocity", "speed", "unit vector", "prescribed", "time", *_CONSTANTS)
+_WITHOUT_INPUTS = ("coordinate", "velocity", "speed", "unit vector", "quaternion", "prescribed", "time", *_CONSTANTS)
 _PLACES = (*_WITHOUT_INPUTS, "input")
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")

@@ -85,7 +85,8 @@ BODY = {
     "speeds": "velocities of one's own, linear in generalised velocities: {u: x_dot*cos(phi) + y_dot*sin(phi)}; "
     "omega1, omega2, omega3 are the components of the angular velocity of this body in its own axes: {p: omega1}",
     "orientation": "angles, or unit vectors in the axes of the body along axes of the frame it hangs on: {gamma: 3}, "
-    "or direction cosines: {alpha: 1, beta: 2, gamma: 3}; their components are gamma1, gamma2, gamma3",
+    "or direction cosines: {alpha: 1, beta: 2, gamma: 3}; their components are gamma1, gamma2, gamma3; "
+    "or a quaternion: {e: quaternion}, e0 its scalar part, e1, e2, e3",
 }
 
 #: What a shape holds beside its kind, and the kinds.

@@ -34,7 +34,7 @@ from mbsym.source.keys import (
     TABLE,
     VERSION,
 )
-from mbsym.source.speeds import ANGLES, COSINES
+from mbsym.source.speeds import ANGLES, COSINES, QUATERNION
 from mbsym.source.symbols import LONGEST
 from mbsym.source.tables import MAX_POINTS
 
@@ -181,7 +181,12 @@ def _body_values() -> dict[str, Schema]:
         "coordinates": {"type": "array", "items": {"type": "string", "pattern": _NAME}},
         "shapes": {"type": "array", "items": _record(SHAPE, _shape_values())},
         "speeds": _named(_reference("expression")),
-        "orientation": {"anyOf": [{"enum": [ANGLES, COSINES]}, _named({"enum": [1, 2, 3, "1", "2", "3"]})]},
+        "orientation": {
+            "anyOf": [
+                {"enum": [ANGLES, COSINES, QUATERNION]},
+                _named({"enum": [1, 2, 3, "1", "2", "3", QUATERNION]}),
+            ]
+        },
     }
 
 

@@ -46,6 +46,7 @@ _KINDS = {
     "output": "an output",
     "speed": "a speed",
     "unit vector": "a component of a unit vector",
+    "quaternion": "a component of a quaternion",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -62,6 +63,7 @@ _PLURALS = {
     "output": "outputs",
     "speed": "speeds",
     "unit vector": "components of unit vectors",
+    "quaternion": "components of quaternions",
 }
 
 
@@ -138,7 +140,7 @@ class Scope:
         for suffix, kind in (("_dot", "velocity"), ("_ddot", "acceleration")):
             if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
                 return kind
-        if self.kinds.get(name.removesuffix("_dot")) in ("speed", "unit vector"):
+        if self.kinds.get(name.removesuffix("_dot")) in ("speed", "unit vector", "quaternion"):
             return "acceleration"  # what the equations give
         return None
 
@@ -192,7 +194,7 @@ class Scope:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
-            told = [one for one in allowed.kinds if one != "input" or self.of_kind(one)]
+            told = [one for one in allowed.kinds if one not in ("input", "quaternion") or self.of_kind(one)]
             held = _enumerated([_PLURALS[one] for one in told]) or "numbers"
             message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
             self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))

@@ -108,7 +108,7 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     if body.speeds:
         shape["speeds"] = {one.name: speed_text(one) for one in body.speeds}
     if body.orientation:
-        shape["orientation"] = {one.name: str(one.axis) for one in body.orientation}
+        shape["orientation"] = {one.name: one.word for one in body.orientation}
     if body.shapes:
         shape["shapes"] = [look_shape(one) for one in body.shapes]
     return shape

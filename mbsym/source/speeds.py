@@ -1,10 +1,11 @@
-"""Speeds and unit vectors of a body: their names, their forms, and whether the generalised velocities follow."""
+"""Speeds, unit vectors and quaternions: their names, their forms, whether the generalised velocities follow."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields, is_dataclass
+from functools import partial
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
@@ -20,7 +21,7 @@ from mbsym.expressions.tree import (
     negative,
     substitute,
 )
-from mbsym.model.speeds import OMEGA, Speed, UnitVector
+from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
 from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
 from mbsym.source import placed
 from mbsym.source.bodies import Draft, read_body_name
@@ -37,11 +38,11 @@ ANGLES, COSINES = "angles", "direction cosines"
 
 _COMPONENT = re.compile(r"\s*omega\[(.*)\]\s*\[\s*([123])\s*\]\s*\Z", re.DOTALL)
 _FORM = Allowed("a speed", ("coordinate", "velocity", "prescribed", "parameter", "time"))
-_AXES = {"1": 1, "2": 2, "3": 3}
+_AXES = {"1": 1, "2": 2, "3": 3, QUATERNION: 0}
 
 
 def declare_speeds(draft: Draft, reading: Reading) -> None:
-    """The first pass: the names of speeds and of the components of unit vectors."""
+    """The first pass: the names of speeds and of the components of unit vectors and quaternions."""
     draft.orientation = _orientation(draft.fields.get("orientation"), reading)
     node = draft.fields.get("speeds")
     if node is None:
@@ -55,24 +56,32 @@ def declare_speeds(draft: Draft, reading: Reading) -> None:
             draft.speeds.append((entry.key, entry.value))
 
 
-def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector, ...]:
+def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quaternion, ...]:
     if node is None:
         return ()
     errors = reading.errors
     if not isinstance(node, placed.Mapping):
-        word = reading.word(node, "'orientation'", (ANGLES, COSINES))
+        word = reading.word(node, "'orientation'", (ANGLES, COSINES, QUATERNION))
+        if word == QUATERNION:
+            return _quaternion(_free(Quaternion, "e", (), reading), node.span, reading)
         if word != COSINES:
             return ()
         found = _unnamed([], node.span, reading)
     else:
         found = []
-        for entry in reading.entries(node, "'orientation'"):
+        entries = list(reading.entries(node, "'orientation'"))
+        for entry in entries:
             axis = reading.word(entry.value, "the axis of a unit vector", _AXES)
-            if axis is not None:
+            if axis == QUATERNION and len(entries) > 1:
+                message = "a quaternion tells the whole orientation: nothing stands beside it"
+                reading.error("orientation", message, entry.key.span, f"{{{entry.key.text}: quaternion}}")
+            elif axis == QUATERNION:
+                return _quaternion(entry.key.text, entry.key.span, reading)
+            elif axis is not None:
                 found.append(UnitVector(entry.key.text, _AXES[axis], entry.key.span))
         found += _unnamed(found, node.span, reading)
     axes: set[int] = set()
-    sound = []
+    sound: list[UnitVector] = []
     for vector in found:
         assert vector.span is not None
         if vector.axis in axes:
@@ -82,7 +91,15 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector, ...]:
         declared = [reading.scope.declare(name, "unit vector", vector.span) for name in vector.components]
         if all(declared):
             sound.append(vector)
-    return tuple(sorted(sound, key=lambda vector: vector.axis)) if reading.errors == errors else ()
+    sound.sort(key=lambda vector: vector.axis)
+    return tuple(sound) if reading.errors == errors else ()
+
+
+def _quaternion(name: str, span: Span, reading: Reading) -> tuple[Quaternion, ...]:
+    """The quaternion of that name; none where a component cannot be called so."""
+    found = Quaternion(name, span)
+    declared = [reading.scope.declare(one, "quaternion", span) for one in found.components]
+    return (found,) if all(declared) else ()
 
 
 def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading) -> list[UnitVector]:
@@ -90,15 +107,18 @@ def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading) -> list[
     found: list[UnitVector] = []
     axes, words = {one.axis for one in named}, {one.name for one in named}
     for axis, word in enumerate(("alpha", "beta", "gamma"), start=1):
-        tries = [word, *(f"{word}_{letter}" for letter in "abcdefgh")]
-        free = [name for name in tries if name not in words and not _taken(UnitVector(name, axis), reading)]
-        if axis not in axes and free:
-            found.append(UnitVector(free[0], axis, span))
+        if axis not in axes:
+            make = partial(UnitVector, axis=axis)
+            found.append(UnitVector(_free(make, word, words, reading), axis, span))
     return found
 
 
-def _taken(vector: UnitVector, reading: Reading) -> bool:
-    return any(name in reading.scope.kinds for name in vector.components)
+def _free(make: Callable[[str], UnitVector | Quaternion], word: str, taken: Collection[str], reading: Reading) -> str:
+    """The word, with a letter behind it where components of that name are declared already."""
+    for name in (word, *(f"{word}_{letter}" for letter in "abcdefgh")):
+        if name not in taken and not any(one in reading.scope.kinds for one in make(name).components):
+            return name
+    return word
 
 
 def read_speeds(draft: Draft, drafts: Sequence[Draft], reading: Reading) -> tuple[Speed, ...]:
@@ -211,18 +231,21 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
     """A body that is turned by three angles of its own, which stand nowhere else, and has all three components of its
     angular velocity as speeds."""
     span = draft.fields.key_span("orientation")
+    whole = isinstance(body.orientation[0], Quaternion)
+    what = "a quaternion" if whole else "unit vectors"
+    turns = f"{what} {'turns' if whole else 'turn'} with the body"
     own = {name for _, angle in body.rotation.turns() for name in names(angle)} & {*body.coordinates}
     if len(own) != 3:
-        message = "this joint has not three angles of its own: unit vectors would be more than it needs"
+        message = f"this joint has not three angles of its own: {what} would be more than it needs"
         reading.error("orientation", message, span, "leave 'orientation' out")
         return
     components = {speed.component for speed in system.speeds if speed.body == body.name}
     if not {1, 2, 3} <= components:
         hint = "speeds: {p: omega1, q: omega2, r: omega3}"
-        reading.error("orientation", "unit vectors turn with the body: its angular velocity is wanted", span, hint)
+        reading.error("orientation", f"{turns}: its angular velocity is wanted", span, hint)
     used = {name: place for name, place in _uses(system, body) if name in own}
     for name, place in used.items():
-        message = f"the angle '{name}' stands in {place}: unit vectors cannot take its place"
+        message = f"the angle '{name}' stands in {place}: {what} cannot take its place"
         reading.error("orientation", message, span, "leave 'orientation' out, or write the load as a force or torque")
 
 

@@ -25,6 +25,7 @@ _FONTS = frozenset({"mathrm", "mathit", "mathbf", "mathsf", "mathcal", "boldsymb
 _AROUND = _FONTS | {"hat", "bar", "tilde", "vec"}
 _IN_INDEX = {"max", "min", "ast", "star", "infty", "cdot"}
 _TOKEN = re.compile(r"\\[A-Za-z]+ ?|\\?.", re.DOTALL)
+_FURTHER = ("abbreviation", "input")
 _HINT = r"a letter or a command such as \theta, \hat{x}, \mathrm{word}, with an index: 'd_{C1}'"
 
 
@@ -39,7 +40,7 @@ class _Wrong(Exception):
 def read_symbols(node: Node | None, reading: Reading) -> tuple[WrittenSymbol, ...]:
     """``name: symbol`` for names of the description; no two of the same look."""
     found: list[WrittenSymbol] = []
-    kinds = ("coordinate", "speed", "unit vector", "prescribed", "parameter", "notation", "abbreviation", "input")
+    kinds = ("coordinate", "speed", "unit vector", "quaternion", "prescribed", "parameter", "notation", *_FURTHER)
     allowed = Allowed("a name with a symbol", kinds)
     for entry in () if node is None else reading.entries(node, "'latex'"):
         known = reading.scope.check_name(entry.key.text, entry.key.span, allowed)

@@ -137,7 +137,7 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
     if body.speeds:
         lines.append("  Speeds: " + "; ".join(f"{one.name} = {speed_text(one)}" for one in body.speeds))
     if body.orientation:
-        lines.append("  Orientation: " + "; ".join(f"{one.name} = {one.axis}" for one in body.orientation))
+        lines.append("  Orientation: " + "; ".join(f"{one.name} = {one.word}" for one in body.orientation))
     return [*lines, *(f"  Shape: {_look(one)}" for one in body.shapes)]
 
 

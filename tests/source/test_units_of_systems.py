@@ -62,6 +62,7 @@ UNITS = {
     "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
     "four-bar": {**dict.fromkeys(("l1", "l2", "l3", "l4"), "m"), "rho": "kg/m", "q1": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
+    "gravity-gradient-quaternion": {**ORBIT, **BODY, "m": "kg", "chi": "rad", "p": "rad/s", "e1": "1"},
     "gyrostat": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
     "gyrostat-poisson": {**FIXED, **SMALL, "R": "m", "M": "kg", "A0": MOMENTS, "C": MOMENTS, "psi": "rad"},
     "heavy-top": {"A": MOMENTS, "C": MOMENTS, "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s"},

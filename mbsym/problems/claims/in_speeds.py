@@ -1,7 +1,7 @@
 """Claims about systems with speeds and unit vectors of their own, in the variables of these.
 
-A claim holds if claimed - derived vanishes wherever the unit vectors are orthonormal; an equation also if it is a
-multiple of the derived one by parameters.  A first integral is decided by its rate along the motion.
+A claim holds if claimed - derived vanishes wherever unit vectors are orthonormal and quaternions of norm 1; an equation
+also if it is a multiple of the derived one by parameters.  A first integral is decided by its rate along the motion.
 """
 
 from __future__ import annotations
@@ -99,9 +99,10 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
     ring, equations = form.ring, cast(SpeedEquations, derived.equations)
     result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
-        vectors = [name for body in form.by_vectors for vector in body.orientation for name in vector.components]
+        vectors = [name for body in form.oriented for vector in body.orientation for name in vector.components]
         if ring.dependencies(claimed, vectors) and Field(form, equations).keeps(claimed) is True:
-            return replace(result, remark="of the unit vectors alone: it is known beforehand")
+            what = "unit vectors" if form.by_vectors else "quaternion"
+            return replace(result, remark=f"of the {what} alone: it is known beforehand")
         return replace(result, outcome=FAILS, remark="it contains no velocity")
     images = relations(derived.parameters_scene)
     field = Field(form, equations)
