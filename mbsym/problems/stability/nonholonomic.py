@@ -68,7 +68,10 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
             first = state_matrix(arb_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), form.following)
         except ZeroDivisionError:
             return undecided(Because.MASS_SINGULAR)
-        right = _to_the_right([arb(x) for x in first.charpoly().coeffs()[zero_power:]])
+        coefficients = [arb(x) for x in first.charpoly().coeffs()[zero_power:]]
+        right = _to_the_right(coefficients)
+    if right is None and any(x < 0 for x in coefficients):  # the leading one is 1: not all roots are on this side
+        return concluded({Fact.ROOT_RIGHT})
     if right is None:
         return undecided(Because.NEAR_BORDER)
     if right:
