@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from mbsym.numerics.trade_study import Study
     from mbsym.numerics.tradeoff import Measured
 
+#: How columns are aligned that do not end on the right.
+SIDES = {"method": "left", "setting": "left", "front": "center"}
+
 #: Seconds that drawing and writing take.
 FIGURES = 2.5
 
@@ -111,7 +114,7 @@ def _print(file: Path, system: System, study: Study, request: Request, paths: li
 
     from mbsym.numerics.fidelity import model_advice
     from mbsym.numerics.tradeoff import advice
-    from mbsym.report.tradeoff_table import models_shown, shown
+    from mbsym.report.tradeoff_table import constrained, models_shown, shown
 
     out, trade, models = console(), study.trade, study.models
     advised = f"{advice(trade, request.target)} {model_advice(models, request.target)}".rstrip()
@@ -126,11 +129,9 @@ def _print(file: Path, system: System, study: Study, request: Request, paths: li
     )
     rows = trade.rows if request.every_row else [row for row in trade.rows if row.front or _near(row, request.target)]
     table = Table(box=None, padding=(0, 1), header_style="bold cyan")
-    for name, side in zip(
-        ("method", "setting", "error", "drift", "evaluations", "steps", "time", "front"),
-        ("left", "left", "right", "right", "right", "right", "right", "center"),
-        strict=True,
-    ):
+    strayed = ("constraints",) if constrained(rows) else ()
+    for name in ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "front"):
+        side = SIDES.get(name, "right")
         table.add_column(name, justify=side, no_wrap=True)  # type: ignore[arg-type]
     for line in shown(rows, trade.smallest_judged):
         table.add_row(*line, style="" if line[-1] else "dim")

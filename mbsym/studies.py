@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -159,8 +160,21 @@ def tradeoff(
             raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
     given = scenario(system, read_values(system, values))
     found = studied(given, [METHODS[name] for name in names], time, budget, models)
+    strayed = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
     runs = Table.of(
-        ("method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "front"),
+        (
+            "method",
+            "arithmetic",
+            "tolerance",
+            "step",
+            "error",
+            "drift",
+            *strayed,
+            "evaluations",
+            "steps",
+            "seconds",
+            "front",
+        ),
         (
             (
                 row.candidate.method.traits.name,
@@ -169,6 +183,7 @@ def tradeoff(
                 _or_nan(row.candidate.setting.step),
                 row.error,
                 row.drift,
+                *((row.strayed or (inf, inf)) if strayed else ()),
                 row.evaluations,
                 row.steps,
                 row.seconds,

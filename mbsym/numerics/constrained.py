@@ -9,7 +9,7 @@ beside it on the constraints, since a rank may fall at single ones.
     drift of positions    max over rows of |f_i| / sum_k |J_ik| s_k          s_k:  the size of q_k in the motion
     drift of velocities   max over rows of |g_i| / sum_k |J_ik| s'_k         s'_k: that of q'_k
 
-The sums are the largest of the motion, and of the rows of one constraint: both drifts are free of units.
+|J_ik| is the largest of the motion, the sum the largest of the rows of one constraint: both drifts are free of units.
 """
 
 from __future__ import annotations

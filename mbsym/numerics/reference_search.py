@@ -94,7 +94,9 @@ def whole_reference(
             found = way(_Search(dynamics, end, now, now + share * left, watch))
         except Breakdown as reason:
             if way is _extrapolated and reason.kind != STEP_LIMIT:
-                raise
+                if dynamics.constraints is None:
+                    raise
+                continue  # where constraints lose their rank the motion goes on, and others carry it over
             failed = reason if failed is None or reason.time > failed.time or reason.kind == DISAGREE else failed
         else:
             return replace(found, seconds=time.perf_counter() - started)
@@ -223,8 +225,9 @@ def _explicit(search: _Search) -> Reference:
 def _implicit(search: _Search) -> Reference:
     longest = search.longest
     failed: Breakdown | None = None
+    beside = "lsoda" if search.dynamics.constraints is None else "bdf"  # ODEPACK's does not keep to constraints
     for tolerance in (1e-12, 1e-9):
-        first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("radau", "lsoda"))
+        first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("radau", beside))
         try:
             return _agreeing(search, first, second, FLOAT64, IMPLICIT)
         except Breakdown as reason:

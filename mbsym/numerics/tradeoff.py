@@ -3,6 +3,8 @@
 error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and the thousands of times at which the
          reference is known, each relative to its size in the whole motion (``mbsym.numerics.sizes``)
 drift    largest change of the energy h at the same times, relative to the largest kinetic energy
+strayed  largest drift of positions and of velocities from constraints at the same times, where there are any
+         (``mbsym.numerics.constrained``: in parts of the motion's size)
 seconds  median of the integration from 0 to the end; compiling is not counted (it happens once), nor are rows
 
 An error is measured against a reference solution of a different method and arithmetic, never against a tolerance; what
@@ -21,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
@@ -62,7 +65,11 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Measured:
-    """What one candidate cost and how wrong it was; ``trouble`` says why there is no error."""
+    """What one candidate cost and how wrong it was; ``trouble`` says why there is no error.
+
+    ``strayed``: the largest drift from constraints on positions, and on velocities; None where there are none.
+    ``carried``: at how many singular positions of constraints it was carried over.
+    """
 
     candidate: Candidate
     error: float
@@ -72,6 +79,8 @@ class Measured:
     seconds: float
     trouble: str = ""
     front: bool = False
+    strayed: tuple[float, float] | None = None
+    carried: int = 0
 
 
 @dataclass(frozen=True)
@@ -170,8 +179,10 @@ class _Judge:
             return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
         matrix = np.hstack(states)
         work, typical = seconds
+        error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
+        carried = len(run.work.singular)
         return Measured(
-            candidate, self._error(matrix), self._drift(times, matrix), work.evaluations, work.steps, typical
+            candidate, error, changed, work.evaluations, work.steps, typical, strayed=strayed, carried=carried
         )
 
     def _seconds(self, candidate: Candidate, with_rows: float, work: Work, deadline: float) -> tuple[Work, float]:
@@ -198,6 +209,15 @@ class _Judge:
             scale = np.max(np.abs(kinetic)) or abs(h[0]) or 1.0
             worst = float(np.max(np.abs(h - h[0])) / scale)
         return worst if isfinite(worst) else inf
+
+    def _strayed(self, times: Any, states: Any) -> tuple[float, float] | None:
+        """The drift from constraints, positions and velocities, measured by the sizes of the reference."""
+        known = self.dynamics.constraints
+        if known is None:
+            return None
+        with np.errstate(all="ignore"):
+            positions, velocities = drift(known, times, states, np.asarray(self.reference.scale)).largest
+        return (positions if isfinite(positions) else inf), (velocities if isfinite(velocities) else inf)
 
 
 def _ladder(

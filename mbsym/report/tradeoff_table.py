@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterable, Sequence
 from io import StringIO
-from math import isfinite
+from math import inf, isfinite
+from typing import Any
 
 from mbsym.model.quantities import marked
 from mbsym.numerics.fidelity import RESOLVED, ModelError
@@ -15,12 +16,29 @@ from mbsym.numerics.tradeoff import Measured, Tradeoff, duration
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "front", "trouble"
 )  # fmt: skip
+#: Behind ``drift``, where there are constraints.
+STRAYED = ("constraint_drift", "constraint_velocity_drift")
 MODEL_COLUMNS = ("model", "neglected", "error", "operations", "evaluations", "seconds", "trouble")
 
 
 def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
     """One row a run; an empty field where there is no number.  ``time`` is the unit of the step, if it is known."""
-    return _csv([marked(name, time if name == "step" else "") for name in COLUMNS], (_row(row) for row in found.rows))
+    tied = constrained(found.rows)
+    names = _with_strayed(COLUMNS, STRAYED if tied else ())
+    return _csv(
+        [marked(name, time if name == "step" else "") for name in names], (_row(row, tied) for row in found.rows)
+    )
+
+
+def constrained(rows: Sequence[Measured]) -> bool:
+    """Whether drifts from constraints are among what was measured."""
+    return any(row.strayed is not None for row in rows)
+
+
+def _with_strayed(cells: Sequence[object], strayed: Sequence[object]) -> list[Any]:
+    """``strayed`` behind the column ``drift``."""
+    place = COLUMNS.index("drift") + 1
+    return [*cells[:place], *strayed, *cells[place:]]
 
 
 def fidelity_csv(rows: Sequence[ModelError]) -> str:
@@ -40,9 +58,9 @@ def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return stream.getvalue()
 
 
-def _row(row: Measured) -> tuple[object, ...]:
+def _row(row: Measured, tied: bool) -> Sequence[object]:
     candidate, setting = row.candidate, row.candidate.setting
-    return (
+    cells = (
         candidate.method.traits.name,
         candidate.scalar,
         "" if setting.tolerance is None else f"{setting.tolerance:.0e}",
@@ -55,6 +73,8 @@ def _row(row: Measured) -> tuple[object, ...]:
         "yes" if row.front else "no",
         row.trouble,
     )
+    strayed = row.strayed if row.strayed is not None else (inf, inf)
+    return _with_strayed(cells, [_number(x) for x in strayed] if tied else ())
 
 
 def _number(value: float) -> str:
@@ -62,8 +82,12 @@ def _number(value: float) -> str:
 
 
 def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, ...]]:
-    """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, front."""
+    """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, front.
+
+    Where there are constraints, the larger of its two drifts from them stands behind the drift of the energy.
+    """
     lines: list[tuple[str, ...]] = []
+    tied = constrained(rows)
     for row in rows:
         name = row.candidate.method.traits.name
         error = "fails" if row.trouble else _error(row.error, smallest_judged)
@@ -73,6 +97,7 @@ def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, .
                 row.candidate.shown,
                 error,
                 "" if row.trouble else f"{row.drift:.1e}",
+                *(["" if row.strayed is None else f"{max(row.strayed):.1e}"] if tied else []),
                 str(row.evaluations),
                 str(row.steps),
                 duration(row.seconds),
