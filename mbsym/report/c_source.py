@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -26,9 +27,8 @@ from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value
 from mbsym.report.identifiers import prefix_of
 from mbsym.report.lookups import c_definition, identifier
-from mbsym.report.model_code import solved
+from mbsym.report.model_code import programs_of, solved
 from mbsym.report.numbers import number
-from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -57,10 +57,15 @@ RESERVED = frozenset(_WORDS.split())
 DECLARED = """
     parameters defaults coordinate_names parameter_names mass_matrix forcing energy generalized_energy accelerations
     right_hand_side jacobian input_names INPUTS H OK NOT_FINITE COORDINATES STATES PARAMETERS
+    constraints constraint_velocity constraint_jacobian constraint_acceleration multipliers consistent reactions given
+    CONSTRAINTS HOLONOMIC DEPENDENT NOT_CLOSED
 """
 
+#: The matrix of accelerations and multipliers stands on the stack.
+MOST_UNKNOWNS, SPACE = 300, "more than a megabyte"
+
 #: What has a body of its own; the generalised energy has none where it is the energy.
-FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian")
+FUNCTIONS = ("mass", "forcing", "energy", "generalized", "accelerations", "jacobian", "reactions")
 
 
 def call(function: str, argument: str) -> str:
@@ -101,6 +106,15 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
     forward, slopes = known.forward, known.slopes
+    tied = None
+    if system.constraints and code:
+        from mbsym.report.constrained_code import tied_code  # few systems have constraints
+
+        tied, _, _ = tied_code(analysis, writer)
+        if n + len(tied.rows if tied else ()) > MOST_UNKNOWNS:
+            raise NoClosedForm(
+                f"more than {MOST_UNKNOWNS} accelerations and multipliers: C would need {SPACE} of stack"
+            )
     functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []
     if bodies and code:
@@ -110,7 +124,9 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         generalized = generalized_energy(code, system)
         if generalized is not code.energy:
             functions["generalized"] = writer.function(code.program, [generalized])
-    if bodies and forward:
+    if bodies and forward and known.reactions:
+        functions["reactions"] = writer.function(forward.program, [x for row in known.reactions for x in row])
+    if bodies and forward and not tied:
         functions["accelerations"] = writer.function(forward.program, forward.accelerations)
     if slopes:
         assert forward is not None
@@ -135,9 +151,16 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
         no_code=comment(no_code),
-        no_solution=comment(known.no_forward),
-        no_slopes=comment(known.no_slopes),
-        has={"code": code is not None, "solved": forward is not None, "slopes": slopes is not None},
+        no_solution="" if tied else comment(known.no_forward),
+        no_slopes=comment(known.no_slopes or (known.no_forward if tied else "")),
+        no_reactions=comment(known.no_reactions),
+        has={
+            "code": code is not None,
+            "solved": forward is not None,
+            "slopes": slopes is not None,
+            "reactions": bool(known.reactions),
+        },
+        tied=tied,
         functions=functions,
         upper=upper,
         entries=entries,

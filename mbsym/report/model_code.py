@@ -1,7 +1,8 @@
 """What generated code computes, as nodes of straight-line programs: made once, written by every language.
 
 M, f           mass matrix and forcing,  M(q) q'' = f(q, q', t)
-q''            by the cheaper route of ``mbsym.mechanics.forward_dynamics``; no inverse is formed
+q''            by the cheaper route of ``mbsym.mechanics.forward_dynamics``; no inverse is formed; with constraints by
+               ``mbsym.mechanics.constraints.dynamics``, their rows and multipliers beside
 d q''/d(q, q') by the chain rule along the program of q'': exact, no differences
 energies, first integrals of problem 7, places of the bodies
 """
@@ -14,18 +15,21 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.programs import generalized_energy, momenta, scene_without_accelerations
+from mbsym.mechanics.programs import Programs, generalized_energy, momenta, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
-from mbsym.model.system import INERTIAL
+from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import ENERGY, Integral, identifiers, whole_momenta
-from mbsym.report.programs import programs_of
+from mbsym.report import programs as open_trees
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
+    from mbsym.report.constrained_code import Tied
 
 #: Indices into an array: (), (i,) or (i, j).
 Place = tuple[int, ...]
@@ -36,12 +40,17 @@ LARGEST_JACOBIAN = 100_000
 
 @dataclass(frozen=True)
 class Solved:
-    """Accelerations and d q''/d(q, q') (n rows of 2n nodes of the same program), or the reasons why there are none."""
+    """Accelerations and d q''/d(q, q') (n rows of 2n nodes of the same program), or the reasons why there are none.
 
-    forward: ForwardDynamics | None
+    ``reactions`` are force and moment (6 nodes of that program) in each joint that the description names.
+    """
+
+    forward: ForwardDynamics | ConstrainedDynamics | None
     no_forward: str
     slopes: tuple[tuple[Node, ...], ...] | None
     no_slopes: str
+    reactions: tuple[tuple[Node, ...], ...] = ()
+    no_reactions: str = ""
 
 
 @dataclass(frozen=True)
@@ -85,20 +94,75 @@ def solved(analysis: Analysis) -> Solved:
     return _SOLVED[analysis]
 
 
+def programs_of(analysis: Analysis) -> tuple[Programs | None, str]:
+    """M, f and the energy as a program, of the open tree where there are constraints; or why there is none."""
+    if not analysis.system.constraints:
+        return open_trees.programs_of(analysis)
+    tied = _tied(analysis)
+    return (None, tied) if isinstance(tied, str) else (tied.code.tree, "")
+
+
+def _tied(analysis: Analysis) -> Tied | str:
+    from mbsym.report.constrained_code import tied_of  # few systems have constraints
+
+    return tied_of(analysis)
+
+
 def _solved(analysis: Analysis) -> Solved:
     code, _ = programs_of(analysis)
     if code is None:
         return Solved(None, "", None, "")
-    try:
-        forward = forward_dynamics(analysis.system, analysis.ring)
-    except Failure as reason:
-        return Solved(None, str(reason), None, "")
+    forward: ForwardDynamics | ConstrainedDynamics | None
+    if analysis.system.constraints:
+        tied = _tied(analysis)
+        assert not isinstance(tied, str)
+        forward = tied.dynamics
+        if forward is None:
+            return Solved(None, tied.no_dynamics, None, "")
+    else:
+        try:
+            forward = forward_dynamics(analysis.system, analysis.ring)
+        except Failure as reason:
+            return Solved(None, str(reason), None, "")
+    needed, no_reactions = _reactions(analysis, forward)
     names = [*analysis.system.coordinates, *analysis.system.velocities]
     estimate = forward.program.operations(forward.accelerations) * len(names)
     if estimate > LARGEST_JACOBIAN:
-        return Solved(forward, "", None, f"it would take some {estimate} operations")
+        return Solved(forward, "", None, f"it would take some {estimate} operations", needed, no_reactions)
     inputs = [forward.environment[name] for name in names]
-    return Solved(forward, "", jacobian(forward.program, forward.accelerations, inputs), "")
+    slopes = jacobian(forward.program, forward.accelerations, inputs)
+    return Solved(forward, "", slopes, "", needed, no_reactions)
+
+
+def _reactions(
+    analysis: Analysis, forward: ForwardDynamics | ConstrainedDynamics
+) -> tuple[tuple[tuple[Node, ...], ...], str]:
+    """R_0 + sum lambda_i R_i in each joint asked for, at the accelerations of the equations; or why there is none."""
+    system = analysis.system
+    if not system.reactions:
+        return (), ""
+    from mbsym.mechanics.reactions import reactions  # few descriptions ask for them
+
+    rows: list[tuple[int, int]] = []
+    multipliers: tuple[Node, ...] = ()
+    if system.constraints:
+        tied = _tied(analysis)
+        assert not isinstance(tied, str)
+        assert tied.dynamics is not None
+        rows, multipliers = list(tied.kept), tied.dynamics.multipliers
+    moved = {acceleration_name(q): x for q, x in zip(system.coordinates, forward.accelerations, strict=True)}
+    try:
+        scene = Scene(system, forward.program, {**forward.environment, **moved}, analysis.ring)
+        found = reactions(scene, system.reactions, rows)
+    except Failure as reason:
+        return (), str(reason)
+    totals = []
+    for one in found:
+        total = [*one.force, *one.moment]
+        for weight, (force, moment) in zip(multipliers, one.per_multiplier, strict=True):
+            total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
+        totals.append(tuple(total))
+    return tuple(totals), ""
 
 
 def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
@@ -121,6 +185,11 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
     for name, node in zip(system.coordinates, momenta(code, system), strict=True):
         lagrangian["cyclic momentum", name] = node
     keys = [(item.kind, item.of) for item in found]
+    if system.constraints:  # a momentum may be one along a displacement of several coordinates
+        for item, key in zip(found, keys, strict=True):
+            if item.kind == "cyclic momentum" and item.name != f"momentum of {item.of}":
+                carry = Carrier(analysis.ring, code.program, dict(code.environment))
+                lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):
         return Integrals(tuple(named), code.program, tuple(lagrangian[key] for key in keys))
     scene, program = _scene(analysis)
@@ -171,12 +240,17 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
         Part("generalized_energy", jacobi, (), program, {(): energies}),
     ]
     lacking = []
+    if analysis.system.constraints:
+        made.extend(_rows(analysis))
     if found.forward is None:
         lacking.append(f"There are no accelerations: {found.no_forward}")
     else:
         own = found.forward.program
         columns: dict[Place, Node] = {(i,): node for i, node in enumerate(found.forward.accelerations)}
-        made.append(Part("accelerations", "q'' = M^-1 f, by factorisation", (n,), own, _nonzero(own, columns)))
+        words = "q'' = M^-1 f, by factorisation"
+        if analysis.system.constraints:
+            words = "q'' with M q'' = f + J^T lambda and J q'' = -gamma, by factors of M and of J M^-1 J^T"
+        made.append(Part("accelerations", words, (n,), own, _nonzero(own, columns)))
         if found.slopes is None:
             lacking.append(f"There is no Jacobian: {found.no_slopes}")
         else:
@@ -186,6 +260,12 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
             slopes |= {(i, n + i): own.one for i in range(n)}
             words = "d(q', q'')/d(q, q'), exact: by the chain rule"
             made.append(Part("jacobian", words, (2 * n, 2 * n), own, _nonzero(own, slopes)))
+        if analysis.system.constraints:
+            made.extend(_corrections(analysis))
+        if found.no_reactions:
+            lacking.append(f"There are no reactions: {found.no_reactions}")
+        if found.reactions:
+            made.append(_reaction_part(analysis, found))
     conserved = first_integrals(analysis, problems)
     if conserved.reason:
         lacking.append(f"There are no first integrals: {conserved.reason}")
@@ -195,6 +275,66 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
         made.append(Part("integrals", words, (len(values),), conserved.program, values))
     made.extend(places(analysis))
     return tuple(made), tuple(lacking)
+
+
+def _reaction_part(analysis: Analysis, found: Solved) -> Part:
+    assert found.forward is not None
+    values: dict[Place, Node] = {(i, k): x for i, row in enumerate(found.reactions) for k, x in enumerate(row)}
+    joints = "; ".join(analysis.system.reactions)
+    words = f"Force and moment in the joints of {joints}: a row for each, about its connection point, in its axes"
+    program = found.forward.program
+    return Part("reactions", words, (len(found.reactions), 6), program, _nonzero(program, values))
+
+
+def _rows(analysis: Analysis) -> tuple[Part, ...]:
+    """phi, J q' + j, J, gamma."""
+    tied = _tied(analysis)
+    assert not isinstance(tied, str)
+    program, m = tied.code.tree.program, len(tied.rows)
+    partials: dict[Place, Node] = {(i, j): x for i, row in enumerate(tied.jacobian) for j, x in enumerate(row)}
+
+    def column(nodes: Sequence[Node]) -> dict[Place, Node]:
+        return _nonzero(program, {(i,): node for i, node in enumerate(nodes)})
+
+    rates = f"J q' + j = 0, the constraints on velocities: {'; '.join(tied.labels)}"
+    made = [Part("constraint_velocity", rates, (m,), program, column(tied.velocity))]
+    if tied.positions:
+        words = "phi(q, t) = 0, the constraints on positions: their rates come first in constraint_velocity"
+        made.insert(0, Part("constraints", words, (tied.positions,), program, column(tied.phi)))
+    return (
+        *made,
+        Part("constraint_jacobian", "J", (m, len(analysis.system.coordinates)), program, _nonzero(program, partials)),
+        Part("constraint_acceleration", "gamma = J' q' + j'", (m,), program, column(tied.gamma)),
+    )
+
+
+def _corrections(analysis: Analysis) -> tuple[Part, ...]:
+    """lambda and the shortest ways back to the constraints."""
+    tied = _tied(analysis)
+    assert not isinstance(tied, str)
+    found = tied.dynamics
+    assert found is not None
+    program, n = found.program, len(found.accelerations)
+
+    def column(nodes: Sequence[Node]) -> dict[Place, Node]:
+        return _nonzero(program, {(i,): node for i, node in enumerate(nodes)})
+
+    step = "a Newton step, the shortest as M measures it"
+    made = [
+        Part(
+            "multipliers",
+            "lambda, in the order of constraint_velocity",
+            (len(tied.rows),),
+            program,
+            column(found.multipliers),
+        ),
+        Part("velocity_correction", f"What to add to q' for J q' + j = 0: {step}", (n,), program,
+             column(found.velocity_correction)),
+    ]  # fmt: skip
+    if tied.positions:
+        words = f"What to add to q for phi = 0: {step}"
+        made.insert(1, Part("position_correction", words, (n,), program, column(found.position_correction)))
+    return tuple(made)
 
 
 def _nonzero(program: Program, entries: Mapping[Place, Node]) -> dict[Place, Node]:

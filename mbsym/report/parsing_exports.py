@@ -25,7 +25,7 @@ _OCTAVE_WORDS = _FUNCTIONS | frozenset(
     """.split()  # noqa: SIM905
 )
 _JULIA_WORDS = _FUNCTIONS | frozenset(
-    "function end return zeros promote_type typeof eltype Float64 float vcat error parameters".split()  # noqa: SIM905
+    "function end return for zeros promote_type typeof eltype Float64 float vcat error parameters".split()  # noqa: SIM905
 )
 
 

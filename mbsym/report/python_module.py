@@ -29,9 +29,8 @@ from mbsym.report.environment import rendered
 from mbsym.report.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.identifiers import prefix_of
 from mbsym.report.lookups import identifier, python_definition
-from mbsym.report.model_code import Solved, first_integrals, solved
+from mbsym.report.model_code import Solved, first_integrals, programs_of, solved
 from mbsym.report.model_values import initial_values, ordered, parameters_of, starting
-from mbsym.report.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -48,7 +47,8 @@ RESERVED = {
 #: What a module of a constrained system calls something besides.
 TIED = frozenset({
     "constraints", "constraint_velocity", "constraint_jacobian", "constraint_acceleration", "multipliers",
-    "constraint_error", "consistent", "matrix", "jacobian", "right", "whole", "above", "error", "worst",
+    "constraint_error", "consistent", "matrix", "jacobian", "right", "whole", "above", "error", "worst", "reactions",
+    "DEPENDENT", "GIVEN", "mass", "scale", "sizes", "unknown", "step", "basis", "free", "rows", "root", "what", "size",
 })  # fmt: skip
 
 _NUMPY = {"atan": "arctan"}
@@ -119,7 +119,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         integrals=conserved,
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
         slopes=_slopes(writer, known),
-        no_slopes="" if tied else plain(known.no_slopes or known.no_forward),
+        no_slopes=plain(known.no_slopes or known.no_forward),
+        no_reactions=plain(known.no_reactions),
+        reactions=_reactions(writer, known),
         related=[item for item in ordered(parameters) if item.needs],
         names=writer.names,
         initial=initial_values(system, writer),
@@ -139,6 +141,13 @@ def _generalized(writer: _Module, code: Programs | None, system: System) -> Func
         return None
     node = generalized_energy(code, system)
     return None if node is code.energy else writer.function(code.program, [node])
+
+
+def _reactions(writer: _Module, known: Solved) -> Function | None:
+    """Forces and moments in the joints that the description names, joint after joint."""
+    if known.forward is None or not known.reactions:
+        return None
+    return writer.function(known.forward.program, [x for row in known.reactions for x in row])
 
 
 def _slopes(writer: _Module, known: Solved) -> tuple[Function, list[tuple[int, int]]] | None:
@@ -188,6 +197,8 @@ class _Module(Functions):
 
     def __init__(self, system: System) -> None:
         reserved = RESERVED | words_of_inputs(system) | (TIED if system.constraints else frozenset())
+        if system.reactions:
+            reserved |= {"reactions", "REACTIONS", "zero"}
         super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
     def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:

@@ -208,14 +208,30 @@ def translated(text: str) -> dict[str, Any]:
     for head, body in re.findall(r"^function (\w+\(t, x, p\))\n(.*?)^end\n", text, re.MULTILINE | re.DOTALL):
         indexed = re.sub(r"\[([\d, ]+)\]", lambda m: str([int(k) - 1 for k in m[1].split(",")]), body)
         indexed = re.sub(r"\[(\d+), (\d+)\]", r"[\1][\2]", indexed)
-        if not head.startswith("right_hand_side"):
+        if not head.startswith(("right_hand_side", "consistent")):
             exec(f"def {head}:\n{indexed}", names)
     return names
 
 
 def by_modelica(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
-    """Parsed by pymoca, which gives left - right of all equations; as no variable needs itself, they are solved by
-    putting right sides in place of left ones until nothing changes."""
+    system = analysis_of(name).system
+    found = []
+    for at in points(name):
+        values = by_modelica_at(text, folder, [proposed(key) for key in system.parameter_names], at)
+        slopes = [key for key in values if key.startswith("der(")]
+        own: dict[str, Any] = {"accelerations": [values[key] for key in slopes[len(slopes) // 2 :]]}
+        own |= {key: values[key] for key in ("energy", "generalized_energy")}
+        own["integrals"] = [value for key, value in values.items() if key.startswith("integral_")]
+        for key, stem in (("joints", "joint"), ("mass_centres", "centre")):
+            bodies = range(1, len(system.bodies) + 1)
+            own[key] = [[values[f"{stem}{k}[{axis}]"] for axis in (1, 2, 3)] for k in bodies]
+        found.append(own)
+    return found
+
+
+def by_modelica_at(text: str, folder: Path, own_names: list[str], at: Point) -> dict[str, float]:
+    """Name -> value.  Parsed by pymoca, which gives left - right of all equations; as no variable needs itself, they
+    are solved by putting right sides in place of left ones until nothing changes."""
     pytest.importorskip("pymoca")
     casadi = pytest.importorskip("casadi")
     from pymoca.backends.casadi import generator
@@ -225,38 +241,27 @@ def by_modelica(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
     casadi.MX.atan = casadi.MX.arctan  # it looks for Modelica's own names
     (folder / "model.mo").write_text(text, encoding="utf-8")
     model = transfer_model(str(folder), re.findall(r"^model (\w+)", text)[0], {"cache": False})
-    residual, system = model.dae_residual_function, analysis_of(name).system
+    residual = model.dae_residual_function
     states, slopes, others = ([v.symbol for v in part] for part in (model.states, model.der_states, model.alg_states))
-    assert len(states) == len(slopes) == 2 * len(system.coordinates)
+    assert len(states) == len(slopes) == len(at.x)
     places = {key.name(): k for k, key in enumerate(slopes)}
     for symbol in others:
         first, size = len(places), symbol.numel()
         places |= {f"{symbol.name()}[{k + 1}]" if size > 1 else symbol.name(): first + k for k in range(size)}
-    left = re.findall(r"^  (\S+) = ", text.partition("equation\n")[2], re.MULTILINE)
+    left = re.findall(r"^  (\S+) = ", text.rpartition("\nequation\n")[2], re.MULTILINE)
     order = [places[key] for key in left]
     assert sorted(order) == list(range(len(places)))
-    parameters = [v.symbol.name() for v in model.parameters]
-    own_names = [proposed(key) for key in system.parameter_names]
-    found = []
-    for at in points(name):
-        given = dict(zip(own_names, at.p, strict=True))
-        p = [given[key] for key in parameters]
-        values = np.ones(len(places))
-        for _ in range(len(places) + 2):
-            sides = residual(at.t, at.x, values[: len(slopes)], values[len(slopes) :], [], [], p)
-            new = values[order] - np.array(sides).ravel()
-            new[~np.isfinite(new)] = 1.0
-            if np.array_equal(values[order], new):
-                break
-            values[order] = new
-        own: dict[str, Any] = {"accelerations": values[len(slopes) // 2 : len(slopes)]}
-        own |= {key: values[places[key]] for key in ("energy", "generalized_energy")}
-        own["integrals"] = [values[k] for key, k in places.items() if key.startswith("integral_")]
-        for key, stem in (("joints", "joint"), ("mass_centres", "centre")):
-            bodies = range(1, len(system.bodies) + 1)
-            own[key] = [[values[places[f"{stem}{k}[{axis}]"]] for axis in (1, 2, 3)] for k in bodies]
-        found.append(own)
-    return found
+    given = dict(zip(own_names, at.p, strict=True))
+    p = [given[v.symbol.name()] for v in model.parameters]
+    values = np.ones(len(places))
+    for _ in range(len(places) + 2):
+        sides = residual(at.t, at.x, values[: len(slopes)], values[len(slopes) :], [], [], p)
+        new = values[order] - np.array(sides).ravel()
+        new[~np.isfinite(new)] = 1.0
+        if np.array_equal(values[order], new):
+            break
+        values[order] = new
+    return {key: float(values[place]) for key, place in places.items()}
 
 
 def by_python(text: str, name: str, folder: Path) -> list[dict[str, Any]]:

@@ -32,7 +32,7 @@ from mbsym.report import c_source
 from mbsym.report.environment import rendered
 from mbsym.report.exports.fmu_units import Unit, time_and_energy, variable_unit
 from mbsym.report.exports.interface import Export, Language, export
-from mbsym.report.model_code import solved
+from mbsym.report.model_code import programs_of, solved
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _WORDS = """
     STATES PARAMETERS TIME FIRST_STATE FIRST_DERIVATIVE FIRST_PARAMETER ENERGY GENERALIZED_ENERGY VARIABLES
     EXPORT FMI_LOGGER TOKEN INSTANCE VALUES Values Instance Logger start state_names places parameter relate
-    reset lacking get set directional told c v
+    reset lacking get set directional told c v lead strayed led
 """
 
 #: (operating system, processor) -> the folder of binaries in FMI 2.0 and 3.0, the ending of libraries.
@@ -125,8 +125,8 @@ def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:
     if not analysis.system.coordinates:
         raise NoClosedForm("nothing moves: an FMU needs a state")
     known = solved(analysis)
-    if known.forward is None:
-        raise NoClosedForm(f"there are no accelerations: {known.no_forward or 'there is no code'}")
+    if known.forward is None and not (analysis.system.constraints and programs_of(analysis)[0]):
+        raise NoClosedForm(f"there are no accelerations: {known.no_forward or programs_of(analysis)[1]}")
     files = sources(analysis, version)
     library = _library(analysis, files, version)
     return _zip(files | library)
@@ -164,6 +164,7 @@ def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
         "slopes": solved(analysis).slopes is not None and not system.inputs,
         "inputs": [(item.name, item.start.replace("NaN", "NAN")) for item in variables if item.causality == "input"],
         "token": token,
+        "tied": bool(system.constraints),
     }  # fmt: skip
     shared = rendered("exports/fmi.h.j2", {}, **values)
     written = rendered(f"exports/fmi{version}.c.j2", {}, shared=shared, refused=_refused(), **values)

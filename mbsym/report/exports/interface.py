@@ -31,6 +31,12 @@ _WORDS = """
     generalized_energy accelerations right_hand_side jacobian integrals joints mass_centres
 """
 COMMON = frozenset(_WORDS.split())
+#: What they call besides where there are constraints, or reactions are asked for.
+_FURTHER = """
+    constraints constraint_velocity constraint_jacobian constraint_acceleration multipliers position_correction
+    velocity_correction consistent steps reactions q qd
+"""
+FURTHER = frozenset(_FURTHER.split())
 
 PI = "3.141592653589793"
 
@@ -80,6 +86,27 @@ class Export:
     lacking: tuple[str, ...]
     names: dict[str, str] = field(compare=False)
     tables: tuple[Tabulated, ...] = ()
+
+    @property
+    def law(self) -> str:
+        """The equations that the functions hold."""
+        return "M(q) q'' = f(q, q', t) + J^T lambda" if self.system.constraints else "M(q) q'' = f(q, q', t)"
+
+    @property
+    def tied(self) -> list[str]:
+        """Lines about constraints; none without any."""
+        if not self.has("multipliers"):
+            return []
+        first = ["phi(q, t) = 0", "J q' + j = 0"] if self.has("constraints") else ["J q' + j = 0"]
+        words = (
+            f"Constraints: {', '.join(first)}, J q'' + gamma = 0; M and f are those of the bodies without them. "
+            "x' keeps the rates of the constraints, so that integration drifts from them by its errors: consistent "
+            "leads a state back, whose constraint_velocity"
+            + (" and constraints tell" if self.has("constraints") else " tells")
+            + " what is left. Where J M^-1 J^T is singular (links in line, dependent constraints) or M is, results are "
+            "not finite."
+        )
+        return wrap(words, 100, break_long_words=False)
 
     @property
     def driven(self) -> str:
@@ -137,7 +164,8 @@ def export(
     """
     system = analysis.system
     made, lacking = parts(analysis, problems)
-    writer = Functions(system, language.dialect, language.reserved, language.propose, PI)
+    further = FURTHER if system.constraints or system.reactions else frozenset()
+    writer = Functions(system, language.dialect, language.reserved | further, language.propose, PI)
     writer.names["t"] = language.time
     parameters = parameters_of(system, writer)
     if shared is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect
-from mbsym.model.system import System
+from mbsym.model.system import System, velocity_name
 from mbsym.model.units import ENERGY, LENGTH, TIME, Units
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
@@ -34,7 +34,10 @@ _WORDS = """
 RESERVED = COMMON | frozenset(_WORDS.split())
 
 #: The functions that the model shows as variables.
-SHOWN = ("accelerations", "energy", "generalized_energy", "integrals", "joints", "mass_centres")
+SHOWN = (
+    "accelerations", "energy", "generalized_energy", "integrals", "joints", "mass_centres",
+    *("constraints", "constraint_velocity", "multipliers", "reactions"),
+)  # fmt: skip
 
 
 def proposed(name: str) -> str:
@@ -66,7 +69,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         for name, value in one.body.assignments:
             assert auxiliary.get(name, value) == value  # prescribed quantities are the same everywhere
             auxiliary[name] = value
-    results = list(_results(model, shown, {*RESERVED, *model.names.values(), *auxiliary}))
+    loose, closing = _at_the_start(analysis, shown)
+    results = list(_results(model, shown, _labels(analysis), {*RESERVED, *model.names.values(), *auxiliary}))
     slopes = next((one.rows("0.0") for one in shown if one.name == "accelerations"), [])
     return rendered(
         "exports/model.mo.j2",
@@ -77,7 +81,36 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         accelerations=[row[0] for row in slopes],
         own=model.names,
         unit=_units(model),
+        loose=loose,
+        closing=closing,
+        kept=any(one.name == "constraints" for one in shown) and not loose & {*analysis.system.coordinates},
     )
+
+
+def _labels(analysis: Analysis) -> tuple[str, ...]:
+    """What the rows of constraints are called."""
+    if not analysis.system.constraints:
+        return ()
+    from mbsym.report.constrained_code import tied_of  # few systems have constraints
+
+    tied = tied_of(analysis)
+    return () if isinstance(tied, str) else tied.labels
+
+
+def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str], list[str]]:
+    """The states that constraints determine at the start, and what is zero there.
+
+    Dependent velocities always; dependent coordinates where every constraint is one on positions.
+    """
+    if not any(one.name == "multipliers" for one in shown):
+        return set(), []
+    found, rows = analysis.constraints, {one.name: one.shape[0] for one in shown if one.shape}
+    loose = {velocity_name(name) for name in found.dependent}
+    closing = [f"constraint_velocity_{k + 1}" for k in range(rows["constraint_velocity"])]
+    if rows.get("constraints") == len(closing):
+        loose |= {*found.dependent}
+        closing += [f"constraint_position_{k + 1}" for k in range(len(closing))]
+    return loose, closing
 
 
 def _units(model: Export) -> Callable[[str], str]:
@@ -101,7 +134,7 @@ def _in_seconds(system: System) -> bool:
 
 
 def _results(
-    model: Export, shown: Sequence[Written], used: set[str]
+    model: Export, shown: Sequence[Written], labels: Sequence[str], used: set[str]
 ) -> Iterator[tuple[str, str, str, list[str] | str]]:
     """(name, unit, words, value or three components) of energies, integrals, places of bodies."""
     known = model.system.units if _in_seconds(model.system) else Units()
@@ -113,6 +146,15 @@ def _results(
         elif one.name == "integrals":
             for item, row in zip(model.integrals, rows, strict=True):
                 yield _free(f"integral_{item.name}", used), "", f"{item.title}: constant ({item.status})", row[0]
+        elif one.name in ("constraints", "constraint_velocity", "multipliers"):
+            stem = {"constraints": "constraint_position", "multipliers": "multiplier"}.get(one.name, one.name)
+            what = "lambda" if one.name == "multipliers" else "zero"
+            for place, (label, row) in enumerate(zip(labels, rows, strict=False), 1):
+                yield _free(f"{stem}_{place}", used), "", f"{what}: {label}", row[0]
+        elif one.name == "reactions":
+            for place, (joint, row) in enumerate(zip(model.system.reactions, rows, strict=True), 1):
+                for what, part in (("force", row[:3]), ("moment", row[3:])):
+                    yield _free(f"{what}_in_joint{place}", used), "", f"{what} in the joint of {joint}", part
         elif one.name in ("joints", "mass_centres"):
             words = "connection point" if one.name == "joints" else "mass centre"
             for place, (body, row) in enumerate(zip(model.system.bodies, rows, strict=True), 1):
