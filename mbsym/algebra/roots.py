@@ -70,10 +70,15 @@ def univariate(coefficients: Sequence[Rational]) -> Univariate:
 
 def count_roots(coefficients: Sequence[Rational]) -> RootCount:
     """How many roots lie to the right, on and to the left of the imaginary axis; exact in every degenerate case."""
-    cs = univariate(coefficients).coeffs()
+    return counted(univariate(coefficients))
+
+
+def counted(p: Univariate) -> RootCount:
+    """The same for a polynomial that is not zero, over the rationals or another ordered field (``plane.elements``)."""
+    cs, made = p.coeffs(), type(p)
     zero = next(i for i, c in enumerate(cs) if c != 0)
     cs = cs[zero:]
-    even, odd = fmpq_poly(cs[::2]), fmpq_poly(cs[1::2])
+    even, odd = made(cs[::2]), made(cs[1::2])
     symmetric = even.gcd(odd)
     # The constant coefficient of p is not 0, so neither is that of the symmetric part: no root mu = 0.
     imaginary, largest = 0, 0
@@ -93,10 +98,15 @@ def count_roots(coefficients: Sequence[Rational]) -> RootCount:
 
 def count_real_roots(coefficients: Sequence[Rational]) -> tuple[int, int, int]:
     """Real roots with multiplicities: (negative, zero, positive)."""
-    cs = univariate(coefficients).coeffs()
+    return counted_real(univariate(coefficients))
+
+
+def counted_real(p: Univariate) -> tuple[int, int, int]:
+    """The same for a polynomial that is not zero, over the rationals or another ordered field."""
+    cs = p.coeffs()
     zero = next(i for i, c in enumerate(cs) if c != 0)
     negative = positive = 0
-    for factor, multiplicity in fmpq_poly(cs[zero:]).factor_squarefree()[1]:
+    for factor, multiplicity in type(p)(cs[zero:]).factor_squarefree()[1]:
         below = _real_roots_below_zero(factor)
         chain = _sturm_chain(factor, factor.derivative())
         total = _variations(chain, -1) - _variations(chain, 1)
@@ -119,10 +129,10 @@ def enclosures(coefficients: Sequence[Rational], bits: int = 80) -> tuple[Root, 
 def _spread(even: Univariate, odd: Univariate) -> Univariate:
     """E(x^2) + x O(x^2)."""
     length = 2 * max(even.length(), odd.length())
-    cs = [fmpq(0)] * length
+    cs = [even[0] * 0] * length
     cs[0 : 2 * even.length() : 2] = even.coeffs()
     cs[1 : 2 * odd.length() + 1 : 2] = odd.coeffs()
-    return fmpq_poly(cs)
+    return type(even)(cs)
 
 
 def _left_minus_right(p: Univariate) -> int:
@@ -133,9 +143,9 @@ def _left_minus_right(p: Univariate) -> int:
     """
     n = p.degree()
     signs = (1, 1, -1, -1)
-    cs = [signs[i % 4] * c for i, c in enumerate(p.coeffs())]
-    real = fmpq_poly([c if i % 2 == 0 else fmpq(0) for i, c in enumerate(cs)])
-    imag = fmpq_poly([c if i % 2 == 1 else fmpq(0) for i, c in enumerate(cs)])
+    cs, made = [signs[i % 4] * c for i, c in enumerate(p.coeffs())], type(p)
+    real = made([c if i % 2 == 0 else c * 0 for i, c in enumerate(cs)])
+    imag = made([c if i % 2 == 1 else c * 0 for i, c in enumerate(cs)])
     if n % 2 == 0:
         return -_cauchy_index(imag, real)
     return _cauchy_index(real, imag)

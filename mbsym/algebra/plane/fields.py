@@ -209,16 +209,21 @@ class Over:
             return 0
         if len(g) == 1:
             return field_.sign(g[0])
-        common = field_.gcd(self.polynomial, g)
-        if len(common) > 1 and self.vanishes(common):
-            return 0
         bits = 40
         while True:
+            if bits == 160:  # most that are not zero have shown it by now
+                common = field_.gcd(self.polynomial, g)
+                if len(common) > 1 and self.vanishes(common):
+                    return 0
             with ctx.workprec(2 * bits + 40):
                 value = field_.balls(g, bits)(self.enclosure(bits))
             if value > 0 or value < 0:
                 return 1 if value > 0 else -1
             bits *= 2
+
+    def restrict(self, divisor: OverField) -> None:
+        """Puts a monic divisor that vanishes at this root in place of the polynomial."""
+        self.polynomial, self._rising = divisor, 0
 
     def vanishes(self, divisor: OverField) -> bool:
         """Whether a monic divisor of this root's polynomial vanishes at it."""

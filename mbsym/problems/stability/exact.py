@@ -1,4 +1,4 @@
-"""Verdicts of problem 6 at rational parameter values: every root is counted exactly."""
+"""Verdicts of problem 6 at rational and algebraic parameter values: every root is counted exactly."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
-from flint import fmpq, fmpq_mat, fmpq_poly
+from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.generators import occurring
-from mbsym.algebra.roots import RootCount, count_roots, rational
+from mbsym.algebra.roots import RootCount, counted, rational
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
@@ -27,11 +27,16 @@ Numbers = Any  # a flint.fmpq_mat
 
 @dataclass(frozen=True)
 class PointVerdict:
-    """The exact result at rational parameter values.  ``roots`` is None where M is singular."""
+    """The exact result at parameter values.  ``roots`` and ``polynomial`` are None where M is singular."""
 
     verdict: Verdict
-    characteristic: tuple[Any, ...]
+    polynomial: Any
     roots: RootCount | None
+
+    @property
+    def characteristic(self) -> tuple[Any, ...]:
+        """The coefficients of the characteristic polynomial, from low to high powers; () where M is singular."""
+        return () if self.polynomial is None else tuple(self.polynomial.coeffs())
 
 
 def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerdict:
@@ -41,43 +46,45 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
     polynomial.  Raises ValueError when a parameter that occurs has no value, or when M, D or K is not symmetric (up
     to positive factors of the rows).
     """
-    m, d, g, k, n = (_evaluate(matrix, point) for matrix in system.matrices)
+    return verdict_over(system, RationalPoint(point))
+
+
+def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
+    """The same where the matrices' entries have exact values of whatever kind; ``polynomial`` is of that kind."""
+    m, d, g, k, n = matrices = [evaluated(matrix, at) for matrix in system.matrices]
     try:
-        a = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
+        a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
     except ZeroDivisionError:
-        return PointVerdict(undecided(Because.MASS_SINGULAR), (), None)
-    characteristic = tuple(a.charpoly().coeffs())
-    roots = count_roots(characteristic)
+        return PointVerdict(undecided(Because.MASS_SINGULAR), None, None)
+    polynomial = a.charpoly()
+    roots = counted(polynomial)
     if system.nonholonomic is not None:
-        return PointVerdict(nonholonomic.at_rationals(system.nonholonomic, a), characteristic, roots)
+        return PointVerdict(nonholonomic.at_rationals(system.nonholonomic, a), polynomial, roots)
     if not system.cyclic or roots.right:
-        verdict = _judge(system, (m, d, g, k, n))
+        verdict = _judge(system, matrices, a, roots)
         if system.turned and not roots.right and not (_no(d) and _no(n)):
-            verdict = _judge_turned(a, [_number(x, point) for x in system.turned], verdict)
-        return PointVerdict(verdict, characteristic, roots)
+            verdict = _judge_turned(polynomial, [at.value(x) for x in system.turned], verdict)
+        return PointVerdict(verdict, polynomial, roots)
     if roots.left + len(system.cyclic) == 2 * system.size:
-        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=False), characteristic, roots)
-    there = _with_numbers(system, (m, d, g, k, n))  # a damper of coefficient 0 changes no momentum
+        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=False), polynomial, roots)
+    there = _settled(system, at)  # a damper of coefficient 0 changes no momentum
     if only_momenta(there):
-        return PointVerdict(coasting(), characteristic, roots)
+        return PointVerdict(coasting(), polynomial, roots)
     if momenta_are_constant(there):
-        reduced = verdict_at(ignoring_cyclic(there), point)
-        return PointVerdict(drifting(reduced.verdict), characteristic, roots)
-    return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), characteristic, roots)
+        reduced = verdict_over(ignoring_cyclic(there), at)
+        return PointVerdict(drifting(reduced.verdict), polynomial, roots)
+    return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), polynomial, roots)
 
 
-def _with_numbers(system: LinearSystem, numbers: Sequence[Numbers]) -> LinearSystem:
-    """The system with ``numbers`` for its matrices M, D, G, K, N."""
-    context, size = system.M[0][0].context(), range(system.size)
-    m, d, g, k, n = (tuple(tuple(context.constant(matrix[i, j]) for j in size) for i in size) for matrix in numbers)
+def _settled(system: LinearSystem, at: ExactPoint) -> LinearSystem:
+    """The system with its matrices such that what vanishes at the point is zero."""
+    m, d, g, k, n = (tuple(tuple(map(at.settled, row)) for row in matrix) for matrix in system.matrices)
     return replace(system, M=m, D=d, G=g, K=k, N=n)
 
 
-def _judge(system: LinearSystem, matrices: Sequence[Numbers]) -> Verdict:
+def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots: RootCount) -> Verdict:
     m, d, g, k, n = matrices
     conservative = system.conservative
-    a = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist())
-    roots = count_roots(a.charpoly().coeffs())
     facts = _facts(m, d, g, k, n, conservative)
     if roots.right:
         how_many = Reason(Because.RIGHT_ROOTS, (roots.right,))
@@ -94,7 +101,7 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers]) -> Verdict:
             return found
         names = ", ".join(system.name(i) for i in _undamped(a, d))
         return replace(found, reasons=(*found.reasons, Reason(Because.UNDAMPED_MOTION, (names,))))
-    blocks = count_roots(a.minpoly().coeffs())
+    blocks = counted(a.minpoly()) if max(roots.imaginary_multiplicity, roots.zero) > 1 else roots
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
     if roots.zero:
@@ -132,26 +139,26 @@ def _undamped(a: Numbers, d: Numbers) -> list[int]:
     They are the ones not observed by D x': the unit row e_i depends on the rows of (0 D), (0 D) A, (0 D) A^2, ...
     """
     n = d.nrows()
-    row = fmpq_mat(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
+    row = type(d)(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
     observed: list[Any] = []
     for _ in range(2 * n):
         observed += row.tolist()
         row = row * a
-    rank = _rank(observed)
-    return [i for i in range(n) if _rank([*observed, [fmpq(int(j == i)) for j in range(2 * n)]]) > rank]
+
+    def rank(rows: Sequence[Sequence[Any]]) -> int:
+        return int(type(d)(len(rows), len(rows[0]), [x for row in rows for x in row]).rref()[1])
+
+    least = rank(observed)
+    return [i for i in range(n) if rank([*observed, [fmpq(int(j == i)) for j in range(2 * n)]]) > least]
 
 
-def _rank(rows: Sequence[Sequence[Any]]) -> int:
-    return int(fmpq_mat(len(rows), len(rows[0]), [x for row in rows for x in row]).rref()[1])
-
-
-def _judge_turned(a: Numbers, turned: Sequence[Any], whole: Verdict) -> Verdict:
+def _judge_turned(whole_polynomial: Any, turned: Sequence[Any], whole: Verdict) -> Verdict:
     """The roots that remain without those of p lambda^2 + q, (p, q) = ``turned``, decide; none has Re > 0."""
     top, bottom = turned
-    polynomial, remainder = divmod(a.charpoly(), fmpq_poly([bottom, 0, top]))
+    polynomial, remainder = divmod(whole_polynomial, type(whole_polynomial)([bottom, bottom * 0, top]))
     if remainder != 0:
         return whole
-    roots = count_roots(polynomial.coeffs())
+    roots = counted(polynomial)
     if roots.left == roots.degree:
         return concluded({Fact.LEFT_BUT_TURNED})
     if whole.word is Word.STABLE:  # by its energy: K > 0, D >= 0
@@ -180,17 +187,45 @@ def _changes_of_sign(numbers: Sequence[Any]) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _evaluate(matrix: Matrix, point: Mapping[int, Fraction]) -> Numbers:
+class ExactPoint(Protocol):
+    """Where matrices have exact values; ``matrix`` makes matrices of them as fmpq_mat does of rational numbers."""
+
+    @property
+    def matrix(self) -> Any: ...
+
+    def value(self, entry: Polynomial) -> Any:
+        """Its value, with an exact sign."""
+
+    def settled(self, entry: Polynomial) -> Polynomial:
+        """A polynomial with the same value there, which is zero if that is."""
+
+
+@dataclass(frozen=True)
+class RationalPoint:
+    """Rational parameter values {index of the generator: value}."""
+
+    point: Mapping[int, Fraction]
+
+    @property
+    def matrix(self) -> Any:
+        return fmpq_mat
+
+    def value(self, entry: Polynomial) -> Any:
+        """Raises ValueError where a parameter that occurs has no value."""
+        context = entry.context()
+        missing = [i for i in occurring([entry]) if i not in self.point]
+        if missing:
+            raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
+        return fmpq(entry(*(rational(self.point.get(i, 0)) for i in range(context.nvars()))))
+
+    def settled(self, entry: Polynomial) -> Polynomial:
+        return entry.context().constant(self.value(entry))
+
+
+def evaluated(matrix: Matrix, at: ExactPoint) -> Numbers:
+    """A matrix of polynomials at a point."""
     n = len(matrix)
-    return fmpq_mat(n, n, [_number(entry, point) for row in matrix for entry in row])
-
-
-def _number(entry: Polynomial, point: Mapping[int, Fraction]) -> Any:
-    context = entry.context()
-    missing = [i for i in occurring([entry]) if i not in point]
-    if missing:
-        raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
-    return fmpq(entry(*(rational(point.get(i, 0)) for i in range(context.nvars()))))
+    return at.matrix(n, n, [at.value(entry) for row in matrix for entry in row])
 
 
 def is_positive(matrix: Numbers) -> bool:

@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpq_mat
+from flint import arb, arb_mat, ctx
 
-from mbsym.algebra.roots import count_roots
+from mbsym.algebra.roots import counted
 from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.state_matrix import state_matrix
@@ -41,17 +41,17 @@ def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
 
 
 def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
-    """The exact verdict; ``first_order`` is the rational matrix of ``state_matrix``."""
+    """The exact verdict; ``first_order`` is the exact matrix of ``state_matrix``."""
     size = first_order.nrows()
     kept = [i for i in range(size) if i not in form.idle]
     entries = first_order.tolist()
-    reduced = fmpq_mat(len(kept), len(kept), [entries[i][j] for i in kept for j in kept])
-    roots = count_roots(reduced.charpoly().coeffs())
+    reduced = type(first_order)(len(kept), len(kept), [entries[i][j] for i in kept for j in kept])
+    roots = counted(reduced.charpoly())
     if roots.right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))
     if roots.left + roots.zero == roots.degree:
         return all_left(form, roots.zero)
-    blocks = count_roots(reduced.minpoly().coeffs())
+    blocks = counted(reduced.minpoly())
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
     if roots.zero > form.family:

@@ -35,7 +35,7 @@ from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.roots import RootCount, count_real_roots, count_roots, enclosures, rational, univariate
 from mbsym.algebra.signs import Signs
 from mbsym.problems.stability import symbolic as theory
-from mbsym.problems.stability.exact import _evaluate, inertia, verdict_at
+from mbsym.problems.stability.exact import RationalPoint, evaluated, inertia, verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, kind_of
 from mbsym.problems.stability.problem import _even
 from mbsym.problems.stability.requirements import Requirement, definiteness
@@ -1028,7 +1028,7 @@ def test_a_diagonal_matrix_shows_its_entries() -> None:
 def test_inertia(rows: list[list[int]]) -> None:
     symmetric = np.array(rows) + np.array(rows).T
     values = np.linalg.eigvalsh(symmetric)
-    found = inertia(_evaluate(matrix(NONE, symmetric.tolist()), {}))
+    found = inertia(evaluated(matrix(NONE, symmetric.tolist()), RationalPoint({})))
     assert found == ((values > 1e-9).sum(), (abs(values) <= 1e-9).sum(), (values < -1e-9).sum())
 
 

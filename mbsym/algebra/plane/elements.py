@@ -1,0 +1,352 @@
+"""Numbers, polynomials and matrices over an ordered field, with the methods of python-flint's rational ones.
+
+So what is written for ``fmpq``, ``fmpq_poly`` and ``fmpq_mat`` (counts of roots by half-planes, verdicts at rational
+points) runs at algebraic points as it stands.  Of the field only sums, products, inverses and signs are asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from flint import fmpq
+
+
+class OrderedField(Protocol):
+    """What is asked of a field: values in a form of its own, signs decided exactly."""
+
+    def constant(self, x: Any) -> Any: ...
+    def add(self, a: Any, b: Any) -> Any: ...
+    def times(self, a: Any, b: Any) -> Any: ...
+    def inverse(self, a: Any) -> Any: ...
+    def sign(self, a: Any) -> int: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Element:
+    """A number of the field."""
+
+    field: OrderedField
+    value: Any
+
+    def _other(self, x: Any) -> Any:
+        return x.value if isinstance(x, Element) else self.field.constant(fmpq(x))
+
+    def __add__(self, other: Any) -> Element:
+        return Element(self.field, self.field.add(self.value, self._other(other)))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Element:
+        return self * -1
+
+    def __sub__(self, other: Any) -> Element:
+        return self + other * -1
+
+    def __rsub__(self, other: Any) -> Element:
+        return -self + other
+
+    def __mul__(self, other: Any) -> Element:
+        return Element(self.field, self.field.times(self.value, self._other(other)))
+
+    __rmul__ = __mul__
+
+    def inverse(self) -> Element:
+        """1/x.  Raises ZeroDivisionError for zero."""
+        return Element(self.field, self.field.inverse(self.value))
+
+    def __truediv__(self, other: Any) -> Element:
+        return self * (other.inverse() if isinstance(other, Element) else 1 / fmpq(other))
+
+    def sign(self) -> int:
+        """-1, 0 or 1."""
+        return self.field.sign(self.value)
+
+    def __bool__(self) -> bool:
+        return self.sign() != 0
+
+    def __eq__(self, other: object) -> bool:
+        return (self - other).sign() == 0
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __gt__(self, other: Any) -> bool:
+        return (self - other).sign() > 0
+
+    def __lt__(self, other: Any) -> bool:
+        return (self - other).sign() < 0
+
+    def __abs__(self) -> Element:
+        return -self if self.sign() < 0 else self
+
+
+class ElementPolynomial:
+    """A polynomial in one variable; coefficients from low to high powers."""
+
+    def __init__(self, coefficients: Sequence[Element]) -> None:
+        kept = list(coefficients)
+        while kept and not kept[-1]:
+            kept.pop()
+        self._coefficients = kept
+
+    def coeffs(self) -> list[Element]:
+        return list(self._coefficients)
+
+    def degree(self) -> int:
+        return len(self._coefficients) - 1
+
+    def length(self) -> int:
+        return len(self._coefficients)
+
+    def leading_coefficient(self) -> Element:
+        return self._coefficients[-1]
+
+    def __getitem__(self, k: int) -> Any:
+        return self._coefficients[k] if k < len(self._coefficients) else fmpq(0)
+
+    def __eq__(self, other: object) -> bool:
+        if other == 0:
+            return not self._coefficients
+        return NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __neg__(self) -> ElementPolynomial:
+        return ElementPolynomial([-c for c in self._coefficients])
+
+    def __truediv__(self, number: Element) -> ElementPolynomial:
+        inverse = number.inverse()
+        return ElementPolynomial([c * inverse for c in self._coefficients])
+
+    def monic(self) -> ElementPolynomial:
+        """Divided by its leading coefficient."""
+        return self / self._coefficients[-1] if self._coefficients else self
+
+    def derivative(self) -> ElementPolynomial:
+        return ElementPolynomial([c * k for k, c in enumerate(self._coefficients)][1:])
+
+    def __divmod__(self, other: ElementPolynomial) -> tuple[ElementPolynomial, ElementPolynomial]:
+        rest, by = self.coeffs(), other.coeffs()
+        if not by:
+            raise ZeroDivisionError("division by the zero polynomial")
+        inverse = by[-1].inverse()
+        quotient: list[Element] = []
+        while len(rest) >= len(by):
+            factor = rest.pop() * inverse
+            quotient.append(factor)
+            if factor:
+                for k, c in enumerate(by[:-1]):
+                    at = len(rest) - len(by) + 1 + k
+                    rest[at] = rest[at] - factor * c
+        return ElementPolynomial(quotient[::-1]), ElementPolynomial(rest)
+
+    def __mul__(self, other: ElementPolynomial) -> ElementPolynomial:
+        a, b = self.coeffs(), other.coeffs()
+        if not a or not b:
+            return ElementPolynomial([])
+        product = [a[0] * 0] * (len(a) + len(b) - 1)
+        for i, x in enumerate(a):
+            for j, y in enumerate(b):
+                product[i + j] = product[i + j] + x * y
+        return ElementPolynomial(product)
+
+    def __mod__(self, other: ElementPolynomial) -> ElementPolynomial:
+        return divmod(self, other)[1]
+
+    def __floordiv__(self, other: ElementPolynomial) -> ElementPolynomial:
+        return divmod(self, other)[0]
+
+    def gcd(self, other: ElementPolynomial) -> ElementPolynomial:
+        """The monic greatest common divisor; zero where both are."""
+        a, b = self, other
+        while b.degree() >= 0:
+            a, b = b, (a % b).monic()
+        return a.monic()
+
+    def factor_squarefree(self) -> tuple[Any, list[tuple[ElementPolynomial, int]]]:
+        """(leading coefficient, [(square-free factor, multiplicity), ...]) by Yun's method, none constant."""
+        if self.degree() < 1:
+            return self[0], []
+        found = []
+        f = self.monic()
+        slope = f.derivative()
+        common = f.gcd(slope)
+        b, c = f // common, slope // common
+        multiplicity = 1
+        while b.degree() > 0:
+            d = _difference(c, b.derivative())
+            factor = b.gcd(d) if d.degree() >= 0 else b
+            if factor.degree() > 0:
+                found.append((factor, multiplicity))
+            b, c = b // factor, d // factor
+            multiplicity += 1
+        return self.leading_coefficient(), found
+
+
+def _difference(a: ElementPolynomial, b: ElementPolynomial) -> ElementPolynomial:
+    left, right = a.coeffs(), b.coeffs()
+    size = max(len(left), len(right))
+    return ElementPolynomial([_at(left, k) - _at(right, k) for k in range(size)] if size else [])
+
+
+def _at(row: Sequence[Element], k: int) -> Any:
+    if k < len(row):
+        return row[k]
+    return fmpq(0) if not row else row[0] * 0
+
+
+class ElementMatrix:
+    """A matrix; made as ``fmpq_mat(rows, columns, entries)`` is, of elements and rational numbers."""
+
+    def __init__(self, rows: int, columns: int, entries: Sequence[Any] | None = None) -> None:
+        self._size = (rows, columns)
+        given = [fmpq(0)] * (rows * columns) if entries is None else list(entries)
+        self._rows = [given[i * columns : (i + 1) * columns] for i in range(rows)]
+
+    def nrows(self) -> int:
+        return self._size[0]
+
+    def tolist(self) -> list[list[Any]]:
+        return [list(row) for row in self._rows]
+
+    def entries(self) -> list[Any]:
+        return [x for row in self._rows for x in row]
+
+    def __getitem__(self, key: tuple[int, int]) -> Any:
+        return self._rows[key[0]][key[1]]
+
+    def __setitem__(self, key: tuple[int, int], value: Any) -> None:
+        self._rows[key[0]][key[1]] = fmpq(value) if isinstance(value, int) else value
+
+    def __add__(self, other: ElementMatrix) -> ElementMatrix:
+        return ElementMatrix(*self._size, [a + b for a, b in zip(self.entries(), other.entries(), strict=True)])
+
+    def __mul__(self, other: Any) -> ElementMatrix:
+        columns = list(zip(*other.tolist(), strict=True))
+        return ElementMatrix(
+            self._size[0], len(columns), [_dot(row, column) for row in self._rows for column in columns]
+        )
+
+    def solve(self, right: ElementMatrix) -> ElementMatrix:
+        """X with self X = right.  Raises ZeroDivisionError where this is singular."""
+        n = self._size[0]
+        whole = ElementMatrix(
+            n, n + right._size[1], [x for a, b in zip(self._rows, right._rows, strict=True) for x in (*a, *b)]
+        )
+        reduced, pivots = whole._reduced(n)
+        if len(pivots) < n:
+            raise ZeroDivisionError("singular matrix")
+        return ElementMatrix(n, right._size[1], [x for row in reduced for x in row[n:]])
+
+    def rref(self) -> tuple[ElementMatrix, int]:
+        """(reduced row echelon form, rank)"""
+        reduced, pivots = self._reduced(self._size[1])
+        return ElementMatrix(*self._size, [x for row in reduced for x in row]), len(pivots)
+
+    def rank(self) -> int:
+        return self.rref()[1]
+
+    def _reduced(self, columns: int) -> tuple[list[list[Any]], list[int]]:
+        """Rows after elimination in the first ``columns``, and the columns of the pivots."""
+        work = self.tolist()
+        pivots: list[int] = []
+        for column in range(columns):
+            at = len(pivots)
+            pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
+            if pivot is None:
+                continue
+            work[at], work[pivot] = work[pivot], work[at]
+            inverse = 1 / work[at][column] if not isinstance(work[at][column], Element) else work[at][column].inverse()
+            work[at] = [x if _plain_zero(x) else x * inverse for x in work[at]]
+            for r, row in enumerate(work):
+                if r != at and row[column] != 0:
+                    factor = row[column]
+                    work[r] = [a if _plain_zero(b) else a - factor * b for a, b in zip(row, work[at], strict=True)]
+            pivots.append(column)
+        return work, pivots
+
+    def charpoly(self) -> ElementPolynomial:
+        """det(lambda - A), after a similarity that makes A of Hessenberg's form."""
+        n, a = self._size[0], self.tolist()
+        for k in range(1, n - 1):
+            pivot = next((r for r in range(k, n) if a[r][k - 1] != 0), None)
+            if pivot is None:
+                continue
+            if pivot != k:
+                a[pivot], a[k] = a[k], a[pivot]
+                for row in a:
+                    row[pivot], row[k] = row[k], row[pivot]
+            inverse = 1 / a[k][k - 1] if not isinstance(a[k][k - 1], Element) else a[k][k - 1].inverse()
+            for r in range(k + 1, n):
+                if a[r][k - 1] == 0:
+                    continue
+                factor = a[r][k - 1] * inverse
+                a[r] = [x if _plain_zero(y) else x - factor * y for x, y in zip(a[r], a[k], strict=True)]
+                for row in a:
+                    row[k] = row[k] + factor * row[r]
+        # p_k = (lambda - a_kk) p_(k-1) - sum_i a_(k-i)k (product of subdiagonal elements) p_(k-i-1)
+        found: list[list[Any]] = [[fmpq(1)]]
+        for k in range(n):
+            previous = found[-1]
+            row = [fmpq(0), *previous]
+            for j, c in enumerate(previous):
+                row[j] = row[j] - a[k][k] * c
+            product: Any = fmpq(1)
+            for i in range(1, k + 1):
+                product = product * a[k - i + 1][k - i]
+                factor = product * a[k - i][k]
+                for j, c in enumerate(found[k - i]):
+                    row[j] = row[j] - factor * c
+            found.append(row)
+        zero = self._zero()
+        return ElementPolynomial([zero + c for c in found[-1]])
+
+    def _zero(self) -> Element:
+        """Raises TypeError for a matrix of rational numbers."""
+        some = next((x for x in self.entries() if isinstance(x, Element)), None)
+        if some is None:
+            raise TypeError("a matrix of rational numbers")
+        return some * 0
+
+    def minpoly(self) -> ElementPolynomial:
+        """The monic polynomial of least degree that A annuls.
+
+        Of each unit vector in turn: what the polynomial so far makes of it, and the first of w, A w, A^2 w, ... that
+        depends on those before.
+        """
+        n, zero = self._size[0], self._zero()
+        found = ElementPolynomial([zero + 1])
+        for unit in range(n):
+            w: list[Any] = [zero + int(i == unit) for i in range(n)]
+            total = [zero] * n
+            for c in reversed(found.coeffs()):
+                total = [a + c * b for a, b in zip(self._applied(total), w, strict=True)]
+            if all(not x for x in total):
+                continue
+            rows = [total]
+            while True:
+                rows.append(self._applied(rows[-1]))
+                columns = ElementMatrix(n, len(rows), [row[i] for i in range(n) for row in rows])
+                reduced, pivots = columns._reduced(len(rows))
+                if len(pivots) < len(rows):
+                    break
+            relation = [-reduced[k][len(rows) - 1] for k in range(len(rows) - 1)]
+            found = found * ElementPolynomial([*(zero + c for c in relation), zero + 1])
+        return found
+
+    def _applied(self, vector: Sequence[Any]) -> list[Any]:
+        return [_dot(row, vector) for row in self._rows]
+
+
+def _plain_zero(x: Any) -> bool:
+    """Whether this is a zero that was never computed with: its products are left out."""
+    return not isinstance(x, Element) and x == 0
+
+
+def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:
+    total: Any = fmpq(0)
+    for a, b in zip(row, column, strict=True):
+        if not (_plain_zero(a) or _plain_zero(b)):
+            total = total + a * b
+    return total
