@@ -51,6 +51,7 @@ class Request:
     angles: Angles | None = None  # None: what each kind of text usually has
     animate: float | None = None  # the time until which report.html shows the motion
     language: str = ""  # "": that of the description
+    forms: tuple[str, ...] = ()  # of problem 3, beside Lagrange's
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -83,6 +84,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     started = time.perf_counter()
     analysis = Analysis(system, request.problems, request.terms)
     analysis.language = request.language
+    analysis.forms = request.forms
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
     found = None
     with status(request.quiet) as say:

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     help="products, sums or shorter: sin and cos of sums of angles in every file.  [default: the shorter form of each "
     "formula for people, products for programs]",
 )
+@click.option(
+    "--form", "forms", default="lagrange", metavar="FORMS", help="Of problem 3, beside Lagrange's: routh, hamilton."
+)
 @click.option("--animate", metavar="T", help="The motion from 0 to T in report.html, in three dimensions.")
 @click.option(
     "--language", metavar="LANGUAGE", help="Of the LaTeX reports: en, ru or es.  [default: the description's, or en]"
@@ -49,6 +52,7 @@ def command(
     detail: str,
     terms: str,
     angles: str | None,
+    forms: str,
     animate: str | None,
     language: str | None,
     strict_claims: bool,
@@ -72,6 +76,10 @@ def command(
     Reports for people tell long formulas through quantities that have a meaning (angular velocities, composite
     inertias, forces and moments of the bodies), each defined once; --detail full writes them out.
 
+    With --form routh problem 3 is told without the cyclic coordinates besides (Routh's function, reduced potential),
+    with --form hamilton in momenta (Hamilton's function, canonical equations, Poisson brackets of first integrals), in
+    every file but model.c and the exports.
+
     With --ledger the run ends with what was left out of the model because this scene does not need it, and what that
     saved: each saving is measured against the same model built without it.  Also in ledger.csv and results.json.
     With --accuracy X --until T what the equations leave out (orders of gravity, negligible masses) is held against the
@@ -94,12 +102,14 @@ def command(
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --detail full
+      mbsym run systems/spherical-pendulum.yaml --form routh,hamilton
       mbsym run systems/satellite.yaml --ledger
       mbsym run systems/satellite.yaml --ledger --accuracy 1e-6 --until 20
       mbsym run systems/satellite.yaml --format latex --language ru
       mbsym run systems/double-pendulum.yaml --format all,fmu2,casadi
       mbsym run systems/tethered-satellites.yaml --angles sums
     """
+    from mbsym.analysis.forms import FORMS
     from mbsym.model.system import LANGUAGES
     from mbsym.report.detail import DETAILS, detailed
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
@@ -109,6 +119,7 @@ def command(
     chosen = None if problems is None else asked.problems(problems)
     kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
     form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
+    shown = asked.words("--form", forms, ("lagrange", *FORMS), "form")
     wanted = asked.word("--detail", detail, DETAILS, "detail")
     tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
     budget = asked.whole("--terms", terms, 1, 10**12)
@@ -135,6 +146,7 @@ def command(
         form,
         until,
         tongue,
+        tuple(name for name in FORMS if name in shown),
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

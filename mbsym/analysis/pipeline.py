@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, constrained, judging, second_routes
+from mbsym.analysis import approximation, conserved, constrained, forms, judging, second_routes
+from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
@@ -54,6 +55,7 @@ from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.brackets import Brackets
     from mbsym.problems.canonical import Hamilton, Routh
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
@@ -103,11 +105,12 @@ KNOW_SPEEDS = frozenset(
 IN_COORDINATES = frozenset(
     (
         *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
-        *("stability", "trials", "equilibria", "hamilton", "routh"),
+        *("stability", "trials", "equilibria", *FORMS, forms.BRACKETS),
     )
 )
-#: The checks of these.
-CHECKED_IN_COORDINATES = ("equilibrium", "linearisation", "perturbed motion")
+#: The checks of these, and the stage that each is about.
+CHECKED_IN_COORDINATES = {"equilibrium": "equilibrium", "linearisation": "linearisation"}
+CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", **forms.CHECKED}
 
 
 class Problem(Derived["Analysis", T]):
@@ -160,6 +163,8 @@ class Analysis(Stages):
         #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
         self.withheld: dict[int, NoResult] = {}
         self.angles = tuple(angles)
+        #: The forms of problem 3 that reports show beside Lagrange's: of ``FORMS``.
+        self.forms: tuple[str, ...] = ()
         #: Of the LaTeX reports, where it is not that of the description.
         self.language = ""
         #: Figures beside report.tex that belong to this description (``report.made_figures``).
@@ -305,8 +310,11 @@ class Analysis(Stages):
 
     # --- problem 3 in other forms, for whoever asks ---
 
-    hamilton = Derived["Analysis", "Hamilton"](lambda a: a._hamilton())
-    routh = Derived["Analysis", "Routh"](lambda a: a._routh())
+    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,))
+    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,))
+    brackets: Derived[Analysis, Brackets | None] = Derived(
+        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True
+    )
 
     # --- at numbers ---
 
@@ -330,9 +338,7 @@ class Analysis(Stages):
     def check(self, name: str) -> Check | None:
         """The check of that name; None where the results do not allow one."""
         if self.system.speeds and name in CHECKED_IN_COORDINATES:
-            return (
-                None if self.optional(name.replace("perturbed motion", "linearisation")) is None else self._there(name)
-            )
+            return None if self.optional(CHECKED_IN_COORDINATES[name]) is None else self._there(name)
         if name not in self._checks:
             stage = self.run(f"check: {name}", lambda: second_routes.check(self, name))
             if stage.value is None:  # nothing to compare yet
@@ -397,16 +403,6 @@ class Analysis(Stages):
             why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
             raise Unavailable("first order", why)
         return first_order.first_order(self.speed_form, cast("SpeedEquations", self.equations), self.equilibrium)
-
-    def _hamilton(self) -> Hamilton:
-        from mbsym.problems import canonical  # what few ask for is not imported for nothing
-
-        return canonical.hamilton(self.system, self.terms)
-
-    def _routh(self) -> Routh:
-        from mbsym.problems import canonical
-
-        return canonical.routh(self.system, self.terms)
 
     def _told(self) -> ToldSystem:
         return told_system(self.system, self.ring, self.terms)

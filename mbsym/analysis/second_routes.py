@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.analysis import constrained
+from mbsym.analysis import constrained, forms
 from mbsym.formulas.formula import Column
 from mbsym.mechanics import motion
 from mbsym.problems import checks as comparison
@@ -45,6 +45,7 @@ def _wanted(analysis: Analysis) -> list[str]:
         names |= {"straight-line program", "mass matrix"}
     if 3 in analysis.problems and analysis.system.reactions:
         names.add(constrained.REACTIONS)
+    names |= set(forms.wanted_checks(analysis))
     if analysis.system.speeds:
         names |= {"first approximation in speeds"}
     return [name for name in SECOND_ROUTES if name in names]
@@ -188,6 +189,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,
     constrained.REACTIONS: constrained.reactions_check,
+    **forms.CHECKS,
 }
 
 

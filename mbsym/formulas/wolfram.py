@@ -80,6 +80,9 @@ RESERVED = (
     "firstIntegrals", "prescribed", "equilibriumConditions", "lambda", "tau", "tEnd", "dynamics", "mbsymSolution",
     "mbsymRate", "mbsymInitial", "mbsymState", "pieces", "positions", "velocities",
     "speeds", "rates", "needed", "supplied",
+    "momenta", "momentaInVelocities", "hamiltonian", "velocitiesInMomenta", "ratesOfMomenta", "canonicalEquations",
+    "integralsInMomenta", "poissonBrackets", "routhCoordinates", "ignoredCoordinates", "routhMomenta", "routhFunction",
+    "reducedPotential", "routhMassMatrix", "routhForcing", "ignoredRates", "routhEquations",
 )  # fmt: skip
 
 _NAMES: WeakKeyDictionary[Ring, WolframNames] = WeakKeyDictionary()

@@ -10,9 +10,13 @@ coordinates c and no other force acts on them, their momenta beta are constants.
 
     R(s, s', beta, t) = L - beta.c',      c' = M_cc^-1 (beta - M_cs s' - A1_c)
 
-    d/dt dR/ds' - dR/ds = Q,      that is      M_R s'' = f_R,      and then      c' = -dR/dbeta.
+    d/dt dR/ds' - dR/ds = Q,      that is      M_R s'' = f_R,      and then      c' = -dR/dbeta
 
-Both are derived in a ring of their own, in which the momenta are generators.
+    R = 1/2 s'.M_R s' + b.s' - W,      W(s, beta, t) the reduced potential: where b = 0 and W and Q contain neither
+    the time nor s', the motions with s constant are its stationary points.
+
+Both are derived in a ring of their own, in which the momenta are generators.  They are compared with d'Alembert's
+principle at random exact states (``mbsym.problems.canonical_checks``).
 
 Source: Landau & Lifshitz, Mechanics, sections 40 and 41; Pars, A Treatise on Analytical Dynamics, ch. 10.
 
@@ -30,7 +34,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from mbsym.algebra.failures import NoClosedForm, SingularPoint
+from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, column
@@ -69,7 +73,8 @@ class Hamilton(Shown):
 class Routh(Shown):
     """``ignored`` are the cyclic coordinates c, ``momenta`` the names of their constants beta; ``function`` is R.
 
-    M_R (m x m) and f_R belong to ``coordinates`` s; ``ignored_rates`` are c'.
+    M_R (m x m) and f_R belong to ``coordinates`` s; ``ignored_rates`` are c'; ``linear`` is b, and
+    ``reduced_potential`` W, of R = 1/2 s'.M_R s' + b.s' - W.
     """
 
     ignored: tuple[str, ...]
@@ -79,11 +84,19 @@ class Routh(Shown):
     mass_matrix: Matrix
     forcing: Column
     ignored_rates: Column
+    linear: Column
+    reduced_potential: Formula
 
     @property
     def terms(self) -> int:
         """Terms of R."""
         return self.function.terms
+
+
+class NothingIgnored(Failure):
+    """Routh's form is Lagrange's where nothing can be left out, and says nothing where nothing is left."""
+
+    code = "nothing-ignored"
 
 
 def momentum_names(system: System) -> dict[str, str]:
@@ -127,7 +140,8 @@ def hamilton(system: System, terms: int) -> Hamilton:
 def routh(system: System, terms: int) -> Routh:
     """Routh's equations of what is left of a system without its cyclic coordinates.
 
-    Raises NoClosedForm where there is no cyclic coordinate without a force on it, or nothing else is left.
+    Raises NothingIgnored where there is no cyclic coordinate without a force on it, or nothing else is left,
+    NoClosedForm where formulas outgrow the budget.
     """
     all_momenta = momentum_names(system)
     ring = ring_of(system, terms, fixed=tuple(all_momenta.values()))
@@ -138,8 +152,15 @@ def routh(system: System, terms: int) -> Routh:
     if any(ring.dependencies(applied[name], ignored) for name in system.coordinates):
         ignored = tuple(x for x in ignored if not any(ring.dependencies(q, (x,)) for q in applied.values()))
     left = tuple(name for name in system.coordinates if name not in ignored)
-    if not ignored or not left:
-        raise NoClosedForm("Routh's function: " + ("no coordinate is cyclic" if not ignored else "all are cyclic"))
+    if not ignored:
+        cyclic = ", ".join(name for name in found.cyclic if name in system.coordinates)
+        raise NothingIgnored(
+            f"cyclic are {cyclic}, but other forces act on them, or depend on them"
+            if cyclic
+            else "no coordinate is cyclic"
+        )
+    if not left:
+        raise NothingIgnored("all coordinates are cyclic, so that no other is left")
     beta = [ring.generator("parameter", all_momenta[name]) for name in ignored]
     kinetic = found.kinetic_energy.polynomial
     at_rest = {ring.index("velocity", name): ring.zero for name in ignored}
@@ -155,6 +176,7 @@ def routh(system: System, terms: int) -> Routh:
     for name, slope in zip(left, slopes, strict=True):
         force = ring.substitute(applied[name], back) + ring.derivative(function, name)
         forcing.append(ring.reduce(force - _convective(scene, ring, slope, left)))
+    rest_of = {ring.index("velocity", name): ring.zero for name in left}
     return Routh(
         ignored=ignored,
         momenta=tuple(all_momenta[name] for name in ignored),
@@ -163,6 +185,8 @@ def routh(system: System, terms: int) -> Routh:
         mass_matrix=Matrix.of(ring, [[ring.velocity_derivative(p, name) for name in left] for p in slopes]),
         forcing=column(ring, forcing),
         ignored_rates=column(ring, rates),
+        linear=column(ring, [ring.substitute(slope, rest_of) for slope in slopes]),
+        reduced_potential=Formula(ring, -ring.substitute(function, rest_of)),
     )
 
 

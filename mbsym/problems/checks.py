@@ -349,31 +349,31 @@ def check_energy(truth: Oracles, energy: Energy) -> Check:
 def check_linearisation(ring: Ring, first: Linearisation, second: Linearisation) -> Check:
     """All five matrices by both routes, as polynomials; as balls where the ring cannot decide."""
     outcomes = {
-        name: _equal(ring, a.polynomials, b.polynomials)
+        name: how_equal(ring, a.polynomials, b.polynomials)
         for name, a, b in zip("MDGKN", first.matrices, second.matrices, strict=True)
     }
     if first.B is not None and second.B is not None:
-        outcomes["B"] = _equal(ring, first.B.polynomials, second.B.polynomials)
+        outcomes["B"] = how_equal(ring, first.B.polynomials, second.B.polynomials)
     wrong = [name for name, outcome in outcomes.items() if outcome == FAILED]
     outcome = _worst(outcomes.values())
-    detail = f"differs in {', '.join(wrong)}" if wrong else _HOW_EQUAL[outcome]
+    detail = f"differs in {', '.join(wrong)}" if wrong else HOW_EQUAL[outcome]
     return Check("linearisation", first.route, second.route, outcome, detail)
 
 
 def check_residuals(ring: Ring, first: Sequence[Formula], second: Sequence[Formula]) -> Check:
     """The motion substituted into the nonlinear equations, and into the recursion."""
     rows = ([x.polynomial for x in first], [x.polynomial for x in second])
-    outcome = _equal(ring, [rows[0]], [rows[1]])
+    outcome = how_equal(ring, [rows[0]], [rows[1]])
     return Check(
         "equilibrium",
         "motion substituted into the closed equations",
         "Newton-Euler recursion on the motion",
         outcome,
-        "the residuals differ" if outcome == FAILED else _HOW_EQUAL[outcome],
+        "the residuals differ" if outcome == FAILED else HOW_EQUAL[outcome],
     )
 
 
-_HOW_EQUAL = {
+HOW_EQUAL = {
     EXACT: "identical polynomials",
     NUMERICAL: "equal at random parameters",
     UNDECIDED: "roots that are not real at random parameters",
@@ -384,7 +384,7 @@ def _worst(outcomes: Iterable[str]) -> str:
     return max(outcomes, key=(EXACT, NUMERICAL, UNDECIDED, FAILED).index, default=EXACT)
 
 
-def _equal(ring: Ring, a: Sequence[Sequence[Any]], b: Sequence[Sequence[Any]]) -> str:
+def how_equal(ring: Ring, a: Sequence[Sequence[Any]], b: Sequence[Sequence[Any]]) -> str:
     """How far a = b is certain, entry by entry."""
     pairs = [(x, y) for row, other in zip(a, b, strict=True) for x, y in zip(row, other, strict=True)]
     return _worst(_vanishing(ring, x - y) for x, y in pairs)

@@ -9,6 +9,15 @@ them:  M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y
 
 where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
 
+Other forms (``mbsym run --form routh,hamilton``; ``mbsym.problems.canonical``), of systems without constraints:
+
+    Routh:     R = L - beta.c' of the coordinates s, the momenta beta of the cyclic coordinates c being constants where
+               no other force acts on c;  M_R s'' = f_R;  R = 1/2 s'.M_R s' + b.s' - W with the reduced potential W
+    Hamilton:  p = dL/dq',  H = p.q' - L,  q' = dH/dp,  p' = -dH/dq + Q;  Poisson brackets {F_i, F_j} of the integrals
+               of problem 7
+
+Forces Q without a force function stay in both.  Of a system in speeds they are told in generalised coordinates.
+
 Source: Banshchikov & Vetrov, Problem 3.
 
 Example:

@@ -22,6 +22,7 @@ from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report import html_formulas as shown
 from mbsym.report.brief import brief
+from mbsym.report.canonical import forms_of, upper_brackets
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
@@ -66,7 +67,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     printed = _claimed_names(analysis)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
-    long = withheld([found[number] for number in COUNTED if number in found], PAPER)
+    forms = forms_of(analysis, problems)
+    long = withheld([*(found[number] for number in COUNTED if number in found), *forms.results], PAPER)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed}
     taken |= {str(names[item.name]) for item in system.notation}
@@ -76,6 +78,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
         "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
         "speed": lambda name: speed(name, names),
+        "constant_momentum": lambda name: Markup(str(mathml_names(forms.routh_ring)[name])),
+        "momentum": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name])),
+        "momentum_rate": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name].dotted("˙"))),
+        "upper_brackets": upper_brackets,
         "speed_form": lambda one: speed_form(one, names, [body.name for body in system.bodies].index(one.body) + 1),
         "expression": lambda value: expression(value, names),
         "points": lambda value: Markup(
@@ -119,6 +125,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         decided=_decided,
         **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,
+        forms=forms,
         reactions=analysis.optional("reactions") if system.reactions and 3 in problems else (),
         claims=analysis.claims,
         checks=analysis.checks,

@@ -6,6 +6,16 @@ from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV,
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
+    "Routh's form": "Forma de Routh",
+    "Hamilton's form": "Forma de Hamilton",
+    "Poisson brackets": "Corchetes de Poisson",
+    "$L$ does not contain $[[ignored]]$, on which no other force acts: the momenta $\\beta = ([[momenta]])$ are constants. Routh's function $R = L - \\beta \\cdot \\dot c$, with the velocities $\\dot c$ of these in terms of $\\beta$, belongs to the others, $s = ([[left]])$: $\\frac{d}{dt} \\frac{\\partial R}{\\partial \\dot s} - \\frac{\\partial R}{\\partial s} = Q$, that is $M^R \\ddot s = f^R$.": "$L$ no contiene $[[ignored]]$, sobre las que no actúa ninguna otra fuerza: los momentos $\\beta = ([[momenta]])$ son constantes. La función de Routh $R = L - \\beta \\cdot \\dot c$, con las velocidades $\\dot c$ de estas en función de $\\beta$, es de las demás, $s = ([[left]])$: $\\frac{d}{dt} \\frac{\\partial R}{\\partial \\dot s} - \\frac{\\partial R}{\\partial s} = Q$, es decir, $M^R \\ddot s = f^R$.",
+    "With $R = \\frac12 \\dot s \\cdot M^R \\dot s + b \\cdot \\dot s - W$, $W$ the reduced potential:": "Con $R = \\frac12 \\dot s \\cdot M^R \\dot s + b \\cdot \\dot s - W$, donde $W$ es el potencial reducido:",
+    "Then by integration:": "Después, por integración:",
+    "Momenta $p = \\partial L/\\partial \\dot q$, Hamilton's function $H = p \\cdot \\dot q - L$ and the canonical equations $\\dot q = \\partial H/\\partial p$, $\\dot p = -\\partial H/\\partial q + Q$ with the forces $Q$ that have no force function.": "Momentos $p = \\partial L/\\partial \\dot q$, función de Hamilton $H = p \\cdot \\dot q - L$ y ecuaciones canónicas $\\dot q = \\partial H/\\partial p$, $\\dot p = -\\partial H/\\partial q + Q$ con las fuerzas $Q$ sin función de fuerzas.",
+    "The first integrals of problem 7 in coordinates and momenta:": "Las integrales primeras del problema 7 en coordenadas y momentos:",
+    "They are in involution: all Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ are zero.": "Están en involución: todos los corchetes de Poisson $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ son nulos.",
+    "Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; those that are not written are zero, or follow by a change of sign.": "Corchetes de Poisson $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; los que no se escriben son nulos o se siguen con un cambio de signo.",
     "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "En cuasivelocidades y posiciones: $\\dot x = A x$ con las desviaciones $x$ de $([[names]])$ respecto de $([[values]])$.",
     "Unit vectors keep their lengths and the angles between them: zero roots of $A$ that belong to no motion: [[count]].": "Los vectores unitarios conservan sus longitudes y los ángulos entre ellos: raíces nulas de $A$ que no corresponden a ningún movimiento: [[count]].",
     "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Los problemas 4 a 6 se dan en coordenadas y velocidades generalizadas. Cerca del movimiento éstas y el estado en cuasivelocidades (y vectores unitarios) son funciones suaves unas de otras, así que la estabilidad es la misma en ambas.",
@@ -209,6 +219,13 @@ SENTENCES = {
 }
 
 WORDS = {
+    "Routh's equations": "ecuaciones de Routh",
+    "canonical equations": "ecuaciones canónicas",
+    "Poisson brackets": "corchetes de Poisson",
+    "Hamilton, closed form": "Hamilton, en forma cerrada",
+    "Routh, closed form": "Routh, en forma cerrada",
+    "rates of first integrals along the canonical equations": "derivadas de las integrales primeras según las ecuaciones canónicas",
+    "zero, as problem 7 found them": "cero, como las halló el problema 7",
     "first approximation in speeds": "primera aproximación en cuasivelocidades",
     str(Word.ASYMPTOTIC): "asintóticamente estable",
     str(Word.ASYMPTOTIC_BUT_TURNED): "asintóticamente estable salvo una rotación del espacio",

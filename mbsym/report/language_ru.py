@@ -8,6 +8,16 @@ from mbsym.problems.stability.word import Word
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
 
 SENTENCES = {
+    "Routh's form": "Форма Рауса",
+    "Hamilton's form": "Форма Гамильтона",
+    "Poisson brackets": "Скобки Пуассона",
+    "$L$ does not contain $[[ignored]]$, on which no other force acts: the momenta $\\beta = ([[momenta]])$ are constants. Routh's function $R = L - \\beta \\cdot \\dot c$, with the velocities $\\dot c$ of these in terms of $\\beta$, belongs to the others, $s = ([[left]])$: $\\frac{d}{dt} \\frac{\\partial R}{\\partial \\dot s} - \\frac{\\partial R}{\\partial s} = Q$, that is $M^R \\ddot s = f^R$.": "$L$ не содержит $[[ignored]]$, и другие силы на них не действуют: импульсы $\\beta = ([[momenta]])$ постоянны. Функция Рауса $R = L - \\beta \\cdot \\dot c$, где скорости $\\dot c$ этих координат выражены через $\\beta$, относится к остальным, $s = ([[left]])$: $\\frac{d}{dt} \\frac{\\partial R}{\\partial \\dot s} - \\frac{\\partial R}{\\partial s} = Q$, то есть $M^R \\ddot s = f^R$.",
+    "With $R = \\frac12 \\dot s \\cdot M^R \\dot s + b \\cdot \\dot s - W$, $W$ the reduced potential:": "При $R = \\frac12 \\dot s \\cdot M^R \\dot s + b \\cdot \\dot s - W$, где $W$ --- приведённый потенциал:",
+    "Then by integration:": "Затем интегрированием:",
+    "Momenta $p = \\partial L/\\partial \\dot q$, Hamilton's function $H = p \\cdot \\dot q - L$ and the canonical equations $\\dot q = \\partial H/\\partial p$, $\\dot p = -\\partial H/\\partial q + Q$ with the forces $Q$ that have no force function.": "Импульсы $p = \\partial L/\\partial \\dot q$, функция Гамильтона $H = p \\cdot \\dot q - L$ и канонические уравнения $\\dot q = \\partial H/\\partial p$, $\\dot p = -\\partial H/\\partial q + Q$ с силами $Q$, не имеющими силовой функции.",
+    "The first integrals of problem 7 in coordinates and momenta:": "Первые интегралы задачи 7 в координатах и импульсах:",
+    "They are in involution: all Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ are zero.": "Они находятся в инволюции: все скобки Пуассона $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ равны нулю.",
+    "Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; those that are not written are zero, or follow by a change of sign.": "Скобки Пуассона $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; невыписанные равны нулю или отличаются знаком.",
     "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "В квазискоростях и положениях: $\\dot x = A x$ для отклонений $x$ величин $([[names]])$ от $([[values]])$.",
     "Unit vectors keep their lengths and the angles between them: zero roots of $A$ that belong to no motion: [[count]].": "Единичные векторы сохраняют длины и углы между собой: нулевых корней $A$, не отвечающих никакому движению, столько: [[count]].",
     "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds (and unit vectors) are smooth functions of each other, so that stability is the same in both.": "Задачи 4--6 изложены в обобщённых координатах и скоростях. Вблизи движения они и состояние в квазискоростях (и единичных векторах) --- гладкие функции друг друга, поэтому устойчивость в тех и других одна и та же.",
@@ -311,6 +321,13 @@ SENTENCES = {
 }
 
 WORDS = {
+    "Routh's equations": "уравнения Рауса",
+    "canonical equations": "канонические уравнения",
+    "Poisson brackets": "скобки Пуассона",
+    "Hamilton, closed form": "Гамильтон, в замкнутом виде",
+    "Routh, closed form": "Раус, в замкнутом виде",
+    "rates of first integrals along the canonical equations": "скорости изменения первых интегралов по каноническим уравнениям",
+    "zero, as problem 7 found them": "нуль, как нашла их задача 7",
     "first approximation in speeds": "первое приближение в квазискоростях",
     str(Word.ASYMPTOTIC): "асимптотически устойчиво",
     str(Word.ASYMPTOTIC_BUT_TURNED): "асимптотически устойчиво с точностью до поворота пространства",

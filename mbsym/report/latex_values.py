@@ -21,6 +21,7 @@ from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
+from mbsym.report.canonical import Forms, forms_of, upper_brackets
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
@@ -101,7 +102,8 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     labels = Labels(prefix_of(system.name))
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
-    long = withheld([found[number] for number in COUNTED if number in found], PAPER)
+    forms = forms_of(analysis, problems)
+    long = withheld([*(found[number] for number in COUNTED if number in found), *forms.results], PAPER)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
     verdicts = found.get(6)
@@ -134,6 +136,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
+        "forms": forms,
         "statements": statements,
         "cases": cases,
         "Shown": Shown,
@@ -155,7 +158,18 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "diagram": lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
-    return _filters(analysis, tongue, long, form.widest, lambda value: once(measured_matrix, value)), values
+    filters = _filters(analysis, tongue, long, form.widest, lambda value: once(measured_matrix, value))
+    return filters | _momenta(forms), values
+
+
+def _momenta(forms: Forms) -> Filters:
+    """What templates write momenta with, which the rings of the forms have besides."""
+    return {
+        "constant_momentum": lambda name: str(latex_names(forms.routh_ring)[name]),
+        "momentum": lambda name: str(latex_names(forms.hamilton_ring)[name]),
+        "momentum_rate": lambda name: latex_names(forms.hamilton_ring)[name].accented("dot"),
+        "upper_brackets": upper_brackets,
+    }
 
 
 def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest: float, measured: Measured) -> Filters:

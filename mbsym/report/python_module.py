@@ -51,6 +51,12 @@ TIED = frozenset({
     "DEPENDENT", "GIVEN", "mass", "scale", "sizes", "unknown", "step", "basis", "free", "rows", "root", "what", "size",
 })  # fmt: skip
 
+#: What a module that has Hamilton's or Routh's form calls something besides.
+IN_MOMENTA = frozenset({
+    "MOMENTA", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED", "CONSTANTS",
+    "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
+})  # fmt: skip
+
 _NUMPY = {"atan": "arctan"}
 _WORD = re.compile("[a-z]+")
 
@@ -70,7 +76,7 @@ DIALECT = Dialect(
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
     system, (code, no_code) = analysis.system, programs_of(analysis)
-    writer = _Module(system)
+    writer = _Module(system, bool(analysis.forms))
     tied = None
     if system.constraints:
         from mbsym.report.constrained_code import tied_code
@@ -81,6 +87,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         from mbsym.report.speed_code import speed_code
 
         speeds = speed_code(analysis, writer)
+    forms = None
+    if analysis.forms:
+        from mbsym.report.canonical_code import canonical_code
+
+        forms = canonical_code(analysis, problems, writer)
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
@@ -109,6 +120,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         no_code=plain(no_code),
         tied=tied,
         speeds=speeds,
+        forms=forms,
+        lacking=[plain(line) for line in forms.lacking] if forms else [],
         upper=upper,
         mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
         forcing=code and writer.function(code.program, code.forcing),
@@ -195,10 +208,12 @@ def _decimal(number: Fraction) -> str:
 class _Module(Functions):
     """Turns nodes of a program into function bodies with names that Python lets us use."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, in_momenta: bool = False) -> None:
         reserved = RESERVED | words_of_inputs(system) | (TIED if system.constraints else frozenset())
         if system.reactions:
             reserved |= {"reactions", "REACTIONS", "zero"}
+        if in_momenta:
+            reserved |= IN_MOMENTA
         super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
     def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:

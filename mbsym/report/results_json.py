@@ -15,6 +15,8 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import energy_unit, unit_of, units_by_name
 from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
+from mbsym.report.canonical import data as canonical_data
+from mbsym.report.canonical import forms_of
 from mbsym.report.claims import claim_line, left_side
 from mbsym.report.first_order import first_order
 from mbsym.report.inertias import accepted_inertias
@@ -67,7 +69,8 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
         found["outputs"] = [{"name": one.name, "value": text(one.value)} for one in system.outputs]
     unavailable: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
-    long = withheld([stages[number].value for number in COUNTED if number in stages], FILE)
+    forms = forms_of(analysis, problems)
+    long = withheld([*(stages[number].value for number in COUNTED if number in stages), *forms.results], FILE)
 
     def write(formula: Formula) -> Written:
         return counted(formula) if id(formula) in long else str(formula)
@@ -82,6 +85,10 @@ def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
         told = first_order(analysis, stages[5].value)
         if told["first_order"] is not None:
             found["state_space"] = _state_space(told["first_order"], write)
+    if forms.some:
+        sections, missing = canonical_data(forms, write, _failure)
+        found |= sections
+        unavailable |= missing
     if system.reactions and 3 in problems:
         from mbsym.report.sections.equations import reaction_data
 

@@ -63,6 +63,7 @@ def derive_all(
     made as ``writing`` has them.
     """
     from mbsym.analysis import PROBLEMS
+    from mbsym.analysis.forms import asked
     from mbsym.analysis.second_routes import carried_out
     from mbsym.report.targets import FORMATS
 
@@ -75,6 +76,9 @@ def derive_all(
     helped = beside is not unhelped
     with analysis.unvouched():
         derive(late=False)
+        for name in asked(analysis):
+            say(f"problem 3, {name.capitalize()}'s form")
+            analysis.optional(name)
         if any(FORMATS[name].program for name in formats):
             analysis.optional("programs")
     if helped:

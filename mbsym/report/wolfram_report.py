@@ -20,6 +20,7 @@ from mbsym.formulas.wolfram import (
     wolfram_text,
 )
 from mbsym.model.system import System
+from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
@@ -46,7 +47,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     used = {names[name] for name in names.table}
-    long = withheld([found[number] for number in COUNTED if number in found], FILE)
+    forms = forms_of(analysis, problems)
+    long = withheld([*(found[number] for number in COUNTED if number in found), *forms.results], FILE)
     closed = found.get(3)
     if closed is not None and any(id(x) in long for x in formulas((closed.mass_matrix, closed.forcing))):
         del found[3]  # equations that are not whole are none: the program takes their place
@@ -65,10 +67,13 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             "string": string,
             "comment": comment,
             "condition": condition,
+            "momentum": lambda name: wolfram_names(forms.hamilton_ring)[name],
+            "constant_momentum": lambda name: wolfram_names(forms.routh_ring)[name],
         },
         system=analysis.system,
         names=names,
         found=found,
+        forms=forms,
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in found else None,

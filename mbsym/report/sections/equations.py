@@ -136,3 +136,7 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
         yield "without multipliers: longer than the budget of terms"
     for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
         yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
+    if analysis.forms:
+        from mbsym.report.canonical import form_lines
+
+        yield from form_lines(analysis)

@@ -1,0 +1,109 @@
+"""Problem 3 in Hamilton's and Routh's forms in the pipeline: results, their second routes, which of them are told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.variables import ring_environment
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.brackets import Brackets
+    from mbsym.problems.canonical import Hamilton, Routh
+    from mbsym.problems.checks import Check
+
+# What few ask for is not imported for nothing: names stand here, modules in the functions.
+
+#: The forms besides Lagrange's, which are stages of the pipeline; what else is derived of Hamilton's.
+FORMS, BRACKETS = ("routh", "hamilton"), "brackets"
+#: The checks of these three.
+REDUCED, CANONICAL, INVOLUTION = "Routh's equations", "canonical equations", "Poisson brackets"
+#: Each check and the stage that it is about.
+CHECKED = {REDUCED: "routh", CANONICAL: "hamilton", INVOLUTION: BRACKETS}
+
+
+def hamilton(analysis: Analysis) -> Hamilton:
+    """The canonical equations, formulas written as the description wants its names."""
+    from mbsym.problems import canonical
+
+    found = canonical.hamilton(analysis.system, analysis.terms)
+    _write(analysis, found.hamiltonian.ring)
+    return found
+
+
+def routh(analysis: Analysis) -> Routh:
+    """Routh's equations."""
+    from mbsym.problems import canonical
+
+    found = canonical.routh(analysis.system, analysis.terms)
+    _write(analysis, found.function.ring)
+    return found
+
+
+def brackets(analysis: Analysis) -> Brackets | None:
+    """The Poisson brackets of problem 7's integrals; None without any."""
+    from mbsym.problems import brackets as problem
+
+    return problem.brackets(analysis.system, analysis.hamilton, analysis.integrals)
+
+
+def _write(analysis: Analysis, ring: Ring) -> None:
+    if analysis.system.symbols:
+        from mbsym.formulas.latex import write_as
+
+        write_as(ring, {one.name: one.latex for one in analysis.system.symbols})
+
+
+def asked(analysis: Analysis) -> tuple[str, ...]:
+    """The forms that reports of problem 3 show besides Lagrange's, in their order."""
+    return tuple(name for name in FORMS if name in analysis.forms) if 3 in analysis.problems else ()
+
+
+def wanted_checks(analysis: Analysis) -> Iterator[str]:
+    """The names of the checks of what is told."""
+    shown = asked(analysis)
+    for check, stage in CHECKED.items():
+        if stage in shown or (stage == BRACKETS and "hamilton" in shown and 7 in analysis.problems):
+            yield check
+
+
+# --- second routes: None where there is nothing to compare ---
+
+
+def _hamilton(analysis: Analysis) -> Check | None:
+    found = analysis.optional("hamilton")
+    if found is None:
+        return None
+    from mbsym.problems.canonical_checks import check_hamilton
+
+    return check_hamilton(analysis.oracles, found)
+
+
+def _routh(analysis: Analysis) -> Check | None:
+    found = analysis.optional("routh")
+    if found is None:
+        return None
+    from mbsym.problems.canonical_checks import check_routh
+
+    return check_routh(analysis.oracles, found)
+
+
+def _brackets(analysis: Analysis) -> Check | None:
+    found = analysis.optional(BRACKETS)
+    if found is None:
+        return None
+    from mbsym.problems.canonical_checks import check_brackets
+
+    system, ring = analysis.system, analysis.hamilton.hamiltonian.ring
+    scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    return check_brackets(found, analysis.hamilton, scene)
+
+
+CHECKS: dict[str, Callable[[Analysis], Check | None]] = {
+    REDUCED: _routh,
+    CANONICAL: _hamilton,
+    INVOLUTION: _brackets,
+}

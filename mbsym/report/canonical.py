@@ -1,0 +1,143 @@
+"""Problem 3 in Hamilton's and Routh's forms: what every kind of report shows of it, where it was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from mbsym.analysis.forms import BRACKETS, asked
+from mbsym.formulas.formula import Formula
+from mbsym.report.plain import Write, column_text, matrix_text, shortened
+
+if TYPE_CHECKING:
+    from mbsym.algebra.ring import Ring
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.stages import NoResult
+    from mbsym.problems.brackets import Brackets
+    from mbsym.problems.canonical import Hamilton, Routh
+
+
+@dataclass(frozen=True)
+class Forms:
+    """The forms that were asked for; ``failures`` say of those that have no result why, by the name of the form."""
+
+    routh: Routh | None = None
+    hamilton: Hamilton | None = None
+    brackets: Brackets | None = None
+    failures: tuple[tuple[str, NoResult], ...] = ()
+
+    @property
+    def some(self) -> bool:
+        """Whether there is anything to show."""
+        return self != Forms()
+
+    @property
+    def results(self) -> list[Any]:
+        """What is there; each has room of its own in a file."""
+        return [found for found in (self.routh, self.hamilton, self.brackets) if found is not None]
+
+    @property
+    def routh_ring(self) -> Ring:
+        """The ring of Routh's form, in which momenta are parameters."""
+        assert self.routh is not None
+        return self.routh.function.ring
+
+    @property
+    def hamilton_ring(self) -> Ring:
+        """The ring of Hamilton's form, in which momenta change with the time."""
+        assert self.hamilton is not None
+        return self.hamilton.hamiltonian.ring
+
+
+def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
+    """What a report of these problems shows."""
+    if 3 not in problems:
+        return Forms()
+    wanted = list(asked(analysis))
+    if "hamilton" in wanted and 7 in problems:
+        wanted.append(BRACKETS)
+    stages = {name: analysis.stage_of(name) for name in wanted}
+    failures = [(name, stage.failure) for name, stage in stages.items() if stage.failure is not None]
+    if any(name == "hamilton" for name, _ in failures):  # and then there are no brackets either
+        failures = [one for one in failures if one[0] != BRACKETS]
+    return Forms(**{name: stage.value for name, stage in stages.items()}, failures=tuple(failures))
+
+
+def upper_brackets(found: Brackets) -> list[tuple[int, int, Any]]:
+    """The brackets above the diagonal that are not zero, with the numbers of their integrals, from one."""
+    n = len(found.names)
+    places = [(i, j) for i in range(n) for j in range(i + 1, n)]
+    return [(i + 1, j + 1, found.matrix[i, j]) for i, j in places if not found.matrix[i, j].is_zero]
+
+
+def form_lines(analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    found = forms_of(analysis, analysis.problems)
+    if found.routh is not None:
+        left, ignored = ", ".join(found.routh.coordinates), ", ".join(found.routh.ignored)
+        yield f"Routh's form in {left}, without {ignored}; constant: {', '.join(found.routh.momenta)}"
+        yield f"  reduced potential {_short(found.routh.reduced_potential)}"
+    if found.hamilton is not None:
+        yield f"Hamilton's form, momenta {', '.join(found.hamilton.momenta)}"
+        yield f"  H = {_short(found.hamilton.hamiltonian)}"
+    if found.brackets is not None and len(found.brackets.names) > 1:
+        known = found.brackets.in_involution
+        words = {True: "are in involution", False: "are not all in involution", None: "may be in involution or not"}
+        yield f"the first integrals {words[known]}"
+    for name, failure in found.failures:
+        title = {"routh": "Routh's form", "hamilton": "Hamilton's form"}.get(name, "Poisson brackets")
+        yield f"{title}: no result: {failure.reason}"
+
+
+def _short(formula: Formula) -> str:
+    """A formula, or how long it is."""
+    return shortened(formula.text(), formula.terms)
+
+
+# --- results.json -----------------------------------------------------------------------------------------------------
+
+
+def data(found: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The sections of results.json, and what is unavailable."""
+    sections: dict[str, Any] = {}
+    if found.routh is not None:
+        sections["routh"] = _routh(found.routh, write)
+    if found.hamilton is not None:
+        sections["hamilton"] = _hamilton(found.hamilton, write)
+    if found.brackets is not None:
+        sections["brackets"] = _brackets(found.brackets, write)
+    return sections, {name: failure(why) for name, why in found.failures}
+
+
+def _routh(found: Routh, write: Write) -> dict[str, Any]:
+    return {
+        "ignored": list(found.ignored),
+        "momenta": list(found.momenta),
+        "coordinates": list(found.coordinates),
+        "function": write(found.function),
+        "mass_matrix": matrix_text(found.mass_matrix, write),
+        "linear": column_text(found.linear, write),
+        "reduced_potential": write(found.reduced_potential),
+        "forcing": column_text(found.forcing, write),
+        "ignored_rates": column_text(found.ignored_rates, write),
+    }
+
+
+def _hamilton(found: Hamilton, write: Write) -> dict[str, Any]:
+    return {
+        "momenta": list(found.momenta),
+        "momenta_in_velocities": column_text(found.momenta_in_velocities, write),
+        "hamiltonian": write(found.hamiltonian),
+        "velocities": column_text(found.velocities, write),
+        "rates": column_text(found.rates, write),
+    }
+
+
+def _brackets(found: Brackets, write: Write) -> dict[str, Any]:
+    return {
+        "integrals": list(found.names),
+        "formulas": column_text(found.formulas, write),
+        "matrix": matrix_text(found.matrix, write),
+        "in_involution": found.in_involution,
+    }
