@@ -9,7 +9,18 @@ import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import Arrangement, Box, Budget, Corner, CornerKind, Point, Region, decompose, decomposition
+from mbsym.algebra.plane import (
+    Arrangement,
+    Box,
+    Budget,
+    Corner,
+    CornerKind,
+    Point,
+    Region,
+    decompose,
+    decompose_line,
+    decomposition,
+)
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.stacks import Fibre
 
@@ -206,3 +217,34 @@ def test_a_wrong_connection_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         except Exception:
             caught += 1
     assert caught >= 4
+
+
+T = fmpq_mpoly_ctx.get(["t"]).gens()[0]
+
+
+def test_line() -> None:
+    """(t^2 - 2) t on [-1, 2]: zeros at 0 and sqrt 2; t - 2 at the end, t + 3 nowhere."""
+    found = decompose_line([(T**2 - 2) * T, T - 2, T + 3, T**2 - 2], -1, 2)
+    assert [zero.factors for zero in found.zeros] == [(0,), (0, 3), (1,)]
+    assert [interval.signs for interval in found.intervals] == [(1, -1, 1, -1), (-1, -1, 1, -1), (1, -1, 1, 1)]
+    assert [interval.ends for interval in found.intervals] == [(None, 0), (0, 1), (1, 2)]
+    assert [found.locate(fmpq(x)) for x in (-1, 0, 1, 2)] == [
+        found.intervals[0],
+        found.zeros[0],
+        found.intervals[1],
+        found.zeros[2],
+    ]
+    assert found.locate(fmpq(3, 2)) is found.intervals[2]
+
+
+def test_line_with_a_zero_at_its_lower_end() -> None:
+    found = decompose_line([T, T**2 + 1], 0, 1)
+    assert (len(found.zeros), len(found.intervals)) == (1, 1)
+    assert found.locate(fmpq(0)) is found.zeros[0]
+    assert found.locate(fmpq(1)) is found.intervals[0]
+    assert found.locate(fmpq(1, 3)) is found.intervals[0]
+    assert len(decompose_line([], 0, 1).intervals) == 1
+    with pytest.raises(ValueError, match="empty"):
+        decompose_line([T], 1, 1)
+    with pytest.raises(ValueError, match="zero"):
+        decompose_line([T - T], 0, 1)

@@ -3,6 +3,7 @@
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Corner, CornerKind, Region
 from mbsym.algebra.plane.decomposition import decompose
 from mbsym.algebra.plane.drawing import areas, polyline
+from mbsym.algebra.plane.line import Interval, Line, Zero, decompose_line
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget
@@ -15,9 +16,13 @@ __all__ = [
     "Budget",
     "Corner",
     "CornerKind",
+    "Interval",
+    "Line",
     "Point",
     "Region",
+    "Zero",
     "areas",
     "decompose",
+    "decompose_line",
     "polyline",
 ]

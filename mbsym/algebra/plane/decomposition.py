@@ -25,9 +25,10 @@ from mbsym.algebra.plane.arrangement import (
     sample_of,
     signs_of,
 )
+from mbsym.algebra.plane.numbers import between_simply
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget, Curve, Polynomial, Progress, abscissas, nothing, parts
-from mbsym.algebra.plane.stacks import BOTTOM, TOP, Column, Fibre, between_simply, column, connected, points_over
+from mbsym.algebra.plane.stacks import BOTTOM, TOP, Column, Fibre, column, connected, points_over
 
 Key = tuple[int, int]
 End = tuple[int, int, int]  # (strip, section, 0: its left end, 1: its right end)

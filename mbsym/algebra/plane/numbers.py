@@ -266,3 +266,14 @@ def simplest(low: Rational, high: Rational) -> Rational:
     if low == below:  # the next candidates are below + 1/k
         return below + fmpq(1, (1 / (high - below)).floor() + 1)
     return below + 1 / simplest(1 / (high - below), 1 / (low - below))
+
+
+def between_simply(below: Any, above: Any) -> Rational:
+    """A rational number with a small denominator in the middle of what lies between two numbers, below < above."""
+    while True:
+        a, b = high(below), low(above)
+        if b > a and all(isinstance(x, fmpq) or x.high - x.low <= (b - a) / 4 for x in (below, above)):
+            return simplest(a + (b - a) / 4, b - (b - a) / 4)
+        for x in (below, above):
+            if not isinstance(x, fmpq):
+                x.halve()

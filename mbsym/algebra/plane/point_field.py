@@ -13,6 +13,7 @@ from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.plane.elements import Element, ElementMatrix
 from mbsym.algebra.plane.fields import Extension, Over, OverField
+from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Polynomial, coefficients
@@ -156,7 +157,4 @@ class LineField:
 
     def value(self, p: Polynomial) -> Element:
         """p(x)"""
-        total = fmpq_poly([0])
-        for (power,), c in p.to_dict().items():
-            total[int(power)] = c
-        return Element(self._field, total % self._field.modulus)
+        return Element(self._field, univariate(p) % self._field.modulus)

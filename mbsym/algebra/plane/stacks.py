@@ -23,13 +23,13 @@ from mbsym.algebra.plane.numbers import (
     Number,
     Rational,
     Root,
+    between_simply,
     bound,
     high,
     low,
     number,
     primitive,
     roots_between,
-    simplest,
 )
 from mbsym.algebra.plane.projection import Abscissa, Box, Curve
 
@@ -79,17 +79,6 @@ class Fibre:
     points: tuple[FibrePoint, ...]
     left: tuple[int, ...]
     right: tuple[int, ...]
-
-
-def between_simply(below: Any, above: Any) -> Rational:
-    """A rational number with a small denominator in the middle of what lies between two numbers, below < above."""
-    while True:
-        a, b = high(below), low(above)
-        if b > a and all(isinstance(x, fmpq) or x.high - x.low <= (b - a) / 4 for x in (below, above)):
-            return simplest(a + (b - a) / 4, b - (b - a) / 4)
-        for x in (below, above):
-            if not isinstance(x, fmpq):
-                x.halve()
 
 
 def column(curves: Sequence[Curve], box: Box, x: Rational) -> Column:
