@@ -89,6 +89,8 @@ def _check(path: Path) -> int:
     if system is None:
         return BAD_INPUT
     bodies = counted(len(system.bodies), "body", "bodies")
+    if system.linear is not None:
+        bodies = f"given by {', '.join(one.key for one in system.linear.matrices)}"
     freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
     if system.constraints:  # how many of them are free is another question
         freedom = counted(len(system.coordinates), "coordinate", "coordinates")

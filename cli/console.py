@@ -146,21 +146,25 @@ def paused() -> Iterator[None]:
             spinner.start()
 
 
-def read_description(path: Path, unconstrained: str = "") -> System | None:
+def read_description(path: Path, unconstrained: str = "", moving: str = "") -> System | None:
     """The system of a file, or None after printing every complaint on standard error.
 
-    ``unconstrained`` names a command that does not know constraints: each of them is complained about.
+    ``unconstrained`` names a command that does not know constraints: each of them is complained about.  ``moving``
+    names one that needs equations of motion, which a system that is given by its matrices has not.
     """
     from mbsym.source import load, render
 
     system, complaints, text = load(path)
-    if system is not None and system.constraints and not complaints.errors:
-        from mbsym.analysis.soundness import complain_of_constraints
+    if system is not None and (system.constraints or system.linear) and not complaints.errors:
+        from mbsym.analysis.soundness import complain as complain_of
 
-        complain_of_constraints(system, complaints)
+        complain_of(system, complaints)
     for one in system.constraints if system is not None and unconstrained else ():
         message = f"'mbsym {unconstrained}' does not take constraints into account yet"
         complaints.error("constraints", message, one.span, "without it this would be another system")
+    if system is not None and system.linear is not None and moving:
+        message = f"'mbsym {moving}' is about bodies, and this system is given by its matrices"
+        complaints.error("given-by-matrices", message, system.linear.span, "'mbsym run' judges its stability")
     for complaint in complaints.sorted():
         print(render(complaint, text, str(path)), file=sys.stderr)
     errors = len(complaints.errors)

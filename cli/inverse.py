@@ -68,7 +68,7 @@ def _command(
     from mbsym.numerics.scenario import Incomplete, scenario
     from mbsym.report.inverse_files import inputs_csv, inputs_figure, sentences
 
-    system, asked = read_description(file, "inverse"), Options()
+    system, asked = read_description(file, "inverse", "inverse"), Options()
     moved: dict[str, Expression] = {}
     time, count = asked.time(texts[0]), asked.whole("--samples", texts[1], 2, 10**6)
     overrides: dict[str, Expression] = {}

@@ -52,6 +52,7 @@ class Request:
     animate: float | None = None  # the time until which report.html shows the motion
     language: str = ""  # "": that of the description
     forms: tuple[str, ...] = ()  # of problem 3, beside Lagrange's
+    named: bool = False  # whether the problems were named, or follow from the formats
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -78,11 +79,13 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 
 def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
     from mbsym.report.html_motion import animated
 
     started = time.perf_counter()
-    analysis = Analysis(system, request.problems, request.terms)
+    problems = request.problems if request.named else own_problems(system, request.problems)
+    analysis = Analysis(system, problems, request.terms)
     analysis.language = request.language
     analysis.forms = request.forms
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()

@@ -147,6 +147,7 @@ def command(
         until,
         tongue,
         tuple(name for name in FORMS if name in shown),
+        chosen is not None,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

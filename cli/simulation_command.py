@@ -34,7 +34,7 @@ def simulated(
     further: Mapping[str, Group],
 ) -> int:
     """The exit code of one command."""
-    system = read_description(file)
+    system = read_description(file, moving="simulate")
     asked = Options()
     context = click.get_current_context()
     typed = typed_options(context)

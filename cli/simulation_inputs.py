@@ -58,7 +58,7 @@ def read_held(file: Path, command: str, constrained: bool = False) -> System | N
     from mbsym.expressions.tree import text
     from mbsym.model.driven import held
 
-    system = read_description(file, "" if constrained else command)
+    system = read_description(file, "" if constrained else command, command)
     if system is None or not system.inputs:
         return system
     values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)

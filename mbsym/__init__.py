@@ -60,15 +60,18 @@ class DescriptionError(ValueError):
     """A description with complaints; the message holds all of them, each with file, line and column."""
 
 
-def load(path: str | Path, problems: Iterable[int] = (1, 2, 3, 4, 5, 6, 7)) -> Analysis:
-    """The analysis of a description file.  Raises DescriptionError with every complaint, OSError never."""
+def load(path: str | Path, problems: Iterable[int] | None = None) -> Analysis:
+    """The analysis of a description file, of all its problems unless some are named.
+
+    Raises DescriptionError with every complaint, OSError never.
+    """
     from mbsym.source import load as read_file
 
     system, complaints, text = read_file(Path(path))
     return _analysis(system, complaints, text, str(path), problems)
 
 
-def loads(text: str, problems: Iterable[int] = (1, 2, 3, 4, 5, 6, 7)) -> Analysis:
+def loads(text: str, problems: Iterable[int] | None = None) -> Analysis:
     """The analysis of a description given as text."""
     from mbsym.source import read
 
@@ -440,20 +443,26 @@ def _laws(system: System, inputs: Mapping[str, Fraction | float | str] | None) -
 
 
 def _system(source: str | Path | Analysis) -> System:
-    """The system; its inputs, where it has any, at the values of the unperturbed motion."""
+    """The system; its inputs, where it has any, at the values of the unperturbed motion.
+
+    Raises GivenByMatrices where there are no bodies that could move.
+    """
+    from mbsym.analysis.given import refuse_matrices
     from mbsym.model.driven import held
 
-    return held(_analysis_of(source).system)
+    system = _analysis_of(source).system
+    refuse_matrices(system, "no motion is integrated or searched for")
+    return held(system)
 
 
 def _analysis(system, complaints, text, name, problems) -> Analysis:  # type: ignore[no-untyped-def]
     from mbsym.analysis import Analysis
     from mbsym.source import render
 
-    if system is not None and system.constraints:
-        from mbsym.analysis.soundness import complain_of_constraints
+    if system is not None and (system.constraints or system.linear):
+        from mbsym.analysis.soundness import complain as complain_of
 
-        complain_of_constraints(system, complaints)
+        complain_of(system, complaints)
     if system is None or complaints.errors:
         raise DescriptionError("\n".join(render(item, text, name) for item in complaints.sorted()))
     return Analysis(system, problems)

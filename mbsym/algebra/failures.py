@@ -119,6 +119,12 @@ class Constrained(Failure):
     code = "constraints"
 
 
+class GivenByMatrices(Failure):
+    """Asked of a system that is given by its matrices, and about bodies: there is nothing that it could be about."""
+
+    code = "given-by-matrices"
+
+
 class NoValue(Failure, KeyError):
     """``args[0]`` is a name without a number."""
 

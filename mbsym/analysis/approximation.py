@@ -77,6 +77,10 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
     Raises Unavailable where the motion does not exist or is not steady in these coordinates.
     """
+    if analysis.system.linear is not None:
+        from mbsym.analysis import given
+
+        return given.first_approximation(analysis)
     if analysis.equilibrium.impossible:
         never = ", ".join(f"{item} = 0" for item in analysis.equilibrium.impossible)
         reason = f"the given motion does not exist: {never} is impossible"

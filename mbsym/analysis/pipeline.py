@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, constrained, forms, judging, second_routes
+from mbsym.analysis import approximation, conserved, constrained, forms, given, judging, second_routes
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
@@ -157,7 +157,7 @@ class Analysis(Stages):
         super().__init__()
         self._checks: dict[str, Check] = {}
         self.system = system
-        self.problems = ALL_PROBLEMS if problems is None else tuple(sorted(set(problems)))
+        self.problems = given.chosen(system, ALL_PROBLEMS) if problems is None else tuple(sorted(set(problems)))
         self.terms = terms
         self.suggests = suggests
         #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
@@ -198,6 +198,8 @@ class Analysis(Stages):
             compute = lambda: getattr(self.in_coordinates, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
+        elif self.system.linear is not None and name not in given.KNOWN:
+            compute = given.refuse
         return super().result(name, compute)
 
     def _without_constraints(self) -> None:
@@ -278,9 +280,7 @@ class Analysis(Stages):
         4,
         "equilibrium conditions",
         equilibrium,
-        lambda a: equilibrium.equilibrium(
-            a.parameters_scene, [x.polynomial for x in a.residuals], a.signs, on_motion=bool(a.system.constraints)
-        ),
+        lambda a: a._equilibrium(),
         ("equilibrium",),
         says=True,
     )
@@ -383,7 +383,16 @@ class Analysis(Stages):
 
         return open_verdicts.decided(found, scene, self.equilibrium)
 
+    def _equilibrium(self) -> Equilibrium:
+        if self.system.linear is not None:
+            return given.at_zero()
+        residuals = [x.polynomial for x in self.residuals]
+        on_motion = bool(self.system.constraints)
+        return equilibrium.equilibrium(self.parameters_scene, residuals, self.signs, on_motion)
+
     def _balance(self) -> Balance:
+        if self.system.linear is not None:
+            return given.balance(self)
         energies = self.optional("energy")
         if self.system.constraints:
             from mbsym.problems.constrained_balance import ConstrainedBalance

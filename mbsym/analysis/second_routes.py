@@ -122,7 +122,7 @@ def _mass_matrix(analysis: Analysis) -> Check | None:
 def _equilibrium(analysis: Analysis) -> Check | None:
     """Against the closed equations where these are derived, else against d'Alembert's principle."""
     found, closed = analysis.optional("equilibrium"), _closed(analysis)
-    if found is None:
+    if found is None or analysis.system.linear is not None:
         return None
     if analysis.system.constraints:
         from mbsym.problems.reduction_check import check_reduced_motion
@@ -135,6 +135,10 @@ def _equilibrium(analysis: Analysis) -> Check | None:
 
 
 def _linearisation(analysis: Analysis) -> Check | None:
+    if analysis.system.linear is not None:
+        from mbsym.analysis import given
+
+        return given.check(analysis)
     linear, closed = analysis.optional("linearisation"), _closed(analysis)
     if linear is None or closed is None or linear.constrained is not None:
         return None
@@ -143,7 +147,7 @@ def _linearisation(analysis: Analysis) -> Check | None:
 
 def _perturbed(analysis: Analysis) -> Check | None:
     linear = analysis.optional("linearisation")
-    if linear is None:
+    if linear is None or analysis.system.linear is not None:
         return None
     if linear.constrained is not None:
         from mbsym.problems.reduction_check import check_reduced_perturbation

@@ -1,4 +1,4 @@
-"""What is wrong with constraints that only mechanics can tell, as complaints with places."""
+"""What is wrong with constraints and given matrices that only mechanics can tell, as complaints with places."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ from mbsym.expressions.place import Complaints
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
+from mbsym.problems import given_system, knowledge
 from mbsym.problems.constraints import Fault, faults
+
+
+def complain(system: System, complaints: Complaints) -> None:
+    """Everything that only mechanics and algebra can tell of a description."""
+    complain_of_constraints(system, complaints)
+    complain_of_matrices(system, complaints)
 
 
 def complain_of_constraints(system: System, complaints: Complaints) -> None:
@@ -25,6 +32,19 @@ def complain_of_constraints(system: System, complaints: Complaints) -> None:
         return
     for fault in found:
         _complain(fault, system, complaints)
+
+
+def complain_of_matrices(system: System, complaints: Complaints) -> None:
+    """Adds an error for every given matrix without the symmetry that its key promises, and for a bad mass matrix."""
+    if system.linear is None:
+        return
+    ring = ring_of(system)
+    scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    try:
+        for fault in given_system.faults(scene, knowledge.signs(scene)):
+            complaints.error(fault.code, fault.message, fault.span, fault.hint or None)
+    except Failure:
+        return
 
 
 def _complain(fault: Fault, system: System, complaints: Complaints) -> None:

@@ -28,10 +28,10 @@ def work(task: Task) -> Finished:
     from mbsym.source.document import load_bytes
 
     system, complaints, text = load_bytes(task.data, task.file)
-    if system is not None and system.constraints:
-        from mbsym.analysis.soundness import complain_of_constraints
+    if system is not None and (system.constraints or system.linear):
+        from mbsym.analysis.soundness import complain as complain_of
 
-        complain_of_constraints(system, complaints)
+        complain_of(system, complaints)
         system = None if complaints.errors else system
     told = tuple(map(complaint_row, complaints.sorted()))
     if system is None:
@@ -55,13 +55,14 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
 
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
     from mbsym.report.detail import detailed
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
     asked = task.asked
-    problems = shown_by(asked.formats) if asked.problems is None else asked.problems
+    problems = own_problems(system, shown_by(asked.formats)) if asked.problems is None else asked.problems
     analysis = Analysis(system, problems, asked.terms)
     derive_all(analysis, asked.formats, _silent)
     with angles_as(cast("Angles | None", asked.angles)), detailed(asked.detail):

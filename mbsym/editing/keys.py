@@ -14,8 +14,10 @@ from mbsym.source.keys import (
     INERTIA,
     INITIAL,
     INPUT,
+    LINEAR_SYSTEM,
     LOAD_MEANINGS,
     LOADS,
+    MATRIX_FILE,
     MOTION,
     PARAMETER,
     POINT,
@@ -55,6 +57,10 @@ def keys_in(path: tuple[str, ...]) -> Mapping[str, str]:
             return ROTATION
         case ("bodies", *_, key):
             return _IN_BODY.get(key, {})
+        case ("linear system",):
+            return LINEAR_SYSTEM
+        case ("linear system", _):
+            return MATRIX_FILE
         case ("loads",):
             return LOAD_MEANINGS
         case ("loads", kind):

@@ -26,6 +26,7 @@ from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
+from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.oracle import State
@@ -66,6 +67,7 @@ def programs(system: System, ring: Ring, apart: bool = False, open_tree: bool = 
 
     Raises Constrained for a system with constraints, which are not in M and f, unless the ``open_tree`` is wanted.
     """
+    refuse_matrices(system, "mass matrix and forcing")
     if not open_tree:
         refuse_constraints(system, "mass matrix and forcing")
     program = Program()

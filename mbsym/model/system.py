@@ -33,6 +33,7 @@ from mbsym.model.basics import Vector, _span
 from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
+from mbsym.model.linear import LinearModel
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
@@ -226,6 +227,7 @@ class System(GuessesNames):
     ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
     ``reactions`` are the bodies whose joints' forces and moments are wanted.
     ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
+    ``linear`` holds the matrices of a system that is given by these; it has no bodies then.
     """
 
     name: str
@@ -255,6 +257,7 @@ class System(GuessesNames):
     reactions: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
+    linear: LinearModel | None = None
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"
@@ -262,6 +265,8 @@ class System(GuessesNames):
     @property
     def coordinates(self) -> tuple[str, ...]:
         """The generalised coordinates q, body by body: the order of every vector and matrix."""
+        if self.linear is not None:
+            return self.linear.coordinates
         return tuple(name for body in self.bodies for name in body.coordinates)
 
     @property

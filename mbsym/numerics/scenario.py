@@ -18,6 +18,7 @@ from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.expressions.tree import Expression, names
 from mbsym.expressions.tree import text as spelled
+from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.model.assumptions import broken
 from mbsym.model.comparison import has_sign
 from mbsym.model.driven import driven
@@ -108,8 +109,9 @@ def scenario(
     expressions without coordinates.  Parameters without a value take it from ``relations``.  With ``state`` false the
     initial state may be missing (it is then zero).  With ``assumed`` false values may break assumptions, on which no
     number depends.  ``laws`` gives inputs their expressions; the others keep their values on the unperturbed motion.
-    Raises Incomplete, naming everything that is missing.
+    Raises Incomplete, naming everything that is missing, and GivenByMatrices where nothing moves but a linear form.
     """
+    refuse_matrices(system, "no motion is integrated")
     overrides = dict(overrides or {})
     given_laws, inputs = laws or {}, system.inputs
     system = driven(system, given_laws)

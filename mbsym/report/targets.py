@@ -84,6 +84,8 @@ def _fragment(name: str, number: int | None, title: str) -> Target:
     def wanted(analysis: Analysis, problems: Sequence[int]) -> bool:
         if name in ("claims", "checks"):
             return bool(getattr(analysis, name))
+        if name == "diagram":
+            return bool(analysis.system.bodies)
         return number is None or number in problems
 
     return Target(name, f"fragments/{name}.tex", None, f"a part of the appendix: {title}", text, wanted=wanted)

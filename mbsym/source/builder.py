@@ -21,6 +21,7 @@ from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
 from mbsym.source.inputs import held_values, read_inputs, read_outputs
 from mbsym.source.keys import SYSTEM, VERSION
+from mbsym.source.linear import declare_linear, read_linear
 from mbsym.source.loads import read_loads
 from mbsym.source.placed import Node
 from mbsym.source.reading import Fields, Reading
@@ -50,13 +51,15 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     if by_use and fields.get("parameters") is None:
         reading.scope.by_use = {}
     _check_version(fields, reading)
-    for key in ("name", "bodies"):
-        fields.require(key)
+    fields.require("name")
+    if "linear system" not in fields.found:
+        fields.require("bodies")
     tables = read_tables(fields.get("tables"), reading)
     parameters = read_parameters(fields.get("parameters"), reading)
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
     inputs = read_inputs(fields.get("inputs"), reading)
     drafts = draft_bodies(fields.get("bodies"), reading)
+    linear = declare_linear(fields.get("linear system"), fields, reading)
     for draft in drafts:
         declare_speeds(draft, reading)
     prescribed = tuple(read_prescribed(entry, reading) for entry in prescribed_entries)
@@ -74,6 +77,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
     constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
+    matrices = None if linear is None else read_linear(*linear, len(inputs), reading)
     parameters += declared_by_use(reading)
     notation = read_notation(fields.get("notation"), reading)
     outputs = read_outputs(fields.get("outputs"), reading)
@@ -103,6 +107,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         constraints=constraints,
         dependent=dependent,
         reactions=_reactions(fields, [body.name for body in bodies], reading),
+        linear=matrices,
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
     names = [body.name for body in bodies]
@@ -179,6 +184,10 @@ def _with_units(system: System, fields: Fields, reading: Reading) -> System:
     What could not be read is zero, which goes with every dimension: it hides no slip, and makes none.
     """
     if not reading.units and fields.get("units") is None:
+        return system
+    if system.linear is not None:
+        message = "units of given matrices are not checked yet"
+        reading.error("conflicting-keys", message, system.linear.span, "leave 'units' and 'unit' out")
         return system
     from mbsym.source.units import checked_units, read_units  # pint takes its time, and few descriptions need it
 

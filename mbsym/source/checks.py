@@ -274,7 +274,9 @@ def _check_use(system: System, reading: Reading) -> None:
     used |= set(_occurring([getattr(system, one.name) for one in fields(system)]))
     declared = [("parameter", one.name, one.span) for one in system.parameters]
     declared += [("prescribed motion", one.name, one.span) for one in system.prescribed]
-    declared += [("input", one.name, one.span) for one in system.inputs if one.name not in _occurring(system.loads)]
+    if system.linear is None:  # whose B has a column for each
+        felt = set(_occurring(system.loads))
+        declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
     for what, name, span in declared:
         if name not in used or what == "input":
             message = f"the {what} '{name}' is used nowhere"

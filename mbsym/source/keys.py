@@ -17,6 +17,7 @@ SYSTEM = {
     "outputs": "what is measured: {y: theta}, in coordinates, velocities, parameters and inputs",
     "tables": "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",
     "bodies": "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
+    "linear system": "in place of bodies and loads: the matrices of M x'' + (D + G) x' + (K + N) x = B u",
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
     "constraints": "what ties bodies or coordinates besides the joints: a list of {kind of constraint: {...}}",
     "dependent": "coordinates that the constraints express by the others: [q2, q3]; those left out are found",
@@ -56,6 +57,24 @@ PRESCRIBED = {
 INPUT = {
     "meaning": "what it is, for reports",
     "unit": "its unit, such as N*m or N",
+}
+
+LINEAR_SYSTEM = {
+    "coordinates": "names of the coordinates x, in the order of rows and columns",
+    "M": "mass matrix, symmetric and positive definite: a list of rows of formulas in parameters, or {file: M.mtx}; "
+    "the unit matrix when left out",
+    "D": "damping, symmetric; zero when left out, as the others",
+    "G": "gyroscopic matrix, skew",
+    "C": "in place of D and G: their sum, any square matrix",
+    "K": "stiffness, symmetric",
+    "N": "circulatory matrix, skew",
+    "S": "in place of K and N: their sum, any square matrix",
+    "B": "where the inputs act: a row for each coordinate, a column for each of 'inputs'",
+}
+
+MATRIX_FILE = {
+    "file": "a file beside the description, or in a folder below: MatrixMarket (.mtx) or NumPy (.npy)",
+    "sha256": "of the file: where it is given, another content is complained about",
 }
 
 TABLE = {

@@ -40,6 +40,7 @@ SECTIONS: dict[str, tuple[str, str | None]] = {
     "inputs": ("inputs", "meaning"),
     "outputs": ("outputs", None),
     "tables": ("tables", "points"),
+    "linear system": ("linear system", "file"),
     "units": ("units", None),
     "relations": ("relations", None),
     "unperturbed motion": ("motion", "value"),

@@ -14,7 +14,7 @@ from mbsym.source.placed import MAX_TEXT
 from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
 
 #: Lines that can only be YAML (or JSON): keys that are no labels of the editor.
-_MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|loads)["']?[ \t]*:""", re.MULTILINE)
+_MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|linear system|loads)["']?[ \t]*:""", re.MULTILINE)
 _FIRST = re.compile(r"""(?:[ \t]*(?:\#.*|---.*|%.*)?\n)*([ \t]*)(.?)""")
 _KEY = r"""["']?mbsym["']?[ \t]*:"""
 

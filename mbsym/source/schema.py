@@ -9,6 +9,7 @@ from typing import Any
 
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
+from mbsym.model.linear import MATRICES
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.system import LANGUAGES, SHAPES
 from mbsym.source.keys import (
@@ -21,8 +22,10 @@ from mbsym.source.keys import (
     INERTIA,
     INITIAL,
     INPUT,
+    LINEAR_SYSTEM,
     LOAD_MEANINGS,
     LOADS,
+    MATRIX_FILE,
     MOTION,
     PARAMETER,
     POINT,
@@ -34,6 +37,7 @@ from mbsym.source.keys import (
     TABLE,
     VERSION,
 )
+from mbsym.source.linear import MOST_COORDINATES
 from mbsym.source.speeds import ANGLES, COSINES, QUATERNION
 from mbsym.source.symbols import LONGEST
 from mbsym.source.tables import MAX_POINTS
@@ -54,7 +58,8 @@ def json_schema() -> Schema:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": f"urn:mbsym:description:{VERSION}",
         "title": "mbsym description of a mechanical system",
-        **_record(SYSTEM, _system_values(), required=("mbsym", "name", "bodies")),
+        **_record(SYSTEM, _system_values(), required=("mbsym", "name")),
+        "oneOf": [{"required": ["bodies"]}, {"required": ["linear system"]}],
         "$defs": _definitions(),
     }
 
@@ -91,6 +96,7 @@ def _system_values() -> dict[str, Schema]:
         "outputs": _named(expression),
         "tables": _named(_table_record()),
         "bodies": {"type": "array", "items": _reference("body"), "minItems": 1},
+        "linear system": _linear_record(),
         "loads": {"type": "array", "items": _reference("load")},
         "constraints": {"type": "array", "items": _reference("constraint")},
         "dependent": names,
@@ -127,6 +133,15 @@ def _table_values() -> dict[str, Schema]:
 def _table_record() -> Schema:
     """A table has points, or a file of them."""
     return {**_record(TABLE, _table_values()), "oneOf": [{"required": ["points"]}, {"required": ["file"]}]}
+
+
+def _linear_record() -> Schema:
+    row: Schema = {"type": "array", "items": _reference("expression"), "minItems": 1, "maxItems": MOST_COORDINATES}
+    rows: Schema = {"type": "array", "items": row, "minItems": 1, "maxItems": MOST_COORDINATES}
+    file = _record(MATRIX_FILE, {"file": {"type": "string"}, "sha256": {"type": "string"}}, required=("file",))
+    names: Schema = {"type": "array", "items": {"type": "string", "pattern": _NAME}, "uniqueItems": True, "minItems": 1}
+    values: dict[str, Schema] = {key: {"anyOf": [rows, file]} for key in MATRICES}
+    return _record(LINEAR_SYSTEM, {**values, "coordinates": names}, required=("coordinates",))
 
 
 def _definitions() -> dict[str, Schema]:

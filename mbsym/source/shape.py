@@ -14,6 +14,7 @@ from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, t
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
 from mbsym.model.inputs import Input
+from mbsym.model.linear import LinearModel
 from mbsym.model.loads import (
     CoordinateDamper,
     CoordinateSpring,
@@ -82,6 +83,19 @@ def table_shape(table: Table) -> dict[str, Shape]:
         shape["between"] = table.between
     if table.outside != HOLD:
         shape["outside"] = table.outside
+    return shape
+
+
+def linear_shape(linear: LinearModel) -> dict[str, Shape]:
+    """Coordinates and matrices; those of files by the files' names."""
+    names: list[Shape] = [*linear.coordinates]
+    shape: dict[str, Shape] = {"coordinates": names}
+    for one in linear.matrices:
+        if one.source is not None:
+            shape[one.key] = {"file": one.source.file, "sha256": one.source.digest}
+        else:
+            rows: list[Shape] = [[text(x) for x in row] for row in one.rows]
+            shape[one.key] = rows
     return shape
 
 

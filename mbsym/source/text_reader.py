@@ -158,6 +158,10 @@ class TextReader:
             if label is None:
                 self.error("syntax", "here 'name = value' is wanted", line.span)
                 continue
+            if key == "linear system":
+                rows = self.record(value, "file") if "=" in value.text else self.nested(self.items(value))
+                entries.append(Entry(label, rows))
+                continue
             read = self.items(value) if key == "limits" else value if first is None else self.record(value, first)
             if key == "tables":
                 read = self.table(read)
@@ -196,11 +200,13 @@ class TextReader:
             return Entry(entry.key, self.items(value))
         if entry.key.text != "points" or not isinstance(value, Scalar):
             return entry
-        points = self.items(value)
-        if isinstance(points, Sequence):
-            rows = (self.items(item) if isinstance(item, Scalar) else item for item in points.items)
-            points = Sequence(tuple(rows), points.span)
-        return Entry(entry.key, points)
+        return Entry(entry.key, self.nested(self.items(value)))
+
+    def nested(self, read: Node) -> Node:
+        """A list whose items may be lists."""
+        if not isinstance(read, Sequence):
+            return read
+        return Sequence(tuple(self.items(x) if isinstance(x, Scalar) else x for x in read.items), read.span)
 
     def unquoted(self, value: Scalar) -> Scalar:
         """The text between double quotes, if there are any."""

@@ -12,6 +12,7 @@ from mbsym.source.shape import (
     constraint_shape,
     initial_shape,
     input_shape,
+    linear_shape,
     load_shape,
     motion_shapes,
     parameter_shape,
@@ -51,6 +52,9 @@ def to_text(system: System) -> str:
     numbers = {"0": "0", **{body.name: str(number) for number, body in enumerate(system.bodies, start=1)}}
     for number, body in enumerate(system.bodies, start=1):
         lines += ["", f"Body description ({number})", *_body(body, numbers)]
+    if system.linear is not None:
+        given = {name: _matrix(shape) for name, shape in linear_shape(system.linear).items()}
+        lines += _section("Linear system", given)
     for number, load in enumerate(system.loads, start=1):
         lines += ["", f"Load description ({number})", *_load(*load_shape(load), numbers)]
     for number, constraint in enumerate(system.constraints, start=1):
@@ -96,6 +100,13 @@ def _table(shape: dict[str, Data]) -> str:
     points = shape["points"]
     assert isinstance(points, list)
     return _record({**shape, "points": f"({', '.join(_value(point) for point in points)})"}, "points")
+
+
+def _matrix(shape: Data) -> str:
+    """``((a, b), (c, d))``, or ``file = K.mtx; sha256 = ...``; of coordinates ``(x, y)``."""
+    if isinstance(shape, list):
+        return f"({', '.join(_value(row) for row in shape)})"
+    return _record(shape, "")
 
 
 def _free(value: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from mbsym.expressions.tree import text
+from mbsym.model.linear import MATRICES, LinearModel
 from mbsym.model.system import System
 from mbsym.source.keys import VERSION
 from mbsym.source.shape import (
@@ -16,6 +17,7 @@ from mbsym.source.shape import (
     inferred_coordinates,
     initial_shape,
     input_shape,
+    linear_shape,
     load_shape,
     motion_shapes,
     parameter_shape,
@@ -43,7 +45,7 @@ def to_yaml(system: System) -> str:
     lines += _mapping("inputs", {one.name: input_shape(one) for one in system.inputs})
     lines += _mapping("tables", {one.name: table_shape(one) for one in system.tables})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
-    lines += _bodies(system)
+    lines += _bodies(system) if system.linear is None else _linear(system.linear)
     lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
     lines += _list("constraints", [_load(*constraint_shape(one)) for one in system.constraints])
     if system.dependent:
@@ -74,6 +76,17 @@ def _mapping(title: str, entries: dict[str, Shape]) -> list[str]:
 
 def _list(title: str, items: list[str]) -> list[str]:
     return ["", f"{title}:", *(f"  - {item}" for item in items)] if items else []
+
+
+def _linear(linear: LinearModel) -> list[str]:
+    """Each matrix with a row a line."""
+    lines = ["", "linear system:"]
+    for key, value in linear_shape(linear).items():
+        if key in MATRICES and isinstance(value, list):
+            lines += [f"  {key}:", *(f"    - {_flow(row)}" for row in value)]
+        else:
+            lines.append(f"  {key}: {_flow(value)}")
+    return lines
 
 
 def _bodies(system: System) -> list[str]:

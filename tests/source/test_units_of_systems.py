@@ -125,7 +125,8 @@ def complaints(name: str, units: dict[str, str]) -> list[str]:
 
 
 def test_no_system_is_forgotten() -> None:
-    assert {path.stem for path in SYSTEMS.glob("*.yaml")} == set(UNITS)
+    given_by_matrices = {path.stem for path in SYSTEMS.glob("*.yaml") if "\nlinear system:" in path.read_text("utf-8")}
+    assert {path.stem for path in SYSTEMS.glob("*.yaml")} == set(UNITS) | given_by_matrices
 
 
 @pytest.mark.parametrize("name", sorted(UNITS))

@@ -1,0 +1,58 @@
+"""Systems that are given by their matrices, in the pipeline: which problems they have, and what stands for the rest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.mechanics.given_matrices import HINT, WITHOUT_BODIES
+from mbsym.mechanics.given_matrices import refuse_matrices as refuse_matrices
+from mbsym.model.system import System
+from mbsym.problems import given_system
+from mbsym.problems.equilibrium import Equilibrium
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.checks import Check
+    from mbsym.problems.dissipation import Balance
+    from mbsym.problems.linearisation import Linearisation
+
+#: The problems that such a system has.
+PROBLEMS = (5, 6)
+
+#: The stages that know such systems.
+KNOWN = frozenset(
+    (
+        *("scene", "parameters_scene", "held_scene", "signs", "equilibrium", "first_approximation", "linearisation"),
+        *("judgeable", "balance", "stability", "claims", "checks", "trials", "check: linearisation"),
+    )
+)
+
+
+def chosen(system: System, problems: tuple[int, ...]) -> tuple[int, ...]:
+    """Of problems that nobody has named, those that the system has."""
+    return problems if system.linear is None else tuple(number for number in problems if number in PROBLEMS)
+
+
+def refuse() -> None:
+    why = NoResult(f"not derived: {WITHOUT_BODIES}", HINT, "no bodies", "given-by-matrices")
+    raise Unavailable("bodies", why)
+
+
+def first_approximation(analysis: Analysis) -> Linearisation:
+    return given_system.by_matrices(analysis.parameters_scene)
+
+
+def at_zero() -> Equilibrium:
+    """x = 0 satisfies the equations."""
+    return Equilibrium(satisfied=True, residuals=())
+
+
+def balance(analysis: Analysis) -> Balance:
+    return given_system.OpenBalance(analysis.parameters_scene, None, analysis.signs, {})
+
+
+def check(analysis: Analysis) -> Check | None:
+    """The matrices, against the formulas of the description at numbers."""
+    found = analysis.optional("linearisation")
+    return None if found is None else given_system.check_matrices(analysis.parameters_scene, found)

@@ -1,0 +1,61 @@
+"""The matrices of a system that is given by these, over any algebra:
+
+    M x'' + C x' + S x = B u,    C = D + G,    S = K + N
+
+M is the unit matrix where it was left out, everything else zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Generic, NamedTuple
+
+from mbsym.algebra.base import S
+from mbsym.algebra.failures import GivenByMatrices
+from mbsym.algebra.matrices import ScalarMatrix
+from mbsym.mechanics.kinematics import Scene
+from mbsym.model.linear import LinearModel
+from mbsym.model.system import System
+
+
+class Given(NamedTuple, Generic[S]):
+    """M, C = D + G, S = K + N (n x n) and B (n x m)."""
+
+    mass: ScalarMatrix[S]
+    rates: ScalarMatrix[S]
+    places: ScalarMatrix[S]
+    inputs: ScalarMatrix[S]
+
+
+def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
+    """M, C, S, B as ``scene`` lowers formulas."""
+    size, inputs = len(linear.coordinates), len(scene.system.inputs)
+
+    def lowered(key: str, columns: int) -> ScalarMatrix[S]:
+        found, algebra = linear.matrix(key), scene.algebra
+        if found is not None:
+            return ScalarMatrix(algebra, [[scene.lower(x) for x in row] for row in found.rows])
+        unit = key == "M"
+        return ScalarMatrix.by_entry(
+            algebra, size, columns, lambda i, j: algebra.one if unit and i == j else algebra.zero
+        )
+
+    def total(keys: Sequence[str]) -> ScalarMatrix[S]:
+        first, *others = (lowered(key, size) for key in keys)
+        for one in others:
+            first = first + one
+        return first
+
+    return Given(lowered("M", size), total(("D", "G", "C")), total(("K", "N", "S")), lowered("B", inputs))
+
+
+WITHOUT_BODIES = "the system is given by its matrices, and has no bodies"
+
+
+def refuse_matrices(system: System, what: str) -> None:
+    """Raises GivenByMatrices if the system has matrices in place of bodies."""
+    if system.linear is not None:
+        raise GivenByMatrices(f"{what}: {WITHOUT_BODIES}", remedy=HINT)
+
+
+HINT = "the linear equations themselves are in problem 5"

@@ -1,0 +1,212 @@
+"""Matrices in files beside a description: MatrixMarket (.mtx) and NumPy (.npy), as exact numbers.
+
+Decimal text stands for itself (0.1 is 1/10), a binary floating point number for the dyadic number that it is.
+
+Sources: the MatrixMarket exchange formats (NIST, R. Boisvert et al. 1996); the NPY format (numpy.lib.format).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from mbsym.expressions.parser import ascii_safe
+
+#: A file has at most so many bytes.
+MOST_BYTES = 4_000_000
+
+Numbers = tuple[tuple[Fraction, ...], ...]
+
+_NUMBER = re.compile(r"[-+]?(?:\d{1,40}\.?\d{0,40}|\.\d{1,40})(?:[eEdD][-+]?\d{1,3})?\Z")
+_WHOLE = re.compile(r"\d{1,7}\Z")
+
+_BESIDE = "a file of a matrix stands beside the description, or in a folder below"
+
+
+class Unreadable(Exception):
+    """Why there is no matrix, and what to do about it."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.message, self.hint = message, hint
+
+
+@dataclass(frozen=True)
+class Read:
+    """The numbers, row by row, and the SHA-256 of the file."""
+
+    rows: Numbers
+    digest: str
+
+
+def read_matrix(folder: Path | None, file: str, most: int) -> Read:
+    """The matrix in a file of a folder, of at most ``most`` rows and columns.  Raises Unreadable."""
+    data = _bytes(folder, file)
+    ending = PurePosixPath(file).suffix.lower()
+    if ending == ".npy":
+        rows = _from_numpy(data, file, most)
+    elif ending in (".mtx", ".mm"):
+        rows = _from_market(data, file, most)
+    else:
+        raise Unreadable(f"{_plain(file)} is no file of a matrix", "MatrixMarket (.mtx) and NumPy (.npy) are read")
+    return Read(rows, hashlib.sha256(data).hexdigest())
+
+
+def _plain(file: str) -> str:
+    """The name of a file without quotes, what is not ASCII in it escaped."""
+    return ascii_safe(file)[1:-1]
+
+
+def _bytes(folder: Path | None, file: str) -> bytes:
+    if folder is None:
+        hint = "give mbsym this description as a file of its own, or write the matrix into it"
+        raise Unreadable("files beside a description are read with it only: not in a batch, nor beside a text", hint)
+    wanted = PurePosixPath(file)
+    if wanted.is_absolute() or ".." in wanted.parts or "\\" in file or ":" in file:
+        raise Unreadable(_BESIDE, "as in data/K.mtx")
+    try:
+        path = (folder / wanted).resolve()
+        if not path.is_relative_to(folder.resolve()):
+            raise Unreadable(_BESIDE)
+        if not path.is_file():
+            raise Unreadable(f"there is no file {_plain(file)} beside the description")
+        with path.open("rb") as opened:
+            data = opened.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise Unreadable(f"{_plain(file)} cannot be read: {reason}") from error
+    if len(data) > MOST_BYTES:
+        raise Unreadable(f"{_plain(file)} has more than {MOST_BYTES} bytes", "reduce the model before")
+    return data
+
+
+def _sized(rows: int, columns: int, file: str, most: int) -> None:
+    if not (1 <= rows <= most and 1 <= columns <= most):
+        message = f"{_plain(file)} holds a matrix of {rows} x {columns}, and 1 to {most} rows and columns are read"
+        raise Unreadable(message, "reduce the model before" if max(rows, columns) > most else None)
+
+
+# --- MatrixMarket ---
+
+
+def _from_market(data: bytes, file: str, most: int) -> Numbers:
+    name = _plain(file)
+    try:
+        lines = data.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise Unreadable(f"{name} is no UTF-8 text") from error
+    head = lines[0].lower().split() if lines else []
+    if len(head) != 5 or head[:2] != ["%%matrixmarket", "matrix"]:
+        raise Unreadable(f"{name}:1: no MatrixMarket header", "%%MatrixMarket matrix array real general")
+    layout, kind, symmetry = head[2:]
+    known = {"array", "coordinate"}, {"real", "integer"}, {"general", "symmetric", "skew-symmetric"}
+    for word, words in zip((layout, kind, symmetry), known, strict=True):
+        if word not in words:
+            raise Unreadable(f"{name}:1: {ascii_safe(word)} is not read", f"one of: {', '.join(sorted(words))}")
+    body = [(number, line.split()) for number, line in enumerate(lines, 1) if line.strip() and line[0] != "%"]
+    if not body:
+        raise Unreadable(f"{name} has no line of sizes")
+    place, sizes = body[0]
+    wanted = 2 if layout == "array" else 3
+    if len(sizes) != wanted or not all(map(_WHOLE.match, sizes)):
+        raise Unreadable(f"{name}:{place}: the line of sizes holds {wanted} whole numbers")
+    rows, columns = int(sizes[0]), int(sizes[1])
+    _sized(rows, columns, file, most)
+    if symmetry != "general" and rows != columns:
+        raise Unreadable(f"{name}:{place}: a {symmetry} matrix is square, not {rows} x {columns}")
+    found = [[Fraction(0)] * columns for _ in range(rows)]
+    if layout == "array":
+        entries = _listed(body[1:], name, symmetry, rows, columns)
+    else:
+        entries = _placed(body[1:], int(sizes[2]), name, rows, columns)
+    seen = set()
+    for number, i, j, value in entries:
+        if (i, j) in seen or (symmetry != "general" and (j, i) in seen):
+            raise Unreadable(f"{name}:{number}: the entry {i + 1}, {j + 1} is given twice")
+        seen.add((i, j))
+        found[i][j] = value
+        if symmetry != "general" and i != j:
+            found[j][i] = value if symmetry == "symmetric" else -value
+        if symmetry == "skew-symmetric" and i == j and value:
+            raise Unreadable(f"{name}:{number}: the diagonal of a skew matrix is zero")
+    return tuple(map(tuple, found))
+
+
+_Entries = list[tuple[int, int, int, Fraction]]
+
+
+def _listed(body: list[tuple[int, list[str]]], name: str, symmetry: str, rows: int, columns: int) -> _Entries:
+    """The entries of an array, column by column; of symmetric ones the lower triangle."""
+    low = {"general": lambda j: 0, "symmetric": lambda j: j, "skew-symmetric": lambda j: j + 1}[symmetry]
+    places = [(i, j) for j in range(columns) for i in range(low(j), rows)]
+    values = [(number, cell) for number, cells in body for cell in cells]
+    if len(values) != len(places):
+        raise Unreadable(f"{name} holds {len(values)} entries, and {len(places)} are announced")
+    return [(number, i, j, _number(cell, name, number)) for (number, cell), (i, j) in zip(values, places, strict=True)]
+
+
+def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int, columns: int) -> _Entries:
+    if len(body) != count:
+        raise Unreadable(f"{name} holds {len(body)} entries, and {count} are announced")
+    found = []
+    for number, cells in body:
+        if len(cells) != 3 or not _WHOLE.match(cells[0]) or not _WHOLE.match(cells[1]):
+            raise Unreadable(f"{name}:{number}: an entry is a row, a column and a value")
+        i, j = int(cells[0]), int(cells[1])
+        if not (1 <= i <= rows and 1 <= j <= columns):
+            raise Unreadable(f"{name}:{number}: there is no entry {i}, {j} in a matrix of {rows} x {columns}")
+        found.append((number, i - 1, j - 1, _number(cells[2], name, number)))
+    return found
+
+
+def _number(cell: str, name: str, line: int) -> Fraction:
+    if not _NUMBER.match(cell):
+        hint = "numbers have a decimal point" if "," in cell else None
+        raise Unreadable(f"{name}:{line}: {ascii_safe(cell[:40])} is no number", hint)
+    return Fraction(re.sub("[dD]", "e", cell))
+
+
+# --- NumPy ---
+
+
+def _from_numpy(data: bytes, file: str, most: int) -> Numbers:
+    """The header is looked at before anything is made of what it announces."""
+    from numpy.lib import format as npy
+
+    name, opened = _plain(file), io.BytesIO(data)
+    try:
+        version = npy.read_magic(opened)
+        if version not in ((1, 0), (2, 0)):
+            raise Unreadable(f"{name} has version {version[0]}.{version[1]} of the format, and 1.0 and 2.0 are read")
+        head = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+        shape, by_columns, kind = head(opened)
+    except Unreadable:
+        raise
+    except Exception as error:
+        raise Unreadable(f"{name} is no NumPy file", "save it with numpy.save") from error
+    if kind.hasobject or kind.kind not in "fiu" or kind.itemsize > 8:
+        raise Unreadable(f"{name} holds {kind}, and real numbers of up to 8 bytes are read", "save it as float64")
+    if len(shape) != 2:
+        raise Unreadable(f"{name} holds an array of {len(shape)} dimensions, and a matrix has 2")
+    rows, columns = shape
+    _sized(rows, columns, file, most)
+    if len(data) - opened.tell() != rows * columns * kind.itemsize:
+        raise Unreadable(f"{name} is not as long as its header says")
+    return _exact(data[opened.tell() :], kind, shape, by_columns, name)
+
+
+def _exact(data: bytes, kind: Any, shape: tuple[int, int], by_columns: bool, name: str) -> Numbers:
+    import numpy as np
+
+    values = np.frombuffer(data, dtype=kind).reshape(shape, order="F" if by_columns else "C").tolist()
+    for i, row in enumerate(values, 1):
+        for j, x in enumerate(row, 1):
+            if not math.isfinite(x):
+                raise Unreadable(f"{name}: the entry {i}, {j} is {x}, no number")
+    return tuple(tuple(Fraction(x) for x in row) for row in values)
