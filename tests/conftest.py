@@ -40,6 +40,9 @@ MOST_SHARED = 100
 SHIPPED = TESTS.parent / "systems"
 OWN = TESTS / "systems"
 
+#: Those that move: not given by their matrices.
+WITH_BODIES = [path for path in sorted(SHIPPED.glob("*.yaml")) if "\nbodies:" in path.read_text(encoding="utf-8")]
+
 
 def reference(name: str) -> Any:
     """The content of a file of reference data."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import WITH_BODIES
 from flint import arb, arb_series, ctx, fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -27,7 +28,7 @@ from mbsym.mechanics.programs import momenta, momentum_rates
 from mbsym.mechanics.states import rational_states
 from mbsym.model.system import velocity_name
 
-SHIPPED = sorted(Path(__file__).parents[2].joinpath("systems").glob("*.yaml"))
+SHIPPED = WITH_BODIES
 #: Those whose accelerations are M^-1 f.
 FREE = [path for path in SHIPPED if "\nconstraints:" not in path.read_text(encoding="utf-8")]
 

@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED, parsed
+from conftest import SHIPPED, WITH_BODIES, parsed
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -216,7 +216,7 @@ def test_first_integrals_become_columns(tmp_path: Path) -> None:
     assert "momentum of psi (proved)" in done.stdout
 
 
-@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", WITH_BODIES, ids=lambda path: path.stem)
 def test_every_shipped_system_runs_as_it_is(path: Path, tmp_path: Path) -> None:
     done = mbsym(path, "--time", "1/2", "--samples", 3, "-f", "csv", "-o", tmp_path, "--tolerance", "1e-8")
     assert done.exit_code == 0, done.output

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import WITH_BODIES
 from flint import fmpq, fmpq_mat
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -31,7 +32,7 @@ from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import acceleration_name, velocity_name
 
-SHIPPED = sorted(Path(__file__).parents[2].joinpath("systems").glob("*.yaml"))
+SHIPPED = WITH_BODIES
 
 
 def frames_of(analysis: Analysis) -> tuple[Program, Articulation]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, WITH_BODIES
 from hypothesis import assume, given, settings
 from random_systems import Description, analysed, orbiting, systems
 
@@ -28,7 +28,7 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.problems import telling
 from mbsym.problems.telling import ToldSystem, Untold
 
-FILES = sorted(SHIPPED.glob("*.yaml"))
+FILES = WITH_BODIES
 SYSTEMS = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 #: Enough draws that every kind of joint and load comes up.
 some = settings(max_examples=25, deadline=None, derandomize=True)
