@@ -13,6 +13,7 @@ from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain
 from mbsym_cli.extremes_run import measure, rank
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
+from mbsym_cli.simulation_closing import begun_from
 from mbsym_cli.simulation_inputs import read_held
 
 
@@ -32,10 +33,11 @@ def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str,
     depends on the units of the description, but for the range of float32.  Mass matrix, forcing, accelerations, pivots,
     energy, Jacobian, linear matrices and eigenvalues are evaluated in float32, float64 and in rigorous balls; the
     condition tells what no formula could keep.  Verdicts of stability are exact, or "undecided"; eigenvalues at the
-    given values are enclosed.
+    given values are enclosed.  With constraints every state is led to them, and positions are sought in which they lose
+    their rank (links in line).
 
     Written are extremes.csv, extremes.json and extremes.svg/.png.  Exit codes: 0 done, 1 files could not be written,
-    2 something is missing or wrong, 130 interrupted.
+    2 something is missing or wrong, 3 no state satisfies the constraints, 130 interrupted.
 
     \b
     Examples:
@@ -54,7 +56,7 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
     """Reads everything, complains about everything, then measures."""
     from mbsym.algebra.failures import Failure
 
-    system = read_held(file, "extremes")
+    system = read_held(file, "extremes", constrained=not sequences)
     asked = Options()
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked)
     seconds = asked.number("--budget", budget)
@@ -67,7 +69,10 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
     try:
         if sequences:
             return rank(file, given, quiet)
-        return measure(file, folder, given, dict(overrides), seconds, quiet)
+        begun = begun_from(file, given, with_models=False)
+        if isinstance(begun, int):
+            return begun
+        return measure(file, folder, begun, dict(overrides), seconds, quiet)
     except Failure as error:
         complain(file, f"the equations have no program: {error}")
     except OSError as error:

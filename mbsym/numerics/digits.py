@@ -28,8 +28,9 @@ from mbsym.algebra.derivative import gradient, jacobian
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
+from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
 from mbsym.mechanics.falling import relative_lagrangian
-from mbsym.mechanics.forward_dynamics import forward_dynamics
+from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.programs import programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
@@ -97,15 +98,20 @@ class Digits:
         return "full"
 
 
-def quantities(system: System, ring: Ring, with_jacobian: bool = True) -> tuple[Quantity, ...]:
-    """Mass matrix, forcing, accelerations, pivots, energy and the Jacobian of the accelerations, over all inputs."""
-    found = programs(system, ring)
+def quantities(
+    system: System, ring: Ring, with_jacobian: bool = True, solved: ConstrainedDynamics | None = None
+) -> tuple[Quantity, ...]:
+    """Mass matrix, forcing, accelerations, pivots, energy and the Jacobian of the accelerations, over all inputs.
+
+    Accelerations and pivots are those of ``solved`` where constraints are in them; mass matrix and forcing the tree's.
+    """
+    found = programs(system, ring, open_tree=solved is not None)
     names = input_names(system)
     made = [("mass matrix", found.program, [x for row in found.mass_matrix for x in row])]
     made.append(("forcing", found.program, list(found.forcing)))
-    solved = forward_dynamics(system, ring)
-    made.append(("accelerations", solved.program, list(solved.accelerations)))
-    made.append(("pivots", solved.program, list(solved.pivots)))
+    answer: ConstrainedDynamics | ForwardDynamics = solved or forward_dynamics(system, ring)
+    made.append(("accelerations", answer.program, list(answer.accelerations)))
+    made.append(("pivots", answer.program, list(answer.pivots)))
     program = Program()
     environment = program_environment(system, program)
     kinetic, force = relative_lagrangian(scene_without_accelerations(system, ring, program, environment))
@@ -115,9 +121,9 @@ def quantities(system: System, ring: Ring, with_jacobian: bool = True) -> tuple[
         total = total + program.product(velocity, momentum)
     made.append(("energy", program, [total]))
     if with_jacobian:
-        states = [solved.environment[name] for name in (*system.coordinates, *system.velocities)]
-        rows = jacobian(solved.program, solved.accelerations, states)
-        made.append(("Jacobian", solved.program, [x for row in rows for x in row]))
+        states = [answer.environment[name] for name in (*system.coordinates, *system.velocities)]
+        rows = jacobian(answer.program, answer.accelerations, states)
+        made.append(("Jacobian", answer.program, [x for row in rows for x in row]))
     return tuple(Quantity(name, Code(program, names, tuple(nodes))) for name, program, nodes in made)
 
 

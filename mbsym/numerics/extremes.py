@@ -24,13 +24,16 @@ from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
+from mbsym.numerics.closing import closed
 from mbsym.numerics.compensation import Compensation
 from mbsym.numerics.digits import Arithmetic, Digits, Quantity, Truth, Watch, measured, quantities
+from mbsym.numerics.extremes_constrained import approaches, equations, on_constraints, positive_there
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.probes import RATIO, Ladder, Probe, ladders
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.scene_units import SceneUnits, scene_units
 from mbsym.numerics.singular import RANGE, Singularities, singularities
+from mbsym.numerics.singular_positions import SingularPositions, singular_positions
 
 #: A quantity is left out where its program is longer than this, linear matrices where they have more terms.
 MOST_OPERATIONS = 20_000
@@ -44,6 +47,9 @@ COMPILED_PER_SECOND = 1_000
 
 #: Eigenvalues of larger linear systems are not enclosed.
 MOST_ENCLOSED = 12
+
+#: The part of the budget in which positions are sought in which constraints lose their rank.
+SEARCH = 0.15
 
 #: So many names are listed where time was short.
 LISTED = 8
@@ -86,7 +92,8 @@ class Extremes:
 
     ``falling`` is there where a frame falls in a Newtonian field.  ``eigenvalues`` are balls (``flint.acb``) that hold
     those of the first approximation at the given ``values`` of the parameters, each with its multiplicity; none where
-    there is no first approximation or a value is irrational.
+    there is no first approximation or a value is irrational.  With constraints, ``positions`` are those in which they
+    lose their rank, ``positive`` says of every singular set of M whether M is positive on what they allow there.
     """
 
     system: System
@@ -99,6 +106,8 @@ class Extremes:
     compensated: tuple[Compensated, ...] = ()
     eigenvalues: tuple[Any, ...] = ()
     values: Mapping[str, Fraction] = field(default_factory=dict)
+    positions: SingularPositions | None = None
+    positive: tuple[bool | None, ...] = ()
 
     @property
     def ladders(self) -> tuple[tuple[str, str], ...]:
@@ -124,24 +133,37 @@ def extremes(
 ) -> Extremes:
     """Everything that applies to a scenario, in about ``budget`` seconds.
 
-    Raises NoClosedForm or SingularPoint where the equations have no program at all.
+    With constraints every state is one of theirs.  Raises NoClosedForm or SingularPoint where the equations have no
+    program at all, NotClosed where no state satisfies the constraints.
     """
     started = time.perf_counter()
     left_out: list[str] = []
     watch("programs")
-    found = _quantities(given.system, ring, left_out)
+    given = closed(given).scenario
+    found = _quantities(given, ring, left_out)
     truth = Truth(given.system, found)
     units = scene_units(given, truth)
     watch("singular configurations")
     where = _singularities(given, units, left_out)
+    positions: SingularPositions | None = None
+    positive: tuple[bool | None, ...] = ()
+    if given.system.constraints:
+        watch("positions in which constraints lose their rank")
+        positions = singular_positions(given, [float(x) for x in units.sizes], SEARCH * budget)
+        positive = positive_there(given, where, units)
     watch("linear equations")
     linear = _linear(given, budget, left_out)
     watch("kernels")
     compiled = sum(q.code.operations for q in found) <= COMPILED_PER_SECOND * budget
     rungs = _Rungs(given, Arithmetic(given, found, compiled), truth, linear, started + budget)
     late = []
-    for ladder in _all(given, overrides, found, linear, where, units):
+    for ladder in _all(given, overrides, found, linear, where, units, positions):
         watch(ladder.title)
+        if positions is not None and not rungs.late and not ladder.subject.startswith("distance from "):
+            led = on_constraints(ladder, left_out)
+            if led is None:
+                continue
+            ladder = led
         if not rungs.climb(ladder):
             late.append(ladder.title)
     if late:
@@ -152,7 +174,9 @@ def extremes(
     enclosed = _enclosed(given, linear)
     rows, verdicts, values = tuple(rungs.rows), tuple(rungs.verdicts), dict(given.parameters)
     pairs, omitted = tuple(rungs.compensated), tuple(left_out)
-    return Extremes(given.system, rows, verdicts, omitted, seconds, joined, where, pairs, enclosed, values)
+    return Extremes(
+        given.system, rows, verdicts, omitted, seconds, joined, where, pairs, enclosed, values, positions, positive
+    )
 
 
 class _Rungs:
@@ -222,8 +246,11 @@ def _all(
     linear: LinearModel | None,
     where: Singularities,
     units: SceneUnits,
+    positions: SingularPositions | None = None,
 ) -> Iterator[Ladder]:
     """Ladders that need no new kernels come first."""
+    if positions is not None:
+        yield from approaches(given, positions, units)
     bordering = linear is not None
     for ladder in ladders(given, overrides, found, where, units):
         if bordering and linear is not None and ladder.kind == RATIO:
@@ -232,8 +259,8 @@ def _all(
         yield ladder
 
 
-def _quantities(system: System, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
-    found = quantities(system, ring)
+def _quantities(given: Scenario, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
+    found = quantities(given.system, ring, solved=equations(given, ring))
     kept = tuple(q for q in found if q.code.operations <= MOST_OPERATIONS)
     left_out += [f"{q.name}: {q.code.operations} operations are too many here" for q in found if q not in kept]
     return kept
@@ -250,9 +277,12 @@ def _singularities(given: Scenario, units: SceneUnits, left_out: list[str]) -> S
 
 
 def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
+    what = "linear equations, eigenvalues and verdicts"
+    if given.system.constraints:
+        left_out.append(f"{what}: those of systems with constraints are not measured")
+        return None
     analysis = Analysis(given.system)
     analysis.ring.limit_work(int(budget * STEPS_PER_SECOND))
-    what = "linear equations, eigenvalues and verdicts"
     try:
         terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
         if terms > MOST_OPERATIONS:

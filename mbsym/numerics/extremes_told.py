@@ -14,6 +14,7 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR
 from mbsym.numerics.singular import Singularities, SingularSet
 from mbsym.numerics.singular_kinds import BOTH, CHART, MODEL, OPEN
+from mbsym.numerics.singular_positions import SingularPositions
 
 #: Sums are called good where float64 keeps at least so many digits.
 GOOD = 10.0
@@ -33,8 +34,10 @@ def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
             f"with the bodies at rest float64 keeps {found.falling.joined:.1f} digits of the forcing, "
             f"where term by term it would keep {found.falling.apart:.1f}."
         )
+    if found.positions is not None:
+        yield from lost_rank(found.positions)
     if found.singularities is not None:
-        yield from _where(found.singularities, file)
+        yield from _where(found.singularities, file, None if found.positions is None else found.positive)
     yield from _near(found)
     yield from _pairs(found)
     yield from _range(found, RATES, "Rates")
@@ -83,13 +86,42 @@ def _pairs(found: Extremes) -> Iterator[str]:
         )
 
 
-def _where(found: Singularities, file: str) -> Iterator[str]:
-    """Where M is singular, which of the two fails there, and whether that is all."""
+def lost_rank(found: SingularPositions) -> Iterator[str]:
+    """Where constraints lose their rank, how that is known, and that a search is no proof."""
+    yield (
+        "States are led to the constraints; mass matrix and forcing, and where that matrix is singular, are those of "
+        "the tree without them."
+    )
+    when = " at t = 0" if found.moving else ""
+    for one in found.found:
+        how = "proved by rational arithmetic" if one.proved else "to the roundings of float64"
+        near = "; others are next to it" if one.family else ""
+        yield (
+            f"The constraints lose their rank{when} where {one.text}: {one.rank} of {one.usual} rows are independent "
+            f"there ({how}){near}."
+        )
+    what = "These were" if found.found else f"No position in which constraints lose their rank{when} was"
+    more = ", more than are listed" if found.more else ""
+    others = "no others" if found.found else "none"
+    yield f"{what} found from {found.starts} starts{more}, which is no proof that there are {others}."
+
+
+#: With constraints, what their directions make of a singular matrix of the tree.
+_ALLOWED = {
+    True: "on what the constraints allow it is positive there, where that was looked at (in float64)",
+    False: "on what the constraints allow it is singular there, too, where that was looked at (in float64)",
+    None: "no state of the constraints was found there",
+}
+
+
+def _where(found: Singularities, file: str, positive: Sequence[bool | None] | None = None) -> Iterator[str]:
+    """Where M is singular, which of the two fails there, and whether that is all; with constraints, what they allow."""
     if not found.how:
         return
-    for one in found.sets:
+    for number, one in enumerate(found.sets):
         others = ", whatever else is" if one.proved else ""
-        yield f"The mass matrix is singular where {_set(one)}{others}: {_why(one, file)}."
+        why = _why(one, file) if positive is None else _ALLOWED[positive[number]]
+        yield f"The mass matrix is singular where {_set(one)}{others}: {why}."
     for factor in found.undecided:
         yield f"It is undecided whether the mass matrix is singular where {factor} vanishes, and whether that does."
     within = ", ".join(f"|{name}| <= {float(bound):.3g}" for name, bound in found.ranges.items())

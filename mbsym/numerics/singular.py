@@ -147,7 +147,7 @@ def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) 
     n = len(system.coordinates)
     if n > MOST_COORDINATES:
         raise NoClosedForm(f"a determinant of {n} coordinates")
-    whole = programs(system, ring)
+    whole = programs(system, ring, open_tree=True)
     nodes = [x for row in whole.mass_matrix for x in row]
     entries = [ring.reduce(x) for x in whole.program.evaluate(nodes, ring_environment(system, ring), ring)]
     blocks = components(n, lambda i, j: not entries[n * i + j].is_zero())

@@ -29,7 +29,7 @@ class Kinds:
 
     def __init__(self, given: Scenario, system: System, ring: Ring, sizes: Mapping[str, Fraction]) -> None:
         self.given, self.system, self.sizes = given, system, sizes
-        whole = programs(system, ring)
+        whole = programs(system, ring, open_tree=True)
         self.n = len(system.coordinates)
         self.matrix = (whole.program, [x for row in whole.mass_matrix for x in row])
         program = Program()

@@ -14,6 +14,7 @@ from mbsym.numerics.extremes import Extremes, Row
 from mbsym.numerics.extremes_told import sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.singular import Singularities
+from mbsym.numerics.singular_positions import SingularPositions
 from mbsym.report.schemas import version
 
 #: The version of ``schemas/extremes.json`` that it follows.
@@ -112,6 +113,8 @@ def extremes_json(found: Extremes) -> str:
         "rows": rows,
         "stability": verdicts,
     }
+    if found.positions is not None:
+        whole["singular_positions"] = _positions(found.positions)
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
@@ -139,6 +142,22 @@ def _singular(found: Singularities | None) -> dict[str, Any] | None:
         "undecided": list(found.undecided),
         "sets": sets,
     }
+
+
+def _positions(found: SingularPositions) -> dict[str, Any]:
+    """Where constraints lose their rank."""
+    listed = [
+        {
+            "place": dict(one.place),
+            "labels": dict(one.labels),
+            "rank": one.rank,
+            "usual": one.usual,
+            "proved": one.proved,
+            "family": one.family,
+        }
+        for one in found.found
+    ]
+    return {"starts": found.starts, "more": found.more, "found": listed}
 
 
 def _rounded(digits: Any) -> dict[str, float]:
