@@ -7,9 +7,13 @@ of the kinds of claim: what each is about, and which keys it takes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 #: The state of a claim that is about the description's own initial state.
 INITIAL_STATE = "initial"
@@ -23,11 +27,15 @@ NECESSARY, SUFFICIENT = "necessary", "sufficient"
 #: What ``of`` names.
 COORDINATE, BODY, EXPRESSION, SUM = "coordinate", "body", "expression", "sum"
 
+#: What the rows and columns of a matrix count.
+COORDINATES, INPUTS, OUTPUTS, STATES = "coordinates", "inputs", "outputs", "states"
+
 
 @dataclass(frozen=True, slots=True)
 class ClaimKind:
     """``of`` says what the key of that name holds, ``entry`` how many indices are given, ``axes`` what they count.
 
+    ``rows`` and ``columns`` are what the indices of an entry count otherwise; with ``momenta`` it may be told in these.
     ``homogeneous`` claims say that the quantity vanishes or is constant, so that a constant factor is immaterial.
     """
 
@@ -41,6 +49,9 @@ class ClaimKind:
     state: bool = True
     homogeneous: bool = False
     inequality: bool = False
+    rows: str = COORDINATES
+    columns: str = COORDINATES
+    momenta: bool = False
 
 
 CLAIMS: dict[str, ClaimKind] = {
@@ -61,6 +72,23 @@ CLAIMS: dict[str, ClaimKind] = {
         )
         for name in "MDGKN"
     },
+    "linear matrix B": ClaimKind("an entry of B: a coordinate and an input", entry=2, state=False, columns=INPUTS),
+    **{
+        f"state matrix {name}": ClaimKind(
+            f"an entry of {name} of x' = A x + B v, y = C x + D v: {rows} and {columns}",
+            entry=2,
+            state=False,
+            rows=rows,
+            columns=columns,
+        )
+        for name, rows, columns in (
+            ("A", STATES, STATES), ("B", STATES, INPUTS), ("C", OUTPUTS, STATES), ("D", OUTPUTS, INPUTS)
+        )
+    },
+    "hamiltonian": ClaimKind("H = p.q' - L, in coordinates and momenta (p_theta)", state=False, momenta=True),
+    "momentum": ClaimKind("of a coordinate: dL/dq'", COORDINATE, state=False),
+    "routh function": ClaimKind("R = L - p_c.c' without cyclic coordinates c", state=False, momenta=True),
+    "reduced potential": ClaimKind("W = -R at rest of the coordinates that are left", state=False, momenta=True),
     "characteristic polynomial": ClaimKind(
         "of the subsystem with a coordinate, or of the whole system", COORDINATE, variable=True, state=False,
         homogeneous=True,
@@ -70,10 +98,25 @@ CLAIMS: dict[str, ClaimKind] = {
     "direction cosine": ClaimKind("an entry of R^jk of a body on the one it is attached to", BODY, 2, axes=True),
     "position": ClaimKind("of the mass centre of a body, a component in inertial axes", BODY, 1, axes=True),
     "velocity": ClaimKind("of the mass centre of a body, a component in inertial axes", BODY, 1, axes=True),
-    "first integral": ClaimKind("an expression that is constant on every motion", state=False, homogeneous=True),
+    "first integral": ClaimKind(
+        "an expression that is constant on every motion", state=False, homogeneous=True, momenta=True
+    ),
     "condition": ClaimKind("an inequality among the stability conditions", state=False, inequality=True),
     "value": ClaimKind("of an expression at a state; it may hold accelerations", EXPRESSION, accelerations=True),
 }  # fmt: skip
+
+
+def index_names(kind: ClaimKind, system: System) -> tuple[tuple[str, ...], ...]:
+    """What the indices of an entry count, by name; of axes, which have numbers, nothing."""
+    if kind.axes:
+        return ((),) * kind.entry
+    names = {
+        COORDINATES: system.claimable,
+        STATES: (*system.coordinates, *system.velocities),
+        INPUTS: system.input_names,
+        OUTPUTS: tuple(one.name for one in system.outputs),
+    }
+    return (names[kind.rows], names[kind.columns])[: kind.entry]
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.momenta import momentum_names
 from mbsym.model.system import System
 from mbsym.problems import energy as energies
 from mbsym.problems.equations import convective_rate
@@ -97,18 +98,6 @@ class NothingIgnored(Failure):
     """Routh's form is Lagrange's where nothing can be left out, and says nothing where nothing is left."""
 
     code = "nothing-ignored"
-
-
-def momentum_names(system: System) -> dict[str, str]:
-    """p_theta for theta, or another name where that is taken."""
-    taken = {*system.coordinates, *system.parameter_names, *system.variables, *system.input_names}
-    taken |= {item.name for item in system.prescribed} | {item.name for item in system.notation}
-    found = {}
-    for name in system.coordinates:
-        free = next(x for x in (f"p_{name}", *(f"p{k}_{name}" for k in range(1, 100))) if x not in taken)
-        found[name] = free
-        taken.add(free)
-    return found
 
 
 def hamilton(system: System, terms: int) -> Hamilton:

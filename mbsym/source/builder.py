@@ -111,7 +111,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
     names = [body.name for body in bodies]
-    claims = read_claims(fields.get("claims"), names, system.claimable, reading)
+    claims = read_claims(fields.get("claims"), names, system, reading)
     system = replace(system, claims=claims)
     values = known_values(system)
     for draft, good in zip(drafts, sound, strict=True):

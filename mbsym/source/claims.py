@@ -20,8 +20,10 @@ from mbsym.model.claims import (
     Abbreviation,
     Claim,
     ClaimKind,
+    index_names,
 )
-from mbsym.model.system import INERTIAL, rational
+from mbsym.model.momenta import momentum_names
+from mbsym.model.system import INERTIAL, System, rational
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
 from mbsym.source.placed import Mapping, Node, Scalar
@@ -36,7 +38,7 @@ _PLACES = (*_WITHOUT_INPUTS, "input")
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
 #: Kinds that are about constants alone.
-_CONSTANT_KINDS = ("linear matrix", "subsystem matrix", "characteristic polynomial", "condition")
+_CONSTANT_KINDS = ("linear matrix", "subsystem matrix", "state matrix", "characteristic polynomial", "condition")
 _KINDS = {kind.lower(): kind for kind in CLAIMS}
 
 #: A kind that resembles a known one as much (1: equal) is read as that one, after a complaint.
@@ -58,19 +60,25 @@ def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviatio
     return tuple(found)
 
 
-def read_claims(
-    node: Node | None, bodies: list[str], coordinates: tuple[str, ...], reading: Reading
-) -> tuple[Claim, ...]:
-    """A list of claims; a condition that is a chain of inequalities is several."""
+def read_claims(node: Node | None, bodies: list[str], system: System, reading: Reading) -> tuple[Claim, ...]:
+    """A list of claims; a condition that is a chain of inequalities is several.
+
+    Claims alone may name momenta, of a system in generalised velocities.
+    """
     found: list[Claim] = []
+    kinds = reading.scope.kinds
+    momenta = [] if system.speeds else [name for name in momentum_names(system).values() if name not in kinds]
+    kinds.update(dict.fromkeys(momenta, "momentum"))
     for item in () if node is None else reading.items(node, "'claims'"):
         errors = reading.errors
-        claims = _claims(item, bodies, coordinates, reading)
+        claims = _claims(item, bodies, system, reading)
         found += claims if reading.errors == errors else []
+    for name in momenta:
+        del kinds[name]
     return tuple(found)
 
 
-def _claims(item: Node, bodies: list[str], coordinates: tuple[str, ...], reading: Reading) -> list[Claim]:
+def _claims(item: Node, bodies: list[str], system: System, reading: Reading) -> list[Claim]:
     hint = "write for example {claim: kinetic energy, equals: m*x_dot**2/2, place: eq. (1)}"
     fields = reading.fields(item, "a claim", CLAIM, hint)
     node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
@@ -82,7 +90,7 @@ def _claims(item: Node, bodies: list[str], coordinates: tuple[str, ...], reading
         _check_names(fields, reading)
         return []
     kind = _KINDS[word]
-    one = _Reader(kind, CLAIMS[kind], fields, bodies, coordinates, reading)
+    one = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading)
     return one.conditions() if one.kind.inequality else [one.single()]
 
 
@@ -111,7 +119,7 @@ class _Reader:
     kind: ClaimKind
     fields: Fields
     bodies: list[str]
-    coordinates: tuple[str, ...]
+    system: System
     reading: Reading
 
     def single(self) -> Claim:
@@ -190,7 +198,8 @@ class _Reader:
             return Allowed(what, (*_CONSTANTS, *(["variable"] if variable else [])))
         accelerations = ("acceleration",) if self.kind.accelerations else ()
         places = _WITHOUT_INPUTS if self.word == "first integral" else _PLACES
-        return Allowed(what, (*places, *accelerations))
+        momenta = ("momentum",) if self.kind.momenta and not self.system.speeds else ()
+        return Allowed(what, (*places, *momenta, *accelerations))
 
     def equals(self, variable: str) -> tuple[Expression, str]:
         """The expression; and its text, where it is a decimal number about one state, digits included."""
@@ -254,7 +263,7 @@ class _Reader:
         if scalar is None:
             return ""
         words = " ".join(scalar.text.split())
-        known = [*self.coordinates, *(SUMS if self.kind.of == SUM else ())]
+        known = [*self.system.claimable, *(SUMS if self.kind.of == SUM else ())]
         if words not in known:
             hint = did_you_mean(words, known) or f"one of: {', '.join(known[:12])}"
             wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
@@ -267,27 +276,32 @@ class _Reader:
         node = self.fields.require(key)
         if node is None:
             return ()
+        names = index_names(self.kind, self.system)
         if self.kind.entry == 1:
-            return (self.index(node, key),)
+            return (self.index(node, key, names[0]),)
         items = self.reading.items(node, f"'{key}'")
         if len(items) != 2:
             if items:
                 self.reading.error("wrong-shape", "an entry is a row and a column", node.span, "write [1, 2]")
             return ()
-        return (self.index(items[0], key), self.index(items[1], key))
+        return (self.index(items[0], key, names[0]), self.index(items[1], key, names[1]))
 
-    def index(self, node: Node, key: str) -> int:
+    def index(self, node: Node, key: str, names: tuple[str, ...]) -> int:
         scalar = self.reading.scalar(node, f"'{key}'")
         if scalar is None:
             return 1
         text = scalar.text.strip()
-        names = () if self.kind.axes else self.coordinates
         if text in names:
             return names.index(text) + 1
         size = 3 if self.kind.axes else len(names)
         if text.isascii() and text.isdigit() and len(text) < 4 and 1 <= int(text) <= size:
             return int(text)
-        hint = did_you_mean(text, names) or ("a coordinate, or " if names else "") + f"a number from 1 to {size}"
+        if not size:
+            message = f"the {self.word} has no entries: the system has no inputs, or no outputs"
+            self.reading.error("bad-entry", message, scalar.span, "declare them under 'inputs' and 'outputs'")
+            return 1
+        some = "" if not names else "a coordinate, or " if names == self.system.claimable else f"{names[0]}, ..., or "
+        hint = did_you_mean(text, names) or f"{some}a number from 1 to {size}"
         message = f"{ascii_safe(text)} is no {'axis' if self.kind.axes else 'row or column'}"
         self.reading.error("bad-entry", message, scalar.span, hint)
         return 1

@@ -47,6 +47,7 @@ _KINDS = {
     "speed": "a speed",
     "unit vector": "a component of a unit vector",
     "quaternion": "a component of a quaternion",
+    "momentum": "a momentum",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -64,7 +65,10 @@ _PLURALS = {
     "speed": "speeds",
     "unit vector": "components of unit vectors",
     "quaternion": "components of quaternions",
+    "momentum": "momenta",
 }
+#: Kinds of names that are told where the description has some.
+_RARE = ("input", "quaternion", "momentum")
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +198,7 @@ class Scope:
             message = f"unknown name {ascii_safe(name)}"
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
-            told = [one for one in allowed.kinds if one not in ("input", "quaternion") or self.of_kind(one)]
+            told = [one for one in allowed.kinds if one not in _RARE or self.of_kind(one)]
             held = _enumerated([_PLURALS[one] for one in told]) or "numbers"
             message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
             self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))

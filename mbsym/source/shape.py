@@ -11,7 +11,7 @@ from typing import Union
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.table import HOLD, LINEAR, Table
 from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, text
-from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim
+from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim, index_names
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
 from mbsym.model.inputs import Input
 from mbsym.model.linear import LinearModel
@@ -266,7 +266,10 @@ def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
     if claim.of or claim.of_expression is not None:
         shape["of"] = claim.of if claim.of_expression is None else text(claim.of_expression)
     if claim.entry:
-        indices: list[Shape] = [str(k) if kind.axes else system.claimable[k - 1] for k in claim.entry]
+        names = index_names(kind, system)
+        indices: list[Shape] = [
+            str(k) if kind.axes else counted[k - 1] for k, counted in zip(claim.entry, names, strict=True)
+        ]
         shape["component" if kind.entry == 1 else "entry"] = indices[0] if kind.entry == 1 else indices
     if claim.at is not None:
         shape["at"] = text(claim.at)

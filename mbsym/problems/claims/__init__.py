@@ -36,6 +36,7 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.in_momenta import with_momenta
 from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity
@@ -101,6 +102,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
         return examined_condition(derived, claim, about)
     symbols = Symbols.of(derived)
     scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    with_momenta(derived, scene, symbols)
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":
         return examined_integral(derived, claim, about, in_parameters(derived, claimed))

@@ -29,7 +29,7 @@ def in_parameters(derived: Derived, x: Polynomial) -> Polynomial:
 def on_relations(derived: Derived, claim: Claim, x: Polynomial) -> Polynomial:
     """Relations between parameters used; for the linear problem also the conditions under which the motion exists."""
     ring = derived.ring
-    if claim.kind.startswith(("linear", "subsystem", "characteristic", "condition")):
+    if claim.kind.startswith(("linear", "subsystem", "state", "characteristic", "condition")):
         images = derived.equilibrium.determined(derived.parameters_scene)
     else:
         images = relations(derived.parameters_scene)

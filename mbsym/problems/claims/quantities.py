@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
     ZERO,
@@ -10,6 +11,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import SUMS, Claim
 from mbsym.model.system import INERTIAL
 from mbsym.problems.claims.forms import by_motion
+from mbsym.problems.claims.in_momenta import IN_MOMENTA, in_velocities
 from mbsym.problems.claims.result import Derived
 from mbsym.problems.integrals import residual
 
@@ -27,6 +29,14 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return derived.energy.A2[rows[0], rows[1]].polynomial
     if kind == "equation of motion":
         return _equation(derived, claim.of)
+    if kind in IN_MOMENTA:
+        return in_velocities(derived, kind, claim.of)
+    if kind == "linear matrix B":
+        if derived.linearisation.B is None:
+            raise NoClosedForm("there is no B")
+        return derived.linearisation.B[rows[0], rows[1]].polynomial
+    if kind.startswith("state matrix"):
+        return getattr(derived.state_space, kind[-1])[rows[0], rows[1]].polynomial
     if kind.startswith("linear matrix"):
         return getattr(derived.linearisation, kind[-1])[rows[0], rows[1]].polynomial
     if kind.startswith("subsystem matrix"):

@@ -14,7 +14,7 @@ from mbsym.expressions.tree import (
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import Programs
-from mbsym.model.claims import CLAIMS, SUMS, Claim
+from mbsym.model.claims import CLAIMS, SUMS, Claim, index_names
 from mbsym.model.system import System
 from mbsym.problems.claims.counterexample import (
     Counterexample,
@@ -29,6 +29,8 @@ from mbsym.problems.stability import Stability
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.canonical import Routh
+    from mbsym.problems.state_space import StateSpace
 
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
@@ -72,6 +74,10 @@ class Derived(Protocol):
     def equilibrium(self) -> Equilibrium: ...
     @property
     def linearisation(self) -> Linearisation: ...
+    @property
+    def state_space(self) -> StateSpace: ...
+    @property
+    def routh(self) -> Routh: ...
     @property
     def stability(self) -> Stability: ...
     @property
@@ -141,7 +147,8 @@ def title(claim: Claim, system: System) -> str:
     elif claim.of:
         words += f" of {claim.of}"
     if claim.entry:
-        words += " [" + ", ".join(str(k) if kind.axes else system.claimable[k - 1] for k in claim.entry) + "]"
+        counted = zip(claim.entry, index_names(kind, system), strict=True)
+        words += " [" + ", ".join(str(k) if kind.axes else names[k - 1] for k, names in counted) + "]"
     if claim.right is not None:
         words += f" {text(claim.equals)} {claim.relation} {text(claim.right)}"
     if claim.at_initial:

@@ -46,6 +46,7 @@ class Symbols:
         self.system = system
         self.values = {item.name: item.value for item in system.abbreviations}
         self._in_scenes: WeakKeyDictionary[Scene, Lowering] = WeakKeyDictionary()
+        self._known: WeakKeyDictionary[Scene, dict[str, Any]] = WeakKeyDictionary()
         self.forms: dict[str, LinearForm] = {}
         for name, value in self.values.items():
             form = linear_form(value)
@@ -105,11 +106,17 @@ class Symbols:
                 known[name] = Lowering(algebra, known)(self.opened(value))
         return Lowering(algebra, known)
 
-    def in_scene(self, scene: Scene) -> Lowering:
-        """Values for expressions over a scene, with those of the abbreviations: each is formed once."""
+    def in_scene(self, scene: Scene, more: Mapping[str, Any] | None = None) -> Lowering:
+        """Values for expressions over a scene, with those of the abbreviations: each is formed once.
+
+        ``more`` are names that it has besides from now on.
+        """
         if scene not in self._in_scenes:
             values = _Values(scene.environment, self)
             self._in_scenes[scene] = values.lower = Lowering(scene.algebra, values)
+            self._known[scene] = values
+        if more:
+            self._known[scene].update(more)
         return self._in_scenes[scene]
 
     def polynomial(self, scene: Scene, claim: Claim) -> Polynomial:

@@ -13,10 +13,12 @@ from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Re
 from mbsym.model.loads import (
     Load,
 )
+from mbsym.model.momenta import momentum_names
 from mbsym.model.speeds import OMEGA
 from mbsym.model.system import Body, Point, System, Vector
 from mbsym.model.units import (
     BASES,
+    ENERGY,
     INERTIA,
     LENGTH,
     MASS,
@@ -67,6 +69,7 @@ def _form_of(system: System) -> Callable[[str], Form]:
     rates = {f"{name}_dot": (name, 1) for name in system.coordinates}
     rates |= {f"{name}_ddot": (name, 2) for name in system.coordinates}
     rates |= {f"{name}_dot": (name, 1) for name in system.variables}
+    momenta = {} if system.speeds else {p: q for q, p in momentum_names(system).items()}
     vectors = {name for body in system.bodies for vector in body.orientation for name in vector.components}
 
     def form(name: str) -> Form:
@@ -74,6 +77,8 @@ def _form_of(system: System) -> Callable[[str], Form]:
             return Form(TIME)
         if name in OMEGA:
             return Form(RATE)
+        if name in momenta:
+            return Form(times(ENERGY, TIME, 1), ((momenta[name], Fraction(-1)),))
         name, order = rates.get(name, (name, 0))
         if name in vectors:
             return Form(times(NONE, TIME, -order))
