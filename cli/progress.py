@@ -1,4 +1,4 @@
-"""A bar over simulated time."""
+"""A bar over simulated time, or over whatever is counted."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from mbsym_cli.console import console
 
 
 @contextmanager
-def progress(quiet: bool, name: str, end: float) -> Iterator[Callable[[float], None]]:
-    """On standard error; nothing where that is no terminal."""
+def progress(quiet: bool, name: str, end: float, what: str = "t") -> Iterator[Callable[[float], None]]:
+    """On standard error; nothing where that is no terminal.  ``what`` is counted: the time, unless it is said."""
     if quiet or not sys.stderr.isatty():
         yield lambda t: None
         return
@@ -22,7 +22,7 @@ def progress(quiet: bool, name: str, end: float) -> Iterator[Callable[[float], N
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
-        TextColumn("t = {task.completed:.4g}"),
+        TextColumn(what + " = {task.completed:.4g}"),
         TimeRemainingColumn(),
         console=console(stderr=True),
         transient=True,

@@ -23,30 +23,30 @@ if TYPE_CHECKING:
 
 def read_settings(texts: Sequence[str], system: System, options: Options) -> dict[str, Fraction]:
     """``--set name=number``, each name once; every complaint joins those of ``options``."""
+    from mbsym.maps.section import usable
+
     found: dict[str, Fraction] = {}
+    names = usable(system)
     for text in texts:
         name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
         if not equals or not name or len(text) > MAX_LENGTH:
             told = f"{ascii_safe(text[:80])} gives no value"
             options.complain("--set", "bad-assignment", told, "write name=number, for example p1=2/5")
             continue
-        value = read_rational(right, f"--set {ascii_safe(name)}", options)
-        known(name, "--set", system, options)
+        value = read_rational(right, f"--set {name if name.isidentifier() else ascii_safe(name)}", options)
+        known(name, "--set", names, options)
         if name in found:
-            options.complain("--set", "repeated-name", f"'{ascii_safe(name)}' is set twice")
+            options.complain("--set", "repeated-name", f"{ascii_safe(name)} is set twice")
         if value is not None:
             found[name] = value
     return found
 
 
-def known(name: str, option: str, system: System, options: Options) -> bool:
-    """Whether a name is a parameter's or a symbol's; if it is not, that is one of the complaints."""
-    from mbsym.maps.section import usable
-
-    names = usable(system)
+def known(name: str, option: str, names: Sequence[str], options: Options) -> bool:
+    """Whether a name is one of ``names``; if it is not, that is one of the complaints."""
     if name in names:
         return True
-    told = f"there is no parameter called '{ascii_safe(name)}'{guess(name, names)}"
+    told = f"there is no parameter called {ascii_safe(name)}{guess(name, names)}"
     options.complain(option, "unknown-name", told)
     return False
 

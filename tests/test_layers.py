@@ -28,14 +28,15 @@ BELOW = {
     "maps": "expressions algebra model mechanics formulas problems analysis",
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
-    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps",
+    "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
+    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
     "studies": "expressions algebra model mechanics formulas problems analysis numerics simulation",
     "editing": "expressions algebra model source formulas analysis",
-    "batch": "expressions algebra model source formulas problems analysis report __init__",
+    "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
     "diff": "expressions algebra formulas report",
     "__init__": "source model analysis numerics simulation studies",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
-    " diff editing maps __init__",
+    " diff editing maps sweeps __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

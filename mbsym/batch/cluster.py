@@ -35,7 +35,7 @@ class NoCluster(Exception):
     """There is no cluster to work on; the message says why and what to do."""
 
 
-class Cluster:
+class Connection:
     """The workers of a Dask scheduler at ``address`` (``tcp://host:8786``); ``local`` starts ``jobs`` of them here.
 
     Raises NoCluster where there is none, where no worker comes, or where workers have another version of mbsym.
@@ -50,12 +50,11 @@ class Cluster:
                 self._own = distributed.LocalCluster(
                     n_workers=jobs, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
                 )
-            self._client = distributed.Client(self._own or address, timeout=CONNECT, set_as_default=False)
+            self.client = distributed.Client(self._own or address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError, ImportError) as error:  # connection refused, no such address, no TLS
             raise NoCluster(f"no scheduler answers at {address}: {_first_line(error)}") from error
-        self._token = uuid.uuid4().hex
         try:
-            self._client.wait_for_workers(1, timeout=FIRST_WORKER)
+            self.client.wait_for_workers(1, timeout=FIRST_WORKER)
             self._check_versions()
         except BaseException as error:
             self.close()
@@ -63,20 +62,45 @@ class Cluster:
                 raise NoCluster(f"the scheduler at {address} has no worker; start one: dask worker {address}") from None
             raise
         # Its futures are those of concurrent.futures; a deterministic mistake is not repeated, a lost worker's task is.
-        self._executor = self._client.get_executor(pure=False, retries=0)
+        self.executor = self.client.get_executor(pure=False, retries=0)
 
     @property
     def width(self) -> int:
         """How many tasks are worth being there: workers come and go."""
         with suppress(Exception):
-            return max(1, _AHEAD * sum(self._client.nthreads().values()))
+            return max(1, _AHEAD * sum(self.client.nthreads().values()))
         return 1
+
+    def close(self) -> None:
+        with suppress(Exception):
+            self.client.close()
+        if self._own is not None:
+            with suppress(Exception):
+                self._own.close()
+
+    def _check_versions(self) -> None:
+        wanted = derivation()
+        for worker, found in self.client.run(derivation).items():
+            if found != wanted:
+                raise NoCluster(f"the worker {worker} has another version of mbsym: install the same there and here")
+
+
+class Cluster:
+    """Descriptions derived by the workers of a ``Connection``."""
+
+    def __init__(self, address: str, jobs: int) -> None:
+        self._there = Connection(address, jobs)
+        self._token = uuid.uuid4().hex
+
+    @property
+    def width(self) -> int:
+        return self._there.width
 
     def submit(self, task: Task, budget: Budget) -> Future[Finished]:
         from concurrent.futures import Future
 
         told: Future[Finished] = Future()
-        there = self._executor.submit(at_worker, task_text(task), budget, derivation(), self._token)
+        there = self._there.executor.submit(at_worker, task_text(task), budget, derivation(), self._token)
 
         def pass_on(done: Future[tuple[str, float]]) -> None:
             told.set_result(_finished(done, task))
@@ -86,18 +110,8 @@ class Cluster:
 
     def close(self) -> None:
         with suppress(Exception):
-            self._client.run(end, self._token)
-        with suppress(Exception):
-            self._client.close()
-        if self._own is not None:
-            with suppress(Exception):
-                self._own.close()
-
-    def _check_versions(self) -> None:
-        wanted = derivation()
-        for worker, found in self._client.run(derivation).items():
-            if found != wanted:
-                raise NoCluster(f"the worker {worker} has another version of mbsym: install the same there and here")
+            self._there.client.run(end, self._token)
+        self._there.close()
 
 
 def _distributed() -> Any:

@@ -1,0 +1,96 @@
+"""Measure ``stability``: the verdict of problem 6 at every point.
+
+Points fall into classes by the signs of the deciding quantities (``mbsym.sweeps.deciding``), evaluated in floats with
+bounds of their rounding; the verdict of a class is found exactly at one of its points, which is a rational number as
+every float is.  A point whose signs are not certain is judged exactly by itself.  So every verdict is that of the exact
+judge at the number which the column holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from flint import fmpq
+
+from mbsym.algebra.failures import Failure
+from mbsym.analysis import Analysis
+from mbsym.maps.admissible import admissibility
+from mbsym.maps.section import Section
+from mbsym.maps.verdicts import verdict_at
+from mbsym.numerics.kernels import llvm
+from mbsym.problems.stability.word import Word
+from mbsym.sweeps.deciding import classes, deciding
+from mbsym.sweeps.measure import Column
+
+#: What may stand in place of a verdict, before the words of verdicts.
+OUTSIDE, UNDEFINED = "outside the assumptions", "not defined"
+WORDS = (OUTSIDE, UNDEFINED, *(word.value for word in Word))
+
+VERDICT = Column(
+    "verdict", "what problem 6 says there, exactly, at the numbers in this row taken as they stand", WORDS, whole=True
+)
+RIGHT = Column("unstable_roots", "how many roots of the characteristic polynomial have Re > 0; -1: not counted")
+EXACT = Column("singly", "1: near a border, judged by itself; 0: by the signs that it shares with other points")
+
+
+class StabilityMeasure:
+    """The verdict, and how many roots have Re > 0, in a section of the space of parameters.
+
+    Raises TooLargeError where a characteristic polynomial is too long.
+    """
+
+    columns = (VERDICT, Column(RIGHT.name, RIGHT.meaning, whole=True), Column(EXACT.name, EXACT.meaning, whole=True))
+
+    def __init__(self, analysis: Analysis, section: Section) -> None:
+        self.section = section
+        #: What parameters have to keep; ``left_out`` of it could not be expressed in the axes.
+        self.admissibility = admissibility(analysis, section)
+        further = [
+            *section.undefined,
+            *section.asked,
+            *(demand.condition.polynomial for demand in self.admissibility.demands),
+        ]
+        self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes])
+        self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
+        self._known: dict[tuple[int, ...], tuple[int, int]] = {}
+        self._lock = Lock()
+
+    @property
+    def operations(self) -> int:
+        """Of one point."""
+        return self._deciding.code.operations
+
+    def at(self, points: Any) -> Mapping[str, Any]:
+        count = points.shape[1]
+        words, right = np.zeros(count, dtype=np.int8), np.zeros(count, dtype=np.int16)
+        keys, certain = self._deciding.keys(self._kernel(np.ascontiguousarray(points)))
+        for key, members in classes(keys, certain):
+            with self._lock:
+                found = self._known.get(key)
+            if found is None:
+                found = self.judged(points[:, members[0]])
+                with self._lock:
+                    self._known[key] = found
+            words[members], right[members] = found
+        for place in np.flatnonzero(~certain):
+            words[place], right[place] = self.judged(points[:, place])
+        return {VERDICT.name: words, RIGHT.name: right, EXACT.name: (~certain).astype(np.int8)}
+
+    def judged(self, point: Sequence[float]) -> tuple[int, int]:
+        """(place of the word in ``WORDS``, roots with Re > 0) at one point, exactly."""
+        if not np.all(np.isfinite(point)):
+            return WORDS.index(UNDEFINED), -1
+        numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
+        demands = self.admissibility.demands
+        if self.admissibility.broken or any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
+            return WORDS.index(OUTSIDE), -1
+        if any(x(*numbers) == 0 for x in self.section.undefined):
+            return WORDS.index(UNDEFINED), -1
+        try:
+            found = verdict_at(self.section, numbers)
+        except (Failure, ValueError, ZeroDivisionError):
+            return WORDS.index(UNDEFINED), -1
+        return WORDS.index(found.verdict.word.value), -1 if found.right is None else found.right

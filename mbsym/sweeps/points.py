@@ -1,0 +1,111 @@
+"""The parameter values of a sweep, of which any stretch can be had by itself: chunks are made where they are used.
+
+A grid takes every combination of equally spaced values, ends included, the last name varying fastest.  Draws are joint:
+NumPy's PCG64 or Sobol's sequence (scrambled, SciPy); the points are the same for the same seed, however they are cut.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite, prod
+from typing import Any
+
+import numpy as np
+
+from mbsym.expressions.guessing import guess
+from mbsym.numerics.variation import NORMAL, RANDOM, SOBOL, UNIFORM, Draw, Grid, Variation
+
+#: More points than this are refused: a picture of so many says no more, and their numbers fill disks.
+MOST_POINTS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Points:
+    """``variations`` are all grids, or all draws with ``members`` points in all."""
+
+    variations: tuple[Variation, ...]
+    members: int = 0
+    seed: int = 1
+    sampling: str = RANDOM
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(one.name for one in self.variations)
+
+    @property
+    def grids(self) -> tuple[Grid, ...]:
+        """The axes of a grid; nothing where points are drawn."""
+        return tuple(one for one in self.variations if isinstance(one, Grid))
+
+    @cached_property
+    def count(self) -> int:
+        return prod(one.count for one in self.grids) if self.grids else self.members
+
+    def part(self, start: int, stop: int) -> Any:
+        """The points number ``start`` to ``stop`` - 1, shape (names, stop - start)."""
+        if self.grids:
+            places = np.unravel_index(np.arange(start, stop), [one.count for one in self.grids])
+            return np.array([one.values[place] for one, place in zip(self.grids, places, strict=True)])
+        chances = self._chances(start, stop)
+        draws = [one for one in self.variations if isinstance(one, Draw)]
+        return np.array([one.at(row) for one, row in zip(draws, chances, strict=True)])
+
+    def _chances(self, start: int, stop: int) -> Any:
+        """Points of the unit cube, shape (names, stop - start)."""
+        count = len(self.variations)
+        if self.sampling == SOBOL:
+            import warnings
+
+            from scipy.stats import qmc
+
+            sequence = qmc.Sobol(count, scramble=True, rng=self.seed)
+            if start:
+                sequence.fast_forward(start)
+            with warnings.catch_warnings():  # that a number of points is no power of 2 costs some evenness, no more
+                warnings.simplefilter("ignore", UserWarning)
+                return sequence.random(stop - start).T
+        bits = np.random.PCG64(self.seed)
+        bits.advance(start * count)
+        return np.random.Generator(bits).random((stop - start, count)).T
+
+
+def complaints(
+    variations: Sequence[Variation], members: int | None, known: Sequence[str]
+) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with them: (name, sentence, hint)."""
+    seen: set[str] = set()
+    for one in variations:
+        if one.name not in known:
+            yield one.name, f"there is no parameter called '{one.name}'{guess(one.name, known)}", ""
+        if one.name in seen:
+            yield one.name, f"{one.name} is varied twice", "join the two"
+        seen.add(one.name)
+        yield from _range(one)
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if grids and len(grids) < len(variations):
+        yield (
+            grids[0].name,
+            "a grid and draws at random do not go together",
+            "draw all of them: name=uniform(low, high)",
+        )
+    elif grids and members is not None:
+        yield grids[0].name, "a grid says itself how many points it has", "leave --points out"
+    elif not grids and members is None and variations:
+        yield variations[0].name, "how many points to draw is not said", "for example --points 100000"
+    count = prod(one.count for one in grids) if grids else members or 0
+    if count > MOST_POINTS:
+        yield variations[0].name, f"{count} points are too many", f"at most {MOST_POINTS}"
+
+
+def _range(one: Variation) -> Iterator[tuple[str, str, str]]:
+    ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
+    if not all(map(isfinite, ends)):
+        yield one.name, f"the range of {one.name} is not finite", ""
+    elif isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
+        yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
+    elif isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
+        yield one.name, f"the range of {one.name} is empty: {one.first:g} to {one.second:g}", "the smaller one first"
+    elif isinstance(one, Grid) and one.low == one.high:
+        yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"

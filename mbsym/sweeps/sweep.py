@@ -1,0 +1,97 @@
+"""A sweep: chunks of points measured side by side, each kept in a file of its own when it is done.
+
+Which chunks there are follows from the points alone, so that what one run began another one goes on with, on this
+machine or on another, and shards i of n divide the work without talking to each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from mbsym.sweeps.measure import Measure
+from mbsym.sweeps.points import Points
+
+#: Points that are measured at once: enough that compiled code dominates, few enough for the caches and for Ctrl-C.
+CHUNK = 65_536
+
+Columns = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """The points number ``start`` to ``stop`` - 1."""
+
+    number: int
+    start: int
+    stop: int
+
+
+def chunks(count: int, size: int = CHUNK) -> tuple[Chunk, ...]:
+    """All chunks of so many points."""
+    return tuple(Chunk(k, start, min(start + size, count)) for k, start in enumerate(range(0, count, size)))
+
+
+def shard(every: Sequence[Chunk], number: int, of: int) -> tuple[Chunk, ...]:
+    """Every ``of``-th chunk, the first of them number ``number`` (from 1)."""
+    return tuple(every[number - 1 :: of])
+
+
+class Executor(Protocol):
+    """Where chunks are measured; ``width`` is how many are worth being there at once."""
+
+    @property
+    def width(self) -> int: ...
+
+    def submit(self, chunk: Chunk) -> Future[Columns]: ...
+
+    def close(self) -> None: ...
+
+
+class Threads:
+    """This process: ``jobs`` chunks at a time."""
+
+    def __init__(self, measure: Callable[[], Measure], points: Points, jobs: int) -> None:
+        self.width = 2 * jobs
+        self._measure, self._points = measure, points
+        self._pool = ThreadPoolExecutor(jobs, thread_name_prefix="mbsym-sweep")
+
+    def submit(self, chunk: Chunk) -> Future[Columns]:
+        return self._pool.submit(self._work, chunk)
+
+    def _work(self, chunk: Chunk) -> Columns:
+        return self._measure().at(self._points.part(chunk.start, chunk.stop))
+
+    def close(self) -> None:
+        self._pool.shutdown(wait=True, cancel_futures=True)
+
+
+class Store(Protocol):
+    """Where finished chunks are kept."""
+
+    def load(self, chunk: Chunk) -> Columns | None: ...
+
+    def save(self, chunk: Chunk, columns: Columns) -> None: ...
+
+
+def measured(wanted: Sequence[Chunk], executor: Executor, store: Store) -> Iterator[Chunk]:
+    """Measures what is not kept yet; yields every chunk when it is kept."""
+    pending: dict[Future[Columns], Chunk] = {}
+    waiting = iter(wanted)
+    following = next(waiting, None)
+    while following is not None or pending:
+        while following is not None and len(pending) < executor.width:
+            if store.load(following) is not None:
+                yield following
+            else:
+                pending[executor.submit(following)] = following
+            following = next(waiting, None)
+        if not pending:
+            continue
+        done, _ = wait(pending, return_when=FIRST_COMPLETED)
+        for future in done:
+            chunk = pending.pop(future)
+            store.save(chunk, future.result())
+            yield chunk

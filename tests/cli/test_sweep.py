@@ -1,0 +1,146 @@
+"""``mbsym sweep``: tables that hold what they say, chunks that are kept and joined, complaints all at once."""
+
+from __future__ import annotations
+
+import csv
+import json
+from math import sqrt
+from pathlib import Path
+
+import jsonschema
+import pytest
+from click.testing import CliRunner, Result
+
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+SYSTEMS = Path(__file__).parents[2] / "systems"
+PLANE = ["-v", "alpha=-0.9:0.9:40", "-v", "gamma=-0.9:0.9:30", "-s", "p1=2/5", "-s", "p2=1/5"]
+
+
+def sweep(name: str, folder: Path, *options: str) -> Result:
+    return CliRunner().invoke(main, ["sweep", str(SYSTEMS / f"{name}.yaml"), "-o", str(folder), *options])
+
+
+def rows(folder: Path) -> list[dict[str, str]]:
+    with (folder / "sweep.csv").open() as stream:
+        return list(csv.DictReader(stream))
+
+
+def told(folder: Path) -> dict:  # type: ignore[type-arg]
+    found = json.loads((folder / "sweep.json").read_text())
+    jsonschema.validate(found, schema("sweep"))
+    return found  # type: ignore[no-any-return]
+
+
+@pytest.fixture(scope="module")
+def plane(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("plane")
+    done = sweep("satellite", folder, *PLANE)
+    assert done.exit_code == 0, done.output
+    assert "unstable" in done.output
+    return folder
+
+
+def test_the_satellites_plane_keeps_the_papers_conditions(plane: Path) -> None:
+    """Stable by Lagrange's theorem (K > 0) needs alpha > 0 and gamma > p2, two of the paper's conditions (5)."""
+    found = rows(plane)
+    assert len(found) == 1200
+    stable = [row for row in found if row["verdict"] == "stable"]
+    assert stable
+    assert all(float(row["alpha"]) > 0 and float(row["gamma"]) > 0.2 and row["unstable_roots"] == "0" for row in stable)
+    assert all(int(row["unstable_roots"]) > 0 for row in found if row["verdict"] == "unstable")
+    content = told(plane)
+    assert sum(one["count"] for one in content["shares"]) == content["points"] == 1200
+    assert content["stable"]["count"] == len(stable)
+    assert content["stable"]["interval"] is None  # a grid is no random sample
+    assert (plane / "sweep.png").stat().st_size > 1000
+
+
+def test_shards_and_what_was_interrupted_give_the_same_bytes(plane: Path, tmp_path: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr("mbsym.sweeps.sweep.chunks.__defaults__", (100,))
+    for number in (2, 1):
+        done = sweep("satellite", tmp_path, *PLANE, "--shard", f"{number}/2", "--jobs", "1")
+        assert done.exit_code == 0
+        assert not (tmp_path / "sweep.csv").exists()
+    kept = sorted((tmp_path / "chunks").iterdir())
+    assert len(kept) == 12
+    kept[3].write_bytes(kept[3].read_bytes()[:-20])  # a disk that lost something
+    before = kept[0].stat().st_mtime_ns
+    assert sweep("satellite", tmp_path, *PLANE).exit_code == 0
+    assert (tmp_path / "sweep.csv").read_bytes() == (plane / "sweep.csv").read_bytes()
+    assert kept[0].stat().st_mtime_ns == before  # and nothing else was measured again
+
+
+def test_another_request_reads_no_chunks_of_this_one(tmp_path: Path) -> None:
+    small = ["-v", "alpha=-0.9:0.9:5", "-v", "gamma=-0.9:0.9:5", "-s", "p1=2/5", "--format", "csv", "-s"]
+    assert sweep("satellite", tmp_path, *small, "p2=1/5").exit_code == 0
+    first = rows(tmp_path)
+    assert sweep("satellite", tmp_path, *small, "p2=4/5").exit_code == 0
+    assert rows(tmp_path) != first
+    assert len(list((tmp_path / "chunks").iterdir())) == 2
+
+
+def test_frequencies_are_those_of_the_closed_formulas(tmp_path: Path) -> None:
+    """A spring pendulum: sqrt(k/m) along the spring, sqrt(g/(l0 + m g/k)) across."""
+    done = sweep("spring-pendulum", tmp_path, "-v", "m=1 +- 20%", "-v", "k=+-10%", "--points", "50", "-m", "frequency")
+    assert done.exit_code == 0, done.output
+    for row in rows(tmp_path):
+        m, k = float(row["m"]), float(row["k"])
+        wanted = sorted([sqrt(k / m), sqrt(9.81 / (1 + m * 9.81 / k))])
+        assert [float(row["frequency1"]), float(row["frequency2"])] == pytest.approx(wanted, rel=1e-9)
+        assert (0.8 <= m <= 1.2, 36 <= k <= 44) == (True, True)
+
+
+def test_a_formula_of_parameters_and_symbols(tmp_path: Path) -> None:
+    done = sweep("satellite", tmp_path, "-v", "Jx=2:3:5", "-m", "alpha + 2*Jx", "--format", "csv")
+    assert done.exit_code == 0, done.output
+    for row in rows(tmp_path):  # alpha = (c - b)/a = (Jz - Jx)/Jy
+        jx = float(row["Jx"])
+        assert float(row["value"]) == pytest.approx((2.3 - jx) / 1.2 + 2 * jx, rel=1e-12)
+
+
+def test_motions_are_simulated(tmp_path: Path) -> None:
+    """Small swings of a pendulum: the angle is theta0 cos(w t) but for theta0^2/16 of its frequency."""
+    options = ["-v", "theta=1/1000:2/1000:3", "-m", "simulate:theta", "--time", "3", "--format", "csv"]
+    done = sweep("spring-pendulum", tmp_path, *options, "-s", "l0=1")
+    assert done.exit_code == 0, done.output
+    for row in rows(tmp_path):
+        assert abs(float(row["least"])) <= 1.1 * float(row["theta"])
+        assert float(row["least"]) < float(row["final"]) <= float(row["greatest"])
+
+
+def test_the_probability_that_is_told_covers_the_true_one(tmp_path: Path) -> None:
+    """Ziegler's undamped pendulum flutters above P = (7/2 - sqrt 2) k/l: of P uniform on (0, 4) 52.1447 % are below."""
+    done = sweep("ziegler", tmp_path, "-v", "P=uniform(0, 4)", "--points", "20000", "--format", "csv,png", "-s", "k=1")
+    assert done.exit_code == 0, done.output
+    shares = {one["word"]: one for one in told(tmp_path)["shares"]}
+    unstable = shares["unstable"]["interval"]
+    assert unstable["low"] < 1 - (3.5 - sqrt(2)) / 4 < unstable["high"]
+
+
+def test_parquet_holds_the_same(plane: Path, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert sweep("satellite", tmp_path, *PLANE, "--format", "parquet").exit_code == 0
+    found = parquet.read_table(tmp_path / "sweep.parquet").to_pylist()
+    wanted = rows(plane)
+    assert [row["verdict"] for row in found] == [row["verdict"] for row in wanted]
+    assert [row["alpha"] for row in found] == [float(row["alpha"]) for row in wanted]
+
+
+def test_every_complaint_comes_at_once_and_nothing_is_written(tmp_path: Path) -> None:
+    folder = tmp_path / "none"
+    options = ["-v", "q=1:2:3", "-v", "m=2:1", "-s", "k=sqrt(2)", "-m", "frequencie", "--shard", "4/3", "--time", "2"]
+    done = sweep("spring-pendulum", folder, *options, "--format", "cvs", "--points", "1")
+    assert done.exit_code == 2
+    for code in ("unknown-name", "bad-variation", "bad-number", "unknown-format", "conflicting-options"):
+        assert f"[{code}]" in done.stderr, code
+    assert "did you mean 'frequency'?" in done.stderr
+    assert "4" in done.stderr
+    assert not folder.exists()
+
+
+def test_what_a_relation_gives_does_not_vary(tmp_path: Path) -> None:
+    done = sweep("satellite", tmp_path / "none", "-v", "nu=1:2:3", "-v", "alpha=0:1:3")
+    assert done.exit_code == 2
+    assert "nu = omega0**2*R**3" in done.stderr
