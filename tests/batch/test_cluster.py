@@ -129,3 +129,13 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
     done = CliRunner().invoke(main, [*words, "local"])
     assert done.exit_code == 2
     assert "pip install 'mbsym[cluster]'" in done.stderr
+
+
+def test_a_sweep_on_workers_gives_the_bytes_of_one_here(cluster: Here) -> None:
+    common = ["sweep", "systems/ziegler-damped.yaml", "-v", "P=0.1:4:20", "-v", "b1=0.1:1:10", "--format", "csv", "-q"]
+    here, there = cluster.folder / "here", cluster.folder / "there"
+    root = str(Path(__file__).parents[2])
+    for folder, more in ((here, []), (there, ["--cluster", cluster.address])):
+        done = subprocess.run([*MBSYM, *common, "--out", str(folder), *more], cwd=root, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert (here / "sweep.csv").read_bytes() == (there / "sweep.csv").read_bytes()
