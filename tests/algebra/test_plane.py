@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import Any
 
@@ -15,12 +16,12 @@ from mbsym.algebra.plane import (
     Budget,
     Corner,
     CornerKind,
-    Point,
     Region,
     decompose,
     decompose_line,
     decomposition,
 )
+from mbsym.algebra.plane.laws import Law, breaches, euler
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.stacks import Fibre
 
@@ -64,40 +65,6 @@ PICTURES = {
 }
 
 
-def euler(found: Arrangement) -> bool:
-    """V - E + F = 1 + C of the graph of arcs, corners and the rim of the box; a closed arc has a vertex of its own."""
-    box = found.box
-    parent: dict[object, object] = {}
-
-    def root(key: object) -> object:
-        while parent.setdefault(key, key) != key:
-            key = parent[key]
-        return key
-
-    ends = [found.locate(x, y) for x in (box.x0, box.x1) for y in (box.y0, box.y1)]
-    on_rim = {corner.id for corner in found.corners if is_on_rim(box, corner.point)}
-    plain_ends = sum(not isinstance(end, Corner) for end in ends)
-    for corner in found.corners:
-        parent[root(corner.id)] = root("rim") if corner.id in on_rim else root(corner.id)
-    closed = 0
-    for arc in found.arcs:
-        if arc.corners == (None, None):
-            closed += 1
-        else:
-            parent[root(arc.corners[0])] = root(arc.corners[1])
-    components = len({root(key) for key in ["rim", *range(len(found.corners))]}) + closed
-    vertices = len(found.corners) + plain_ends + closed
-    edges = len(found.arcs) + len(on_rim) + plain_ends - sum(None in arc.regions for arc in found.arcs)
-    return vertices - edges + len(found.regions) + 1 == 1 + components
-
-
-def is_on_rim(box: Box, point: Point) -> bool:
-    return any(
-        isinstance(value, fmpq) and value in edges
-        for value, edges in ((point.x, (box.x0, box.x1)), (point.y, (box.y0, box.y1)))
-    )
-
-
 def agrees(found: Arrangement, points: list[tuple[Any, Any]]) -> bool:
     """Whether every point has the signs of the place that it is located at."""
     for x, y in points:
@@ -125,12 +92,8 @@ def test_pictures(name: str) -> None:
     found = decompose(factors, BOX)
     inner = [corner for corner in found.corners if corner.kind is not CornerKind.EDGE]
     assert (len(found.regions), len(found.arcs), len(inner)) == (regions, arcs, corners)
-    assert euler(found)
+    assert not breaches(found)
     assert agrees(found, points(Random(name), 40))
-    for arc in found.arcs:
-        assert {k for k, s in enumerate(found.signs_at(arc.point)) if s == 0} == set(arc.factors)
-    for corner in found.corners:
-        assert {k for k, s in enumerate(found.signs_at(corner.point)) if s == 0} == set(corner.factors)
 
 
 def random_curve(source: Random) -> Any:
@@ -161,7 +124,7 @@ def test_random_products(seed: int) -> None:
     if seed % 3 == 0:
         factors.append(factors[0] * random_curve(source))
     found = decompose(factors, BOX)
-    assert euler(found)
+    assert not breaches(found)
     assert agrees(found, points(source, 60))
     for region in found.regions:
         here = found.locate(*region.sample)
@@ -248,3 +211,22 @@ def test_line_with_a_zero_at_its_lower_end() -> None:
         decompose_line([T], 1, 1)
     with pytest.raises(ValueError, match="zero"):
         decompose_line([T - T], 0, 1)
+
+
+@pytest.mark.parametrize("name", ["circle", "node", "two lines", "tangent circles", "edges of the box"])
+def test_planted_mistakes_break_laws(name: str) -> None:
+    """A corner, an arc or a region left out, a wrong sign, a wrong polynomial."""
+    found = decompose(PICTURES[name][0], BOX)
+    assert not breaches(found)
+
+    def laws(**changed: Any) -> set[Law]:
+        return {breach.law for breach in breaches(replace(found, **changed))}
+
+    assert Law.EULER in laws(regions=(*found.regions, found.regions[0]))
+    assert laws(arcs=found.arcs[:-1])
+    for corner in found.corners:
+        assert Law.ENDS in laws(corners=tuple(other for other in found.corners if other.id != corner.id))
+    if all(None not in arc.regions for arc in found.arcs):
+        turned = replace(found.regions[0], signs=tuple(-s for s in found.regions[0].signs))
+        assert Law.SIDES in laws(regions=(turned, *found.regions[1:]))
+    assert Law.ZEROS in laws(arcs=(replace(found.arcs[0], factors=()), *found.arcs[1:]))
