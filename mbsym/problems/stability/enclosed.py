@@ -130,11 +130,13 @@ def eigenvalues(m: Rows, c: Rows, k: Rows, following: Sequence[int] = ()) -> tup
 
 def _mirrored(roots: Sequence[Any]) -> bool:
     """Whether every root lies on the imaginary axis, for a spectrum that is symmetric about it."""
-    for root in roots:
-        image = -root.conjugate()
-        if not root.overlaps(image) or any(image.overlaps(other) for other in roots if other is not root):
-            return False
-    return True
+    return all(on_axis(root, roots) for root in roots)
+
+
+def on_axis(root: Any, roots: Sequence[Any]) -> bool:
+    """Whether an isolated root lies on the imaginary axis, for a spectrum that is symmetric about it."""
+    image = -root.conjugate()
+    return bool(root.overlaps(image)) and not any(image.overlaps(other) for other in roots if other is not root)
 
 
 def _positive(rows: Rows) -> bool:

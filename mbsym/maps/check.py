@@ -1,0 +1,265 @@
+"""A map checked by another route: more random rational points in every cell, judged without boundary polynomials.
+
+In every cell of every stack (a region is made of several) a random rational point is taken, or several where there are
+few cells (spread by Halton's sequence), and there
+
+* the exact judge has to give the verdict and the counts that the region has: a boundary that was lost, or a region
+  joined wrongly, shows in another verdict;
+* eigenvalues of the numbers' own pencil, enclosed in balls, have to allow the counts: neither the characteristic
+  polynomial nor Sturm's chains nor any condition takes part;
+* the signs of the boundary polynomials have to be those of the region, and as many branches as in the whole strip to
+  lie over the abscissa.
+
+On every arc a second exact point has to have the verdict of the arc.  The laws of arrangements (``plane.laws``) are
+checked besides: Euler's finds corners that were missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+from flint import acb_mat, arb_mat, ctx, fmpq
+
+from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
+from mbsym.algebra.plane.laws import Breach, breaches
+from mbsym.algebra.plane.line import Line
+from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign
+from mbsym.algebra.plane.points import Point
+from mbsym.algebra.plane.projection import nothing
+from mbsym.algebra.plane.stacks import column
+from mbsym.maps.on_curves import ExactVerdicts
+from mbsym.maps.section import Section
+from mbsym.maps.verdicts import Judged, verdict_at
+from mbsym.problems.stability.enclosed import eigenvalues, on_axis
+from mbsym.problems.stability.exact import RationalPoint, evaluated
+from mbsym.problems.stability.linear_form import LinearSystem
+
+#: In maps of few cells every cell is tried more than once, until so many points are.
+FEWEST = 96
+#: Binary digits of the enclosures; where they leave a count open, twice as many, up to the second number.
+BITS, MOST_BITS = 128, 1024
+
+
+class Mistake(StrEnum):
+    """What does not agree."""
+
+    VERDICT = "another verdict at a second point"
+    COUNT = "other counts of roots or eigenvalues at a second point"
+    BALLS = "counts that enclosures of the eigenvalues exclude"
+    SIGNS = "other signs of the boundary polynomials at a second point"
+    BRANCHES = "another number of branches over a second abscissa"
+    LAW = "a law of arrangements"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A disagreement in a region or on an arc, at about ``near``; of a law, ``breach`` says which."""
+
+    mistake: Mistake
+    region: int | None = None
+    arc: int | None = None
+    near: tuple[float, ...] = ()
+    breach: Breach | None = None
+
+
+@dataclass(frozen=True)
+class Check:
+    """``points`` were tried in cells, ``arcs`` on arcs; at ``enclosed`` of the points balls decided all counts."""
+
+    points: int
+    arcs: int
+    enclosed: int
+    findings: tuple[Finding, ...]
+
+    @property
+    def holds(self) -> bool:
+        return not self.findings
+
+
+Verdicts = Sequence[Judged | None]  # None: no verdict is asked for there
+
+
+def check(
+    section: Section,
+    found: Arrangement | Line,
+    regions: Verdicts,
+    arcs: Verdicts = (),
+    seed: int = 20261122,
+    progress: Callable[[str, int, int], None] = nothing,
+) -> Check:
+    """Every cell of a map by another route; ``regions`` and ``arcs`` are the verdicts that are to be confirmed.
+
+    Of a line the regions are its intervals.
+    """
+    one = _Checking(section, Random(seed))
+    if isinstance(found, Line):
+        count = len(found.intervals)
+        for at, interval in enumerate(found.intervals * (1 + FEWEST // count)):
+            progress("check", at, max(FEWEST, count))
+            first, last = interval.ends
+            below = found.low if first is None else found.zeros[first].number
+            above = found.high if last is None else found.zeros[last].number
+            x = one.between(below, above, one.share(2, at // count, (at % count, 0)))
+            one.region(interval.id, regions[interval.id], (x,), interval.signs, found.factors)
+        return one.result()
+    one.findings += [Finding(Mistake.LAW, arc=x.arc, breach=x) for x in breaches(found)]
+    cells = sum(len(each.sections) - 1 for each in found.columns)
+    strips = [*range(len(found.columns))] * (1 + FEWEST // cells)
+    for at, strip in enumerate(strips):
+        progress("check", at, len(strips))
+        one.strip(found, strip, regions, at // len(found.columns))
+    for arc, judged in zip(found.arcs, arcs, strict=False):
+        if judged is not None:
+            one.arc(found, arc, judged)
+    progress("check", len(strips), len(strips))
+    return one.result()
+
+
+class _Checking:
+    def __init__(self, section: Section, source: Random) -> None:
+        self.section, self.source = section, source
+        self.findings: list[Finding] = []
+        self.points = self.arcs = self.enclosed = 0
+        self._exact: ExactVerdicts | None = None
+        self._starts: dict[tuple[int, int, int], int] = {}
+
+    def result(self) -> Check:
+        return Check(self.points, self.arcs, self.enclosed, tuple(self.findings))
+
+    def share(self, base: int, at: int, key: tuple[int, int]) -> Rational:
+        """Element ``at`` of a sequence that fills (0, 1) evenly from a random start, which belongs to a ``key``."""
+        start = self._starts.setdefault((base, *key), self.source.randint(1, 996))
+        found, weight = 0, 1
+        while at:
+            weight *= base
+            found, at = found * base + at % base, at // base
+        whole = (fmpq(found, weight) * 997).floor()
+        return fmpq((start + int(whole) - 1) % 996 + 1, 997)
+
+    def between(self, below: Any, above: Any, share: Rational) -> Rational:
+        """A rational number strictly between two exact ones."""
+        middle = between_simply(below, above)  # their intervals do not touch any more
+        a, b = high(below), low(above)
+        x = a + (b - a) * share
+        return middle if x in (a, b) else x
+
+    def strip(self, found: Arrangement, strip: int, regions: Verdicts, at: int) -> None:
+        """A point in each cell of a strip, over one abscissa, for the time ``at``."""
+        left, right = (found.fibres[strip + k].abscissa.x for k in (0, 1))
+        x = self.between(left, right, self.share(2, at, (strip, -1)))
+        there = column(found.curves, found.box, x)
+        expected = found.columns[strip].sections
+        if [one.curve for one in there.sections] != [one.curve for one in expected]:
+            self.findings.append(Finding(Mistake.BRANCHES, near=(float(x),)))
+            return
+        for cell in range(len(expected) - 1):
+            y = self.between(there.sections[cell].y, there.sections[cell + 1].y, self.share(3, at, (strip, cell)))
+            region = found.places.cells[strip, cell]
+            self.region(region, regions[region], (x, y), found.regions[region].signs, found.factors)
+
+    def region(
+        self,
+        number: int,
+        judged: Judged | None,
+        point: tuple[Rational, ...],
+        signs: tuple[int, ...],
+        factors: Sequence[Any],
+    ) -> None:
+        """One more point of a region or interval."""
+        self.points += 1
+        wrong: list[Mistake] = []
+        if tuple(sign(p(*point)) for p in factors) != signs:
+            wrong.append(Mistake.SIGNS)
+        if judged is not None:
+            wrong += _differences(verdict_at(self.section, point), judged)
+            agrees, decided = self._enclosed(point, judged)
+            self.enclosed += decided
+            if not agrees:
+                wrong.append(Mistake.BALLS)
+        near = tuple(map(float, point))
+        self.findings += [Finding(mistake, region=number, near=near) for mistake in wrong]
+
+    def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:
+        """A second exact point of an arc."""
+        self.arcs += 1
+        point = self._second(found, arc, self.source.choice(arc.pieces))
+        if self._exact is None:
+            self._exact = ExactVerdicts(self.section)
+        wrong = _differences(self._exact(point), judged)
+        self.findings += [Finding(mistake, arc=arc.id, near=point.floats()) for mistake in wrong]
+
+    def _second(self, found: Arrangement, arc: Arc, piece: Piece) -> Point:
+        fibre = found.fibres[piece.strip]
+        if piece.vertical:
+            below, above = (fibre.points[piece.section + k].y for k in (0, 1))
+            return Point(fibre.abscissa.x, self.between(below, above, fmpq(1, 3)))
+        x = between_simply(fibre.abscissa.x, found.fibres[piece.strip + 1].abscissa.x)
+        x = (x + (fibre.abscissa.x if isinstance(fibre.abscissa.x, fmpq) else high(fibre.abscissa.x))) / 2
+        return Point(x, sample_of(column(found.curves, found.box, x).sections[piece.section].y))
+
+    def _enclosed(self, point: tuple[Rational, ...], judged: Judged) -> tuple[bool, bool]:
+        """(whether balls allow the counts, whether they decide them)"""
+        bits = BITS
+        known: list[tuple[Range, Range]] = []
+        while len(known) < len(self.section.parts):
+            if bits > MOST_BITS:
+                return True, False
+            with ctx.workprec(bits):
+                ranges = [_counted(part, point) for part in self.section.parts]
+            known = [one for one in ranges if one is not None]
+            bits *= 2
+        agrees, decided = True, True
+        for k, value in enumerate((judged.right, judged.degree)):
+            least, most = sum(one[k][0] for one in known), sum(one[k][1] for one in known)
+            agrees &= value is None or least <= value <= most
+            decided &= least == most
+        return agrees, decided
+
+
+def _differences(there: Judged, judged: Judged) -> list[Mistake]:
+    """How a verdict at a second point differs; how many of the roots to the right are real may change in a region."""
+    wrong = []
+    if there.verdict.word is not judged.verdict.word:
+        wrong.append(Mistake.VERDICT)
+    if (there.right, there.degree, there.null) != (judged.right, judged.degree, judged.null):
+        wrong.append(Mistake.COUNT)
+    return wrong
+
+
+Range = tuple[int, int]
+
+
+def _counted(part: LinearSystem, point: Sequence[Rational]) -> tuple[Range, Range] | None:
+    """((least, most) roots to the right, the same of negative eigenvalues of K) of a part, by balls.
+
+    None where eigenvalues cannot be enclosed.
+    """
+    at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
+    m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
+    try:
+        roots, simple = eigenvalues(
+            arb_mat(m).tolist(), arb_mat(d + g).tolist(), arb_mat(k + n).tolist(), part.following
+        )
+    except ZeroDivisionError:
+        return None
+    stiffness = _spectrum(k)
+    if roots is None or stiffness is None:
+        return None
+    least, most = sum(bool(x.real > 0) for x in roots), sum(not x.real < 0 for x in roots)
+    symmetric = part.nonholonomic is None and all(x == 0 for rows in (d, n) for x in rows.entries())
+    if symmetric and simple:
+        most -= sum(1 for x in roots if x.real.contains(0) and on_axis(x, roots))
+    return (least, most), (sum(bool(x < 0) for x in stiffness), sum(not x > 0 for x in stiffness))
+
+
+def _spectrum(matrix: Any) -> list[Any] | None:
+    """Balls around the eigenvalues of a matrix with real ones, as real balls."""
+    try:
+        return [x.real for x in acb_mat(matrix).eig(multiple=True)]
+    except ValueError:
+        return None
