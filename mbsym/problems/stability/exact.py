@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, Protocol
@@ -205,6 +205,7 @@ class RationalPoint:
     """Rational parameter values {index of the generator: value}."""
 
     point: Mapping[int, Fraction]
+    _known: dict[int, tuple[Any, ...]] = field(default_factory=dict, repr=False)
 
     @property
     def matrix(self) -> Any:
@@ -212,11 +213,19 @@ class RationalPoint:
 
     def value(self, entry: Polynomial) -> Any:
         """Raises ValueError where a parameter that occurs has no value."""
+        if entry.is_constant():
+            return fmpq(entry.leading_coefficient()) if entry else fmpq(0)
         context = entry.context()
         missing = [i for i in occurring([entry]) if i not in self.point]
         if missing:
             raise ValueError(f"no value for {', '.join(context.names()[i] for i in missing)}")
-        return fmpq(entry(*(rational(self.point.get(i, 0)) for i in range(context.nvars()))))
+        return fmpq(entry(*self._of(context.nvars())))
+
+    def _of(self, count: int) -> tuple[Any, ...]:
+        """Values of all generators, 0 for those that do not occur."""
+        if count not in self._known:
+            self._known[count] = tuple(rational(self.point.get(i, 0)) for i in range(count))
+        return self._known[count]
 
     def settled(self, entry: Polynomial) -> Polynomial:
         return entry.context().constant(self.value(entry))
