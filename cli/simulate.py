@@ -19,6 +19,7 @@ from mbsym_cli.simulation_inputs import input_options
 from mbsym_cli.simulation_many import Many, many_options
 from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
 from mbsym_cli.simulation_request import Flags
+from mbsym_cli.simulation_variables import variables_options
 
 
 @click.command("simulate")
@@ -32,6 +33,7 @@ from mbsym_cli.simulation_request import Flags
 @watch_options
 @continue_options
 @closing_options
+@variables_options
 @output_options
 def command(file: Path, span: Span, way: Way, many: Many, output: Output, **further: Group) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
@@ -71,6 +73,9 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
     its method and tolerance unless others are given; the table holds the rows of both (in float64).  Steps begin anew
     there: the numbers are those of one run in one go within the tolerance, or, where that run ended at the end of a
     step of fixed length, but for rounding.
+
+    Of a description with speeds these are integrated, and unit vectors or a quaternion in place of angles, so that no
+    angle is singular: they are the columns, and the names in conditions.  --variables coordinates takes coordinates.
 
     With constraints the initial state is the closest one to what is given that satisfies them; --fixed q1,q1_dot keeps
     values.  Every row is led back to them; trajectory.csv has their drift.  A loop that cannot be closed: exit code 3.

@@ -22,6 +22,7 @@ from mbsym_cli.simulation_options import Group
 from mbsym_cli.simulation_request import Flags, check_held, read_request
 from mbsym_cli.simulation_run import run
 from mbsym_cli.simulation_together import carried, complain_of_names, complain_of_pairs, typed_options
+from mbsym_cli.simulation_variables import Variables, check_states
 
 
 def simulated(
@@ -43,14 +44,18 @@ def simulated(
     laws = read_laws(further["driven"], system, asked)
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws)
     system = system if given is None else given.system
+    variables = further["variables"]
+    assert isinstance(variables, Variables)
+    seen = variables.seen(system)
     wanted = read_request(system, texts, flags, asked)
     for group in further.values():
-        wanted = replace(wanted, request=group.added(wanted.request, system, asked))
+        wanted = replace(wanted, request=group.added(wanted.request, seen, asked))
     wanted = replace(wanted, request=going_on(wanted.request, begun_at(given, wanted.request), typed, asked))
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, typed, asked)
     wanted = with_goal(further["choosing"], system, wanted, settings, typed, carried(context), asked)
     check_constrained(system, wanted, many, asked)
+    check_states(seen, wanted, many, asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)

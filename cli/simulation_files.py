@@ -51,16 +51,18 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     from mbsym.report.certificate import enclosure_csv
     from mbsym.report.constrained_run_words import drift_columns
     from mbsym.report.simulation_json import simulation_json
+    from mbsym.report.state_run_words import norm_columns
     from mbsym.report.trajectory_csv import trajectory_parts
 
     mark = "" if run.whole else "-partial"
     files: dict[str, Content] = {}
     table: Hashed | None = None
     if "csv" in asked.formats:
-        further = run.speeds | {kept.column: kept.values for kept in run.invariants}
-        units: dict[str, str | None] = {name: unit_of(run.system, name) for name in run.speeds}
+        shown = {} if run.dynamics.in_states else run.speeds  # they are columns already
+        further = shown | {kept.column: kept.values for kept in run.invariants}
+        units: dict[str, str | None] = {name: unit_of(run.system, name) for name in shown}
         units |= {kept.column: kept.unit for kept in run.invariants}
-        drifts = drift_columns(run)
+        drifts = {**drift_columns(run), **norm_columns(run)}
         further, units = further | dict(drifts), units | dict.fromkeys(drifts, "")
         table = Hashed(trajectory_parts(run.trajectory, further, units))
         files[f"trajectory{mark}.csv"] = table
@@ -154,8 +156,10 @@ def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.report.figures import figures
 
     found = run.trajectory
-    rates = accelerations(run.dynamics, found.times, found.states)
     conserved = run.conservation.standing.conserved is True
+    if run.dynamics.in_states:
+        return figures(found, kinds, note(found), conserved)
+    rates = accelerations(run.dynamics, found.times, found.states)
     return figures(found, kinds, note(found), conserved, rates) | _motion(run, kinds, rates)
 
 

@@ -55,6 +55,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
         invariant_line,
         warnings,
     )
+    from mbsym.report.state_run_words import state_lines
 
     found, chosen, request = run.trajectory, run.chosen, run.request
     if run.plan is not None:
@@ -86,6 +87,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     rejected = f" ({work.rejected} rejected)" if work.rejected else ""
     yield "work", f"{counted(work.steps, 'step', 'steps')}{rejected}, {evaluations}{jacobians}, {found.seconds:.3g} s"
     yield from constraint_lines(run)
+    yield from state_lines(run)
     yield from events_lines(run)
     if switches := switch_line(found.passed):
         yield "switches", switches
@@ -121,17 +123,18 @@ def _method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     if setting.step is None:
         how = f"tolerance {setting.tolerance:g} per step"
     else:
-        how = f"step {setting.step:g}" + _between(chosen.times, setting.step)
+        how = f"step {setting.step:g}" + _between(chosen.times, setting.step, run.dynamics.in_states)
     longest = f", steps up to {setting.longest:g}" if setting.longest is not None else ""
     yield "setting", f"{how}{longest}, {request.arithmetic}"
 
 
-def _between(times: Any, step: float) -> str:
+def _between(times: Any, step: float, in_states: bool) -> str:
     """How rows that no step ends at came about."""
     passed = np.asarray(times[: min(len(times) - 1, MOST_LOOKED_AT)]) / step
     if np.allclose(passed, np.round(passed), rtol=1e-12, atol=1e-6):
         return ""
-    return "; rows between the ends of steps by the polynomial that fits q, q', q'' there"
+    what = "the states and their rates" if in_states else "q, q', q''"
+    return f"; rows between the ends of steps by the polynomial that fits {what} there"
 
 
 def _rest_line(found: Reduced) -> str:

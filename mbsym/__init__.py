@@ -102,6 +102,7 @@ def simulate(
     axes: str = "",
     accuracy: float | Mapping[str, float] | None = None,
     inputs: Mapping[str, Fraction | float | str] | None = None,
+    variables: str = "declared",
 ) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
@@ -130,6 +131,10 @@ def simulate(
     ``inputs`` gives inputs of the description by name: numbers, or formulas in t, coordinates, velocities, parameters
     and tables such as ``"20*sin(3*t)"``; those left out are held at their values on the unperturbed motion.
 
+    Of a description with ``speeds`` its own variables are integrated: positions (unit vectors or a quaternion in place
+    of angles) and speeds, ``run.coordinates`` and ``run.velocities``; with ``variables="coordinates"``, as with an
+    ``accuracy``, coordinates and their velocities.
+
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
@@ -137,10 +142,14 @@ def simulate(
     from mbsym.numerics.scenario import scenario
 
     system = _analysis_of(source).system
+    if accuracy is not None:
+        variables = "coordinates"
+    seen = simulation.integrated_system(system, variables)
     request = simulation.Request(
         *(time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify),
-        events=simulation.read_watch(system, _several(events), _several(stop), section, axes),
+        events=simulation.read_watch(seen, _several(events), _several(stop), section, axes),
         longest=max_step,
+        variables=variables,
     )
     given = scenario(system, simulation.read_values(system, values or {}), laws=_laws(system, inputs))
     if accuracy is None:

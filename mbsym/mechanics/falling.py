@@ -86,7 +86,9 @@ def felt_accelerations(scene: Scene[S]) -> dict[str, Vector[S]]:
 def falling_scene(scene: Scene[S]) -> Scene[S]:
     """The same system seen from its falling frames: their origins are at rest and their weight is gone."""
     frames = frozenset(falling_frames(scene.system))
-    return Scene(scene.system, scene.algebra, scene.environment, scene.ring, scene.frozen, falling=frames)
+    return Scene(
+        scene.system, scene.algebra, scene.environment, scene.ring, scene.frozen, falling=frames, given=scene.given
+    )
 
 
 def relative_lagrangian(scene: Scene[S]) -> tuple[S, S]:

@@ -85,7 +85,7 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
     setting = Setting(tolerance=tolerance)
     best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
     first = least
-    for name in IMPLICIT[: 1 if dynamics.constraints is not None else None]:
+    for name in IMPLICIT[: 1 if dynamics.correction is not None else None]:
         seconds = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
         if seconds is not None and seconds < least:
             best, least = METHODS[name], seconds

@@ -27,6 +27,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
 from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.states import InStates
 from mbsym.model.system import velocity_name
 from mbsym.numerics.kernels.cells import place_of, value_of
 from mbsym.numerics.kernels.interface import FLOAT64, Code
@@ -74,6 +75,8 @@ def states_about(given: Scenario, inputs: Sequence[str]) -> list[list[float]] | 
     None for inputs that a scenario does not have.
     """
     system = given.system
+    if isinstance(system, InStates):
+        return None
     state = map(float, (*given.positions, *given.velocities))
     start = dict(zip((*system.coordinates, *system.velocities), state, strict=True)) | {"t": 0.0}
     start |= {name: value_of(name) for name in inputs if place_of(name) is not None}

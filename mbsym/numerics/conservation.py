@@ -26,6 +26,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.mechanics.energy_rate import EnergyRate
 from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.balls import enclosures
@@ -118,6 +119,9 @@ def energy_standing(
     time of the run).  The balls are of the formula itself, so one without zero is a power, however small.
     """
     rate = dynamics.energy_rate
+    if dynamics.in_states:
+        proved = not rate.terms or _vanishes(dynamics, rate)
+        return (Standing.PROVED, None) if proved else standing(dynamics, dynamics.relative_energy, 0, points, (), near)
     if dynamics.constraints is not None and not dynamics.constraints.steady:
         return on_constraints(dynamics, [*dynamics.energy_power.outputs, *dynamics.constraint_power.outputs], points)
     if not rate.terms or not dynamics.energy_power.outputs or _vanishes(dynamics, rate):
@@ -148,10 +152,11 @@ def _ball(value: Fraction) -> arb:
 
 def _vanishes(dynamics: Dynamics, rate: EnergyRate) -> bool:
     """Whether dh/dt is zero in the ring, for all values of the parameters."""
-    ring = ring_of(dynamics.system)
+    system = described(dynamics.system).without_speeds
+    ring = ring_of(system)
     ring.limit_work(PROOF_STEPS)
     try:
-        terms = rate.program.evaluate(rate.terms, ring_environment(dynamics.system, ring), ring)
+        terms = rate.program.evaluate(rate.terms, ring_environment(system, ring), ring)
         return ring.is_zero(ring.reduce(sum(terms, ring.zero))) is True
     except Failure:
         return False
@@ -168,9 +173,9 @@ def standing(
     terms = [slopes[0], *(program.product(slope, rate) for slope, rate in moving)]
     if dynamics.constraints is not None:
         return on_constraints(dynamics, terms, points)
-    whole = Code(program, dynamics.inputs, tuple(terms))
+    whole, exactly = Code(program, dynamics.inputs, tuple(terms)), dynamics.exactly
     return judged(
-        dynamics, lambda state: enclosures(whole, state, BITS), points, 0.0, rounded=True, held=held, near=near
+        dynamics, lambda state: enclosures(whole, exactly(state), BITS), points, 0.0, rounded=True, held=held, near=near
     )
 
 
@@ -227,7 +232,8 @@ def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
     """States near the initial one: dyadic numbers, so that lengths stay lengths and roots stay real; ``held`` rest."""
     random = Random(1)
     start = [float(x) for x in dynamics.scenario.state]
-    free = [name not in held for name in dynamics.system.coordinates] * 2
+    names = dynamics.system.coordinates
+    free = [True] * len(start) if dynamics.in_states else [name not in held for name in names] * 2
     found = []
     for _ in range(BESIDE):
         time, *parts = random.randint(0, 1024) / 256, *(random.randint(-64, 64) / 256 for _ in start)

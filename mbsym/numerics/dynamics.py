@@ -45,6 +45,9 @@ class Dynamics:
     With ``apart``, bodies that are welded to others are not lumped into them: more operations for the same motion.
     """
 
+    #: Whether what is integrated are the variables that the description declares (``mbsym.numerics.states``).
+    in_states = False
+
     def __init__(self, scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> None:
         self.scenario = scenario
         self.system: System = scenario.system
@@ -53,6 +56,15 @@ class Dynamics:
         self.size = len(self.system.coordinates)
         self.apart = apart
         self._on_sides: dict[int | None, Frozen] = {}
+
+    @property
+    def dimension(self) -> int:
+        """How many numbers a state has: q and q'."""
+        return 2 * self.size
+
+    def exactly(self, point: Sequence[Any]) -> Sequence[Any]:
+        """(t, q, q') of the model itself beside a point of a run, which has been rounded: it itself."""
+        return point
 
     @cached_property
     def _programs(self) -> Programs:
@@ -276,9 +288,19 @@ class Frozen(Dynamics):
         self._lengths = [0 if curve is None else 2 * (1 + len(curve.polynomials[0])) for curve in curves]
         self.cells = Cells(len(curves) + sum(self._lengths))
         self.inputs, self.size = whole.inputs, whole.size  # a state may go on behind (q, q')
+        self.in_states = whole.in_states
         # One program: what stands under a sign is known by its number there.
-        self.__dict__["_specialised"], self.__dict__["_programs"] = whole._specialised, whole._programs
+        self.__dict__["_specialised"] = whole._specialised
+        if not whole.in_states:
+            self.__dict__["_programs"] = whole._programs
         self.__dict__["constraints"] = whole.constraints
+        if whole.in_states:
+            self.__dict__["correction"], self.__dict__["pivots"] = whole.correction, whole.pivots
+
+    @property
+    def dimension(self) -> int:
+        """As many as in the whole."""
+        return self.whole.dimension
 
     def take(self, sides: Sequence[int]) -> None:
         """These sides from now on."""

@@ -33,7 +33,8 @@ class Part:
 def separated(dynamics: Dynamics) -> tuple[Part, ...]:
     """The parts of a scenario in the order of their first coordinates; one, the whole, where all hang together."""
     n, names = dynamics.size, dynamics.system.coordinates
-    if dynamics.constraints is not None:  # constraints may link what the accelerations at some values do not
+    # Constraints may link what the accelerations at some values do not.
+    if dynamics.constraints is not None or dynamics.in_states:
         return (Part(names, tuple(range(2 * n)), dynamics),)
     linked = _linked(dynamics)
     if len(set(linked)) > 1:

@@ -48,8 +48,8 @@ def scaled(own: Any, usual: Any) -> Any:
 def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> Any:
     """What the scene would move each coordinate and each velocity by, shape (2n,); 0 where that is not known."""
     n = dynamics.size
-    if n > MOST_SCALED or not kinetic > 0 or not np.isfinite(kinetic):
-        return np.zeros(2 * n)
+    if dynamics.in_states or n > MOST_SCALED or not kinetic > 0 or not np.isfinite(kinetic):
+        return np.zeros(dynamics.dimension)
     chosen = np.linspace(0, len(times) - 1, min(16, len(times))).astype(int)
     states = np.asarray(states, dtype=float)
     whole = dynamics.mass_matrix

@@ -19,6 +19,7 @@ from matplotlib.transforms import ScaledTranslation
 from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.quantities import energy_unit, time_unit, unit_of
+from mbsym.model.states import InStates
 from mbsym.model.system import System
 from mbsym.numerics.between import between
 from mbsym.numerics.simulate import Trajectory
@@ -54,7 +55,8 @@ def figures(
     with styled():
         images: dict[str, bytes] = {}
         # One page after the other: a hundred coordinates have fifty of them, and a page in memory is some 20 MB.
-        for stem, figure in chain(_histories(found, note), _planes(found, note, rates)):
+        pages = chain(_histories(found, note), _planes(found, note, rates))
+        for stem, figure in _variables(found, note) if isinstance(found.system, InStates) else pages:
             images |= saved(stem, figure, formats)
             figure.clear()  # a figure and its axes hold each other
         return images | saved("drift", _drift(found, note, conserved), formats)
@@ -108,6 +110,31 @@ def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
                 axis.plot(*thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
                 _label(axis, label)
                 axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
+        for axis in axes[-1]:
+            axis.set_xlabel(labelled("$t$", time_unit(system)))
+            _span(axis, found.times)
+        yield file, figure
+
+
+def _variables(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+    """Each variable of a run in declared ones over the time, positions, then speeds."""
+    system = found.system
+    states = (*system.coordinates, *system.velocities)
+    names, place = LatexNames(["t", *states]), {name: i for i, name in enumerate(states)}
+    for file, shown, page in _pages("histories", states, 2 * HISTORY_ROWS):
+        rows = -(-len(shown) // 2)
+        figure = _page(10, 1.0 + 1.75 * rows + (0.3 if note else 0), _title(system) + page, note)
+        axes = figure.subplots(rows, 2, squeeze=False, sharex=True)
+        left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
+        for axis, name in zip(axes.T.ravel(), shown, strict=False):
+            axis.plot(*thinned(found.times, found.states[place[name]]), color=BLUE)
+            symbol = names[name]
+            plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
+            label = plain if "mathtt" in symbol.stem else f"${symbol}$"
+            _label(axis, label + labelled("", unit_of(system, name)).replace(" ", "\n", 1))
+            axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
+        for axis in axes.T.ravel()[len(shown) :]:
+            axis.set_visible(False)
         for axis in axes[-1]:
             axis.set_xlabel(labelled("$t$", time_unit(system)))
             _span(axis, found.times)

@@ -34,9 +34,10 @@ def asked_motion(system: System) -> tuple[Motion | None, str]:
     from mbsym.report.animation import animation
     from mbsym.report.animation_page import run_motion
     from mbsym.simulation import Request, simulate
+    from mbsym.simulation.request import COORDINATES
 
     try:
-        run = simulate(scenario(system), Request(time))
+        run = simulate(scenario(system), Request(time, variables=COORDINATES))
     except (Incomplete, Failure) as reason:
         return None, str(reason)
     found = animation(run)

@@ -24,6 +24,7 @@ from mbsym.report.constrained_run_words import constraints_json
 from mbsym.report.events_json import events_json
 from mbsym.report.plan_words import model_json, plan_json
 from mbsym.report.simulation_words import conservation_json, error_json, laws_json
+from mbsym.report.state_run_words import states_json
 from mbsym.simulation import Simulation
 from mbsym.simulation.choosing import may_change
 from mbsym.source.meaning import meaning
@@ -85,7 +86,7 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         "plan": None if run.plan is None else plan_json(run.plan, run.request),
         **_changes(found),
     }
-    content |= constraints_json(run)
+    content |= constraints_json(run) | states_json(run)
     if run.certificate is not None:
         content["certificate"] = certificate_json(run.certificate, [*system.coordinates, *system.velocities])
     return json.dumps(_plain(content), indent=2, ensure_ascii=False) + "\n"

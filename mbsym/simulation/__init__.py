@@ -12,7 +12,7 @@
 
 from mbsym.simulation.request import TOLERANCE, Request, read_values
 from mbsym.simulation.result import Chosen, Kept, Simulation
-from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, simulate
+from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, integrated_system, simulate
 from mbsym.simulation.sampling import SAMPLES, sample_times
 from mbsym.simulation.watching import NoEvent, Watch, read_watch
 
@@ -30,6 +30,7 @@ __all__ = [
     "Request",
     "Simulation",
     "Watch",
+    "integrated_system",
     "read_values",
     "read_watch",
     "sample_times",

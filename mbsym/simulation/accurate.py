@@ -19,7 +19,7 @@ from mbsym.numerics.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
 from mbsym.numerics.plan_bounds import DOUBLED
 from mbsym.numerics.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
-from mbsym.simulation.request import Request, wrong_with
+from mbsym.simulation.request import COORDINATES, Request, wrong_with
 from mbsym.simulation.result import Simulation
 from mbsym.simulation.run import Stage, simulate
 from mbsym.simulation.sampling import sample_times
@@ -93,6 +93,7 @@ def simulate_accurately(
     tried: Callable[[str], None] = lambda text: None,
 ) -> Simulation:
     """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark."""
+    request = replace(request, variables=COORDINATES)
     with stage(PLANNING):
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
     found = simulate(scenario, settled, watch, stage)

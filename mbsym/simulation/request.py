@@ -22,6 +22,10 @@ from mbsym.simulation.watching import Watch
 TOLERANCE = {"float64": 1e-10, "float32": 1e-5, "extended": 1e-14}
 
 
+#: What is integrated of a system with speeds.
+DECLARED, COORDINATES = "declared", "coordinates"
+
+
 @dataclass(frozen=True)
 class Request:
     """What is asked for.
@@ -34,7 +38,9 @@ class Request:
     ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
     that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
     the rows where they are very many: the result then has some of them, and the table of all;
-    ``fixed``: coordinates and velocities whose initial values stay while others are fitted to constraints.
+    ``fixed``: coordinates and velocities whose initial values stay while others are fitted to constraints;
+    ``variables``: what is integrated where a description has speeds, these with unit vectors or a quaternion
+    (``declared``), or coordinates and their velocities (``coordinates``).
     """
 
     time: float
@@ -56,6 +62,7 @@ class Request:
     earlier: Earlier | None = None
     store: BinaryIO | None = None
     fixed: tuple[str, ...] = ()
+    variables: str = DECLARED
 
     @property
     def rows(self) -> int | None:
@@ -115,6 +122,8 @@ def wrong_with(request: Request) -> Iterator[str]:
         yield "samples and every exclude each other"
     if request.earlier is not None and not request.time > request.earlier.time:
         yield f"time must be beyond {request.earlier.time:.9g}, where the earlier run ended"
+    if request.variables not in (DECLARED, COORDINATES):
+        yield f"there are no variables {request.variables}: choose from {DECLARED}, {COORDINATES}"
     if request.step_limit < 1:
         yield f"step_limit must be 1 at least, not {request.step_limit}"
     if request.arithmetic not in TOLERANCE:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from mbsym.model.states import InStates
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
@@ -120,6 +121,8 @@ class Simulation:
 
         Of a trajectory that went to a file part by part there are none.  Raises Failure where they have no formulas.
         """
+        if isinstance(self.system, InStates):
+            return {name: self[name] for name in self.given.system.variables} if self.given is not None else {}
         if self.given is None or not self.given.system.speeds or self.trajectory.table is not None:
             return {}
         from mbsym.numerics.speed_columns import speed_columns  # few systems have speeds of their own
@@ -133,12 +136,12 @@ class Simulation:
 
     @property
     def coordinates(self) -> Any:
-        """q(t), shape (n, m), in the order of ``system.coordinates``."""
+        """q(t), shape (n, m), in the order of ``system.coordinates``; in declared variables the positions s(t)."""
         return self.trajectory.states[: self.dynamics.size]
 
     @property
     def velocities(self) -> Any:
-        """q'(t), shape (n, m)."""
+        """q'(t), shape (n, m); in declared variables the speeds u(t)."""
         return self.trajectory.states[self.dynamics.size :]
 
     @property

@@ -16,6 +16,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis import Analysis, Unavailable
+from mbsym.model.states import InStates, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.columns import columns
@@ -24,19 +25,23 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
 from mbsym.numerics.invariants import along, invariants
 from mbsym.numerics.linearised import LinearisedDynamics
-from mbsym.numerics.methods.interface import Method
-from mbsym.numerics.models import scenario_of
+from mbsym.numerics.methods.interface import Method, Unusable
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.models import Model, scenario_of
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
+from mbsym.numerics.states import StateDynamics, scenario_in_states, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
-from mbsym.simulation.request import Request, wrong_with
+from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, Simulation
 from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
+    from mbsym.algebra.ring import Ring
+    from mbsym.model.system import System
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
 
@@ -67,7 +72,10 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     given, scenario = scenario, scenario_of(scenario, request.model)
-    if scenario.system.speeds:  # what is integrated are coordinates and their derivatives
+    declared = runs_in_states(scenario.system, request)
+    if declared:
+        refuse_in_states(scenario.system, request)
+    elif scenario.system.speeds:  # what is integrated are coordinates and their derivatives
         scenario = replace(scenario, system=scenario.system.without_speeds)
     closed = _closed(scenario, request)
     scenario = scenario if closed is None else closed.scenario
@@ -75,12 +83,12 @@ def simulate(
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
         integrals, missing = _integrals(analysis)
         ring = analysis.ring if analysis is not None and not missing else None
-        dynamics = (
-            LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring, request.whole)
-        )
+        if declared:
+            scenario = scenario_in_states(scenario)
+        dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
             analytic(dynamics)
-        resting = None if request.model.linear else reduced(dynamics)
+        resting = None if request.model.linear or declared else reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
@@ -113,6 +121,42 @@ def simulate(
         *(certificate, happened, given, None, closed),
         None if closed is None else drift_along(dynamics, found),
     )
+
+
+def runs_in_states(system: System, request: Request) -> bool:
+    """Whether a run integrates the variables that a description declares."""
+    return bool(system.speeds) and not system.constraints and request.variables == DECLARED
+
+
+def integrated_system(system: System, variables: str = DECLARED) -> System:
+    """The system with the variables of a run in the place of coordinates and velocities.  Raises Failure."""
+    if not system.speeds or system.constraints or variables != DECLARED:
+        return system
+    return in_states(system, *state_names(system))
+
+
+#: What a run in declared variables does not do, and how that is asked for.
+NOT_IN_STATES = "integrates coordinates and their velocities only; this system has speeds"
+
+
+def refuse_in_states(system: System, request: Request) -> None:
+    """Raises ValueError for what goes with coordinates only, Unusable for a method that does."""
+    asked = {
+        "certify": request.certify is not None,
+        "a model": request.model != Model(),
+        "going on from an earlier run": request.earlier is not None,
+    }
+    wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in asked.items() if there]
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    if request.method in METHODS and METHODS[request.method].traits.conservative:
+        raise Unusable(f"{request.method} {NOT_IN_STATES}")
+
+
+def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:
+    if isinstance(scenario.system, InStates):
+        return StateDynamics(scenario, ring)
+    return LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring, request.whole)
 
 
 def _closed(scenario: Scenario, request: Request) -> Closed | None:
@@ -148,7 +192,7 @@ def _trajectory(
     integrals: tuple[Any, ...],
 ) -> integration.Trajectory:
     """The run; its rows in memory, or in the file that the request has for them."""
-    if request.streams and request.store is not None and dynamics.constraints is None:
+    if request.streams and request.store is not None and dynamics.constraints is None and not dynamics.in_states:
         from mbsym.numerics.streamed import streamed
 
         known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))

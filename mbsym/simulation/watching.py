@@ -12,6 +12,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.condition import Condition, parse_axes, parse_condition
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, Name, names
+from mbsym.model.states import InStates
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events import Occurrence, Occurrences
@@ -121,10 +122,16 @@ def _place(start: int, end: int) -> Span:
 def section_of(
     system: System, condition: Condition, axes: Sequence[tuple[str, Expression, Expression | None]]
 ) -> Section:
-    """A section in the axes asked for; else the first coordinate that the condition does not name, and its velocity."""
+    """A section in the axes asked for; else the first coordinate that the condition does not name, and its velocity.
+
+    In declared variables the first two that it does not name.
+    """
     if axes:
         return Section(condition, tuple(Axis(*axis) for axis in axes))
     named = names(condition.difference)
+    if isinstance(system, InStates):
+        free = [name for name in (*system.coordinates, *system.velocities) if name not in named]
+        return Section(condition, tuple(Axis(name, Name(name)) for name in free[:2]))
     shown = next((name for name in system.coordinates if name not in named), system.coordinates[0])
     return Section(condition, tuple(Axis(name, Name(name)) for name in (shown, velocity_name(shown))))
 

@@ -28,6 +28,8 @@ TIMES = 2
 #: A correction beyond this part of the state is none: the constraints are nearly singular there.
 LARGEST_PART = 1e-2
 
+DO = "these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf"
+
 #: So many states at ends of steps or questions are kept, to look back from a singular position.
 REMEMBERED = 400
 
@@ -77,10 +79,12 @@ def nearly_singular(time: Any, state: Any) -> Breakdown:
 
 
 def refuse(dynamics: Dynamics, method: str) -> None:
-    """Raises Unusable for a method that does not know constraints."""
+    """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
         kept = f"{method} does not keep to constraints ({dynamics.constraints.told()})"
-        raise Unusable(f"{kept}; these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf")
+        raise Unusable(f"{kept}; {DO}")
+    if dynamics.correction is not None:
+        raise Unusable(f"{method} does not keep quaternions and unit vectors at their lengths; {DO}")
 
 
 class LedRun:

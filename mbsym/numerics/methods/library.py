@@ -41,7 +41,7 @@ class LibraryRun(Stepping):
     def __init__(self, method: Library, dynamics: Dynamics, setting: Setting, initial: Any, at: float) -> None:
         self._rhs_kernel = compiled_kernel(dynamics, "right_hand_side")
         self._limit = setting.step_limit
-        self._n = 2 * dynamics.size
+        self._n = dynamics.dimension
         self.work = Work()
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE), "atol": tolerance}

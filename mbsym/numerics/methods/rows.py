@@ -10,7 +10,8 @@ Further terms are those of the tableau; where it has none (steps of one length) 
     q:   F3 = h^2 q''_old / 2 + F1 - F2,   F4 = h^2 q''_new / 2 + F1 + 2 F2 - F3,
     q':  F3 = 30 ((q_new - q)/h - q'_old - F0/2 - F1/6 - F2/12),                        so that q' = dq/dt,
 
-with an error of order h^6 in q and h^5 in q'.
+with an error of order h^6 in q and h^5 in q'.  Where the states are no pairs of q and q', there are no further terms:
+the cubic that fits x and x' at both ends, with an error of order h^4.
 """
 
 from __future__ import annotations
@@ -42,9 +43,9 @@ def terms_of(tableau: Tableau) -> int:
     return 3 + (len(tableau.dense) or 2)
 
 
-def dense_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
-    """``@prepare``, ``@rows`` and ``@fill``; see there."""
-    prepare = _prepare_text if tableau.errors else _prepare_fixed_text
+def dense_text(tableau: Tableau, size: int, scalar: Scalar, pairs: bool = True) -> str:
+    """``@prepare``, ``@rows`` and ``@fill``; see there.  ``pairs``: the states are (q, q')."""
+    prepare = _prepare_text if tableau.errors else _prepare_fixed_text if pairs else _prepare_cubic_text
     return prepare(tableau, size, scalar) + _rows_text(terms_of(tableau), size, scalar) + _fill_text(scalar)
 
 
@@ -95,6 +96,26 @@ def _prepare_fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
         missing = change / h - f.load(s.kind, f["old"], speed) - faster * Fraction(1, 2)
         third = 30 * (missing - first * Fraction(1, 6) - second * Fraction(1, 12))
         _keep(f, s, [faster, first, second, third, f.number(0, s.kind)], speed)
+    _count(f, 1)
+    f.leave(0)
+    return f.text()
+
+
+def _prepare_cubic_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
+    """The same for states that are no pairs."""
+    f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
+    s = Stages(f, size, scalar, apart=True)
+    k, stages = f["k"], len(tableau.stages)
+    step = f.load(s.clock, f["clock"], LAST)
+    s.state_argument(f["x"])
+    s.evaluate(f.load(s.clock, f["clock"], TIME), s.slope(k, stages))
+    f.store(1, INTEGER, f["count"], FRESH)
+    h = step.converted(s.kind)
+    for i in f.each(size):
+        begin, end = h * f.load(s.kind, k, i), h * f.load(s.kind, k, i + stages * size)
+        change = f.load(s.kind, k, i + (stages + 1) * size)
+        nothing = f.number(0, s.kind)
+        _keep(f, s, [change, begin - change, 2 * change - (begin + end), nothing, nothing], i)
     _count(f, 1)
     f.leave(0)
     return f.text()

@@ -90,12 +90,13 @@ def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
 
     def make() -> Library:
         chosen, code = SCALARS[scalar], code_of(dynamics, "right_hand_side", scalar)
-        size = 2 * dynamics.size
+        size = dynamics.dimension
         march = adaptive_text if tableau.errors else fixed_text
         codes = {"rhs": code}
         if dynamics.correction is not None:
             codes["correct"] = code_of(dynamics, "correction", scalar)
-        text = march(tableau, size, chosen, len(codes) > 1) + dense_text(tableau, size, chosen)
+        text = march(tableau, size, chosen, len(codes) > 1)
+        text += dense_text(tableau, size, chosen, pairs=not dynamics.in_states)
         if tableau.errors:
             text = mathematics(codes.values(), chosen) + text
         return compiled(codes, scalar, text, many=False)
@@ -108,7 +109,7 @@ class CompiledRun(Stepping):
 
     def __init__(self, dynamics: Dynamics, tableau: Tableau, setting: Setting, scalar: str) -> None:
         chosen = SCALARS[scalar]
-        size = self.size = 2 * dynamics.size
+        size = self.size = dynamics.dimension
         self.tableau, self.limit = tableau, setting.step_limit
         self.dtype, self.clock_type = chosen.dtype, clock_dtype(clock_kind(chosen))
         self._library = library = driver(dynamics, tableau, scalar)

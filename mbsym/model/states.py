@@ -1,0 +1,41 @@
+"""A system whose motion is told in variables of its own: what a run integrates is y = (s, u).
+
+s are the positions (coordinates, components of unit vectors and quaternions), u the speeds; y' = (g(s, u, t), u').
+They stand where else coordinates and velocities do, and need be no pairs of these: three speeds go with four positions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from mbsym.model.system import System
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class InStates(System):
+    """``described`` seen in its own variables, ``positions`` s and ``own_speeds`` u by name."""
+
+    described: System | None = None
+    positions: tuple[str, ...] = ()
+    own_speeds: tuple[str, ...] = ()
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """s."""
+        return self.positions
+
+    @property
+    def velocities(self) -> tuple[str, ...]:
+        """u."""
+        return self.own_speeds
+
+
+def in_states(system: System, positions: tuple[str, ...], speeds: tuple[str, ...]) -> InStates:
+    """The same system in these variables."""
+    same = {one.name: getattr(system, one.name) for one in fields(System)}
+    return InStates(**same, described=system, positions=positions, own_speeds=speeds)
+
+
+def described(system: System) -> System:
+    """The system as it was described."""
+    return system.described if isinstance(system, InStates) and system.described is not None else system

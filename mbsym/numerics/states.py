@@ -1,0 +1,240 @@
+"""One scenario in the variables that its description declares: y = (s, u), M u' = f, s' = g(s, u, t).
+
+No angle that unit vectors or a quaternion replace is in it, and so no singular one.  What these satisfy,
+
+    e.e = 1  (quaternion),      e_i.e_j = delta_ij  (unit vectors of one frame),
+
+is kept by the exact flow; after every step a method leads the state back by Newton's step to the nearest one,
+
+    e <- e + (1 - e.e) e/2,      e_i <- e_i - 1/2 sum_j (e_i.e_j - delta_ij) e_j.
+
+Energies are those of ``mbsym.numerics.dynamics``, T2 - T0 - U = sum (u_r - s0_r) dL/du_r - L with u = S q' + s0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx
+
+from mbsym.algebra.derivative import gradient
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
+from mbsym.mechanics.factorisation import solve
+from mbsym.mechanics.falling import relative_lagrangian
+from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.speed_programs import speed_program
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.model.speeds import Quaternion
+from mbsym.model.states import described, in_states
+from mbsym.model.system import System
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.balls import enclosures
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import PRECISION, Scenario, rounded
+from mbsym.numerics.specialise import bound, substituted
+
+#: Groups of vectors that keep their products: the names of the components of each.
+Orthonormal = tuple[tuple[str, ...], ...]
+
+
+def state_names(system: System) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """(s, u) by name, as a run in the declared variables has them.  Raises Failure."""
+    form = SpeedForm(system, ring_of(system))
+    return tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
+
+
+def scenario_in_states(given: Scenario) -> Scenario:
+    """The scenario in (s, u), its initial state from that in coordinates, to ``PRECISION`` bits.  Raises Failure."""
+    system = given.system
+    form = SpeedForm(system, ring_of(system))
+    program = Program()
+    nodes = form.state_in_coordinates(program)
+    values: dict[str, Any] = {"t": Fraction(0)} | dict(given.parameters)
+    values |= {name: initial for name, (initial, _) in given.prescribed.items()}
+    values |= dict(zip((*system.coordinates, *system.velocities), given.state, strict=True))
+    with ctx.workprec(PRECISION + 64):
+        values["pi"] = arb.pi()
+        found = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
+    state = tuple(rounded(value) for value in found)
+    n = len(form.positions)
+    names = tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
+    return replace(given, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
+
+
+def orthonormal(system: System) -> tuple[Orthonormal, ...]:
+    """Of every body told by unit vectors or a quaternion the vectors whose products are kept."""
+    return tuple(tuple(one.components for one in body.orientation) for body in system.bodies if body.orientation)
+
+
+class StateDynamics(Dynamics):
+    """The codes of a scenario in states; all take (t, s, u)."""
+
+    in_states = True
+
+    def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
+        self.described = described(scenario.system)
+        super().__init__(scenario, ring if ring is not None else ring_of(self.described))
+        self.form = SpeedForm(self.described, self.ring)
+
+    @property
+    def dimension(self) -> int:
+        """How many there are."""
+        return len(self.inputs) - 1
+
+    @cached_property
+    def _in_program(self) -> tuple[list[list[Node]], list[Node], list[Node]]:
+        """M, f, s' in the specialised program."""
+        found, n = speed_program(self.form), len(self.form.speeds)
+        nodes = [*(x for row in found.mass_matrix for x in row), *found.forcing, *found.rates]
+        made = substituted(found.program, nodes, self._specialised)
+        return [made[i * n : (i + 1) * n] for i in range(n)], made[n * n : n * n + n], made[n * n + n :]
+
+    @cached_property
+    def _accelerated(self) -> tuple[Sequence[Node], Sequence[Node]]:
+        """u' and the pivots of M.  Raises SingularPoint."""
+        mass, forcing, _ = self._in_program
+        return solve(self._specialised, mass, forcing)
+
+    @cached_property
+    def right_hand_side(self) -> Code:
+        """(t, s, u) -> (s', u')."""
+        return self._code([*self._in_program[2], *self._accelerated[0]])
+
+    @cached_property
+    def correction(self) -> Code | None:
+        """(t, s, u) -> what leads a state back to lengths of 1 and right angles; None where there are none.
+
+        A last output is 0: nothing is singular there.
+        """
+        fresh, groups = self._specialised, orthonormal(self.described)
+        if not groups:
+            return None
+        half = fresh.number(Fraction(1, 2))
+        moved: dict[str, Node] = {}
+        for vectors in groups:
+            for vector in vectors:
+                totals = [fresh.zero] * len(vector)
+                for other in vectors:
+                    gap = sum((fresh.input(a) * fresh.input(b) for a, b in zip(vector, other, strict=True)), fresh.zero)
+                    gap = gap - fresh.one if other is vector else gap
+                    totals = [x + gap * fresh.input(name) for x, name in zip(totals, other, strict=True)]
+                moved |= {name: -(half * x) for name, x in zip(vector, totals, strict=True)}
+        return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in self.inputs[1:]), fresh.zero))
+
+    @cached_property
+    def pivots(self) -> Code:
+        """(t, s, u) -> the pivots of M."""
+        return self._code(list(self._accelerated[1]))
+
+    @cached_property
+    def mass_matrix(self) -> Code:
+        """(t, s, u) -> M row by row."""
+        return self._code([x for row in self._in_program[0] for x in row])
+
+    @cached_property
+    def forcing(self) -> Code:
+        """(t, s, u) -> f."""
+        return self._code(list(self._in_program[1]))
+
+    @cached_property
+    def _both(self) -> tuple[list[Node], list[Node], list[Node]]:
+        """(T, U), the same seen from the frames that fall, and s0, in the specialised program."""
+        form, program = self.form, Program()
+        inputs: dict[str, Node] = dict(program_environment(self.described, program))
+        scene = form.scene_over(program, inputs)
+        carry = Carrier(form.ring, program, inputs)
+        drifts = [carry(x) for x in form.drifts]
+        nodes = [kinetic_energy(scene), force_function(scene), *relative_lagrangian(scene), *drifts]
+        made = substituted(program, nodes, self._specialised)
+        return made[:2], made[2:4], made[4:]
+
+    @cached_property
+    def _lagrangian(self) -> tuple[Node, Node]:
+        kinetic, force = self._both[1]
+        return kinetic, force
+
+    def _generalised(self, kinetic: Node, force: Node) -> Node:
+        """sum (u_r - s0_r) dL/du_r - L."""
+        fresh = self._specialised
+        speeds = [fresh.input(u.name) for u in self.form.speeds]
+        total = -(kinetic + force)
+        for u, drift, momentum in zip(speeds, self._both[2], gradient(fresh, kinetic + force, speeds), strict=True):
+            total = total + fresh.product(u - drift, momentum)
+        return total
+
+    @cached_property
+    def relative_energy(self) -> Code:
+        """(t, s, u) -> (h, T) of the Lagrangian relative to the frames that fall."""
+        kinetic, force = self._lagrangian
+        return self._code([self._generalised(kinetic, force), kinetic], thorough=True)
+
+    @cached_property
+    def energies(self) -> Code:
+        """(t, s, u) -> (T - U, T2 - T0 - U), T of the motion in inertial space."""
+        kinetic, force = self._both[0]
+        return self._code([kinetic - force, self._generalised(kinetic, force)])
+
+    @cached_property
+    def natural(self) -> bool:
+        """Whether T - U and T2 - T0 - U are one: at u = 0 everything is at rest."""
+        still = bound(self.scenario)
+        still.bound.update({u.name: still.number(0) for u in self.form.speeds})
+        fresh = self._specialised
+        nodes = substituted(fresh, [self._both[0][0], *self._both[2]], still)
+        return all(still.vanishes(x) for x in nodes)
+
+    def exactly(self, point: Sequence[Any]) -> Sequence[Any]:
+        """The point with quaternions of norm 1, and unit vectors at right angles (Gram and Schmidt), as balls."""
+        values = dict(zip(self.inputs, map(arb, point), strict=True))
+        for vectors in orthonormal(self.described):
+            done: list[list[arb]] = []
+            for names in vectors:
+                vector = [values[name] for name in names]
+                for other in done:
+                    along = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                    vector = [a - along * b for a, b in zip(vector, other, strict=True)]
+                length = sum((a * a for a in vector), arb(0)).sqrt()
+                done.append([a / length for a in vector])
+                values |= dict(zip(names, done[-1], strict=True))
+        return [values[name] for name in self.inputs]
+
+    @cached_property
+    def energy_rate(self) -> EnergyRate:
+        """dh/dt in coordinates and their velocities: h is the same quantity there."""
+        return energy_rate(self.plain, self.ring)
+
+    @property
+    def plain(self) -> System:
+        """The system in coordinates and their velocities."""
+        return self.described.without_speeds
+
+
+def norm_drifts(dynamics: StateDynamics, states: Any) -> dict[str, Any]:
+    """By name of a quaternion or unit vector how far its products are from 1 and 0 along states (k, m): shape (m,).
+
+    |e.e - 1| of a quaternion; of a unit vector the largest of |e.e - 1| and |e.f| with the others of its body.
+    """
+    place = {name: i for i, name in enumerate(dynamics.inputs[1:])}
+    rows = np.asarray(states)
+    found: dict[str, Any] = {}
+    for body in dynamics.described.bodies:
+        vectors = {one.name: rows[[place[name] for name in one.components]] for one in body.orientation}
+        for name, vector in vectors.items():
+            gaps = [np.sum(vector * other, axis=0) - (other is vector) for other in vectors.values()]
+            found[name] = np.max(np.abs(np.array(gaps, dtype=float)), axis=0)
+    return found
+
+
+def has_quaternions(system: System) -> bool:
+    """Whether a body is told by one."""
+    return any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation)

@@ -1,0 +1,55 @@
+"""What is said of a run in the variables that a description declares: which they are, and how well lengths are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsym.model.states import InStates
+from mbsym.numerics.states import StateDynamics, has_quaternions, norm_drifts
+
+if TYPE_CHECKING:
+    from mbsym.simulation import Simulation
+
+
+def norm_columns(run: Simulation) -> Mapping[str, Any]:
+    """``e_drift`` for every quaternion and unit vector e: how far its products are from 1 and 0; none otherwise."""
+    dynamics = run.dynamics
+    if not isinstance(dynamics, StateDynamics):
+        return {}
+    taken = dynamics.inputs
+    drifts = norm_drifts(dynamics, run.trajectory.states)
+    return {f"{name}_drift" + "_" * (f"{name}_drift" in taken): values for name, values in drifts.items()}
+
+
+def state_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+    """(title, text) of the summary's lines; none for a run in coordinates of a system that declares nothing else."""
+    system = run.system
+    if not isinstance(system, InStates):
+        if run.given is not None and run.given.system.speeds:
+            yield "variables", "coordinates and their velocities; speeds are computed from them"
+        return
+    assert system.described is not None
+    text = f"{', '.join(system.positions)}; {', '.join(system.own_speeds)}, as declared"
+    yield "variables", text
+    columns = norm_columns(run)
+    if columns:
+        worst = max(float(np.max(values)) for values in columns.values())
+        what = "norms of quaternions are" if has_quaternions(system.described) else "unit vectors are"
+        yield "drift", f"{what} restored after every step; what is left of it at the rows is {worst:.1e} at most"
+
+
+def states_json(run: Simulation) -> dict[str, Any]:
+    """What simulation.json says; nothing for a run in coordinates."""
+    if not isinstance(run.system, InStates):
+        return {}
+    drifts = {name: float(np.max(values)) for name, values in norm_columns(run).items()}
+    return {
+        "variables": {
+            "positions": list(run.system.positions),
+            "speeds": list(run.system.own_speeds),
+            "norm_drift": drifts,
+        }
+    }
