@@ -5,7 +5,7 @@ A name is that of a parameter or of a symbol of the notation; a number is ration
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ from mbsym.source import render_option
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
-    from mbsym.maps.section import Complaint
+    from mbsym.maps.section import Axis, Complaint
     from mbsym.model.system import System
 
 
@@ -40,6 +40,43 @@ def read_settings(texts: Sequence[str], system: System, options: Options) -> dic
         if value is not None:
             found[name] = value
     return found
+
+
+def read_axis(text: str | None, option: str, system: System, options: Options) -> Axis | None:
+    """``name=low:high`` with low < high; every complaint joins those of ``options``."""
+    from mbsym.maps.section import Axis, usable
+
+    if text is None:
+        hint = f"for example {option} {next(iter(system.parameter_names), 'p')}=0:1"
+        options.complain(option, "missing-option", "a parameter and its interval are wanted", hint)
+        return None
+    name, equals, interval = (part.strip() for part in " ".join(text.splitlines()).partition("="))
+    low, colon, high = interval.partition(":")
+    if not equals or not colon or not name or ":" in high or len(text) > MAX_LENGTH:
+        told = f"{ascii_safe(text[:80])} gives no interval"
+        options.complain(option, "bad-interval", told, f"write name=low:high, for example {option} alpha=-1:1")
+        return None
+    exists = known(name, option, usable(system), options)
+    ends = [read_rational(part, f"{option} {name if name.isidentifier() else ascii_safe(name)}", options) for part in (low, high)]
+    start, stop = ends
+    if start is None or stop is None:
+        return None
+    if start >= stop:
+        told = f"the interval from {start} to {stop} is empty"
+        options.complain(option, "empty-interval", told, f"it goes upwards: low:high with low < high, {stop}:{start}")
+        return None
+    return Axis(name, start, stop) if exists else None
+
+
+def distinct(axes: Sequence[Axis], settings: Mapping[str, Fraction], options: Options) -> None:
+    """No name is taken twice, as two axes or as an axis that has a number."""
+    names = [axis.name for axis in axes]
+    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
+        options.complain("--y", "repeated-name", f"'{name}' is taken for two axes", "choose another one")
+    for name in names:
+        if name in settings:
+            told = f"'{name}' has an interval and a number"
+            options.complain("--set", "repeated-name", told, "leave one of them out")
 
 
 def known(name: str, option: str, names: Sequence[str], options: Options) -> bool:
@@ -94,6 +131,9 @@ def complain_unfit(wrong: Sequence[Complaint], axis_option: str, options: Option
             case Fault.NOWHERE:
                 told = f"the motion of the description exists nowhere there: {one.name or one.about}"
                 options.complain("--set", "no-motion", told, "see problem 4 for the conditions")
+            case Fault.OUTSIDE:
+                told = f"no point of the map keeps what has to be kept: {one.about}"
+                options.complain("--set", "outside", told, "choose other values, or another interval")
             case Fault.IRRATIONAL:
                 told = f"the matrices hold what is no rational number there: {one.name}"
                 options.complain("--set", "irrational", told, "choose values at which roots and angles are rational")

@@ -49,6 +49,9 @@ class Images:
         self._pending: set[int] = set()
         for k, name in enumerate(axes):
             self._found[self.ring.index("parameter", name)] = (context.gen(k), self._one)
+        self._given = {self.ring.index("parameter", name): name for name in given}
+        #: The names of ``given`` numbers that were put in somewhere.
+        self.used: set[str] = set()
         for name, value in given.items():
             number = context.constant(fmpq(value.numerator, value.denominator))
             self._found.setdefault(self.ring.index("parameter", name), (number, self._one))
@@ -78,6 +81,8 @@ class Images:
         return _lowest(total, below)
 
     def _generator(self, k: int) -> Image:
+        if k in self._given:
+            self.used.add(self._given[k])
         if k not in self._found:
             if k in self._pending:
                 raise NoValue(self.ring.generators[k].name)

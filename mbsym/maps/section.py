@@ -89,8 +89,8 @@ class Section:
     ``law`` tells by the signs of the axes whether the energy of the nonlinear system is proved not to grow, ``judged``
     gives the parts with that; ``parts`` and ``one_energy`` (as in ``verdict.combine``) hold what is proved for all
     points alike.  ``undefined``: where one of these vanishes the formulas divide by zero, or the equations have another
-    form; nothing is said there.  ``numbers``: what was put in, by name, also from the description; ``images`` carries
-    further formulas in parameters.
+    form; nothing is said there.  ``numbers``: what may be put in, by name, also from the description; ``told``: those
+    that were asked for or stand in the matrices.  ``images`` does that with further formulas in parameters.
     """
 
     axes: tuple[Axis, ...]
@@ -101,6 +101,7 @@ class Section:
     law: Law
     undefined: tuple[Polynomial, ...]
     numbers: Mapping[str, Fraction]
+    told: Mapping[str, Fraction]
     images: Images
 
     @property
@@ -186,6 +187,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
             undefined += below
     if complaints:
         raise Unfit(list(dict.fromkeys(complaints)))
+    used = frozenset(images.used)
     _motion_exists(motion, images)
     for assumed in () if linear.constrained is None else linear.constrained.assumed:
         undefined += [x for x in _carried(images, assumed.polynomial) if not x.is_constant()]
@@ -198,6 +200,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         law,
         tuple(undefined),
         given,
+        {name: value for name, value in given.items() if name in used or name in settings},
         images,
     )
 

@@ -34,8 +34,25 @@ LOOKS: dict[str, Look] = {
     Word.UNSTABLE: Look("#cc6677"),
 }
 
+#: Of unstable motions whose roots to the right are counted: pairs alone, real roots beside pairs.
+FLUTTER, BOTH = Look("#882255"), Look("#cc6677", "xxxx")
+#: By Poincare's degree of instability, from 0 on; the last for what is beyond.
+DEGREES = (Look("#4f93c9"), Look("#ddcc77"), Look("#cc6677"), Look("#882255"), Look("#44222f"))
+
 #: Where no verdict is given: outside what was assumed, or where formulas divide by zero.
 NONE = Look("#ffffff", "///")
+
+
+def look_of_roots(word: str, right: int | None, real: int | None) -> Look:
+    """The look of a verdict where the roots to the right are known: ``right`` of them, ``real`` of which are real."""
+    if word != Word.UNSTABLE or not right or real == right or real is None:
+        return look_of(word)
+    return BOTH if real else FLUTTER
+
+
+def look_of_degree(degree: int) -> Look:
+    """The look of a degree of instability."""
+    return DEGREES[min(degree, len(DEGREES) - 1)]
 
 
 def look_of(word: str) -> Look:

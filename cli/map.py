@@ -1,0 +1,100 @@
+"""``mbsym map``: where a motion is stable, exactly, in a plane of two parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, OutPath
+from mbsym_cli.files import folder_for
+from mbsym_cli.options import Options
+from mbsym_cli.section_options import distinct, read_axis, read_settings
+from mbsym_cli.simulation_inputs import read_held
+from mbsym_cli.study import leave, prevented
+
+KINDS = ("stability", "signature")
+FORMATS = ("svg", "pdf", "png", "json", "tex")
+
+
+@click.command("map")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--x", "across", metavar="NAME=LOW:HIGH", help="The parameter or symbol to the right, and its interval.")
+@click.option("--y", "up", metavar="NAME=LOW:HIGH", help="The one upwards.")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Another's number; repeatable.")
+@click.option(
+    "--of", "of", default="stability", show_default=True, metavar="WHAT", help="stability, or signature: of K."
+)
+@click.option("--locate", type=click.Path(path_type=Path), metavar="CSV", help="Points: where each lies, the verdict.")
+@click.option(
+    "--format", "formats", default=",".join(FORMATS), show_default=True, metavar="LIST", help="Files to write."
+)
+@click.option("--language", default="en", metavar="NAME", help="Of picture and map.tex: en, ru, es.")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
+@click.option("--quiet", "-q", is_flag=True, help="Print nothing but complaints.")
+def command(
+    file: Path,
+    across: str | None,
+    up: str | None,
+    settings: tuple[str, ...],
+    of: str,
+    locate: Path | None,
+    formats: str,
+    language: str,
+    out: Path | None,
+    quiet: bool,
+) -> None:
+    """Divide a plane of two parameters of FILE into regions of one verdict of problem 6, exactly.
+
+    The boundaries are the polynomials on which the verdict depends (constant terms, Hurwitz minors, discriminants,
+    det K, assumptions, triangle inequalities of inertias).  Their arrangement is exact: every region is judged at a
+    rational point, every arc and corner at an algebraic one, each with its theorem.  Numbers are taken exactly, from
+    the description (values:) or --set; axes and settings are parameters, or symbols of the notation.
+
+    Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
+    --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
+    is missing or wrong, 130 interrupted (what was proved is written).
+
+    \b
+    Examples:
+      mbsym map systems/satellite.yaml --x alpha=-1:1 --y gamma=0:1 --set p1=2/5 --set p2=1/5
+      mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --locate points.csv
+    """
+    leave(
+        file,
+        lambda: _command(file, folder_for(file, out), (across, up), settings, of, locate, formats, language, quiet),
+    )
+
+
+def _command(
+    file: Path,
+    folder: Path,
+    texts: tuple[str | None, str | None],
+    settings: tuple[str, ...],
+    of: str,
+    locate: Path | None,
+    formats: str,
+    language: str,
+    quiet: bool,
+) -> int:
+    """Reads everything, complains about everything, then draws."""
+    from mbsym.report.language import LANGUAGES
+    from mbsym_cli.map_run import Request, read_located, run
+
+    system = read_held(file, "map", constrained=True)
+    asked = Options()
+    what = asked.word("--of", of, KINDS, "map")
+    wanted = asked.words("--format", formats, FORMATS, "format")
+    asked.word("--language", language, LANGUAGES, "language")
+    if system is None:
+        asked.refused()
+        return BAD_INPUT
+    axes = [read_axis(text, name, system, asked) for name, text in zip(("--x", "--y"), texts, strict=True)]
+    found = [axis for axis in axes if axis is not None]
+    values = read_settings(settings, system, asked)
+    distinct(found, values, asked)
+    points = None if locate is None else read_located(locate, [axis.name for axis in found], asked)
+    code = prevented(file, folder, True, asked)
+    if code:
+        return code
+    return run(Request(file, folder, system, found, values, str(what), wanted, language, points, quiet))

@@ -1,0 +1,76 @@
+"""A map in the terminal: its verdicts with their theorems, and what part of the plane each has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from mbsym.expressions.counting import counted
+from mbsym.maps.result import Of, PlaneMap, Standing, Stratum
+from mbsym.model.system import System
+from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words
+from mbsym_cli.console import console, printable
+
+
+def show_map(file: Path, system: System, found: PlaneMap, folder: Path, names: Sequence[str], seconds: float) -> None:
+    """Prints a row for each verdict, then what there is to know besides."""
+    out = console()
+    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
+    out.print(_table(found))
+    for line in remarks(found):
+        out.print(Text(f"  {line}"))
+    out.print(Text.assemble("  files in ", (printable(folder), "bold"), ": ", ", ".join(names)))
+
+
+def _table(found: PlaneMap) -> Table:
+    rows: dict[tuple[str, str], tuple[int, float]] = {}
+    for stratum, (area, _) in zip(found.regions, found.areas, strict=True):
+        key = _row(found, stratum)
+        count, total = rows.get(key, (0, 0.0))
+        rows[key] = count + 1, total + area
+    whole = float(found.arrangement.box.area)
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
+    table.add_column("verdict" if found.of is Of.STABILITY else "signature of K", overflow="fold")
+    table.add_column("theorem", style="dim", overflow="fold")
+    table.add_column("regions", justify="right")
+    table.add_column("area", justify="right")
+    table.add_column("of the plane", justify="right")
+    for (verdict, theorem), (count, area) in sorted(rows.items(), key=lambda item: -item[1][1]):
+        share = 100 * area / whole
+        table.add_row(escape(verdict), escape(theorem), str(count), f"{area:.4g}", f"{share:.2f} %")
+    return table
+
+
+def _row(found: PlaneMap, stratum: Stratum) -> tuple[str, str]:
+    judged = stratum.judged
+    if judged is None:
+        return STANDINGS[stratum.standing], ""
+    if found.of is Of.SIGNATURE:
+        return signature_words(judged), ""
+    return row_words(judged), judged.verdict.theorem
+
+
+def remarks(found: PlaneMap) -> list[str]:
+    """Sentences on what the table does not show."""
+    made = found.arrangement
+    told = [
+        f"{counted(len(made.regions), 'region')}, {counted(len(made.arcs), 'arc')} and "
+        f"{counted(len(made.corners), 'corner')} in map.json, each with an exact point"
+    ]
+    if not any(factor for factor in found.boundaries.factors if max(factor.degrees(), default=0) > 0):
+        told.append("no condition depends on the axes: one verdict holds in the whole plane")
+    vanishing = dict.fromkeys(condition_words(one, found.section) for one in found.boundaries.vanishing)
+    told += [f"an equality in the whole plane: {words}" for words in vanishing]
+    if found.admissibility.left_out:
+        listed = ", ".join(found.admissibility.left_out)
+        told.append(f"not expressible in the axes, so not looked at: {listed}")
+    large = sum(one.standing is Standing.TOO_LARGE for one in found.strata)
+    if large:
+        told.append(f"{counted(large, 'exact point')} of arcs and corners too large to be decided")
+    if found.checked:
+        told.append(f"checked: one more random point in {counted(found.checked, 'region')}, by another route")
+    return told

@@ -1,0 +1,135 @@
+"""From an analysis to its map: boundaries, their exact arrangement, a proved verdict in every region, on every arc
+and at every corner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from flint import fmpq
+
+from mbsym.algebra.characteristic import leading_minors
+from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.plane import Arrangement, Box, Point, areas, decompose
+from mbsym.analysis import Analysis
+from mbsym.maps.admissible import Admissibility, admissibility
+from mbsym.maps.boundaries import Condition, Origin, boundaries
+from mbsym.maps.on_curves import ExactVerdicts
+from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
+from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
+from mbsym.problems.stability.exact import inertia
+
+#: Tells what is being done: a word, how much of it is done, and how much there is.
+Watch = Callable[[str, int, int], None]
+
+
+def unwatched(_: str, done: int, whole: int) -> None:
+    """Tells nobody."""
+
+
+def plane_map(
+    analysis: Analysis,
+    axes: Sequence[Axis],
+    settings: Mapping[str, Fraction],
+    of: Of = Of.STABILITY,
+    watch: Watch = unwatched,
+) -> PlaneMap:
+    """The map of a description over two axes.
+
+    Raises Unfit for axes or values that do not fit, Unavailable where there is no first approximation to judge,
+    TooLargeError where the arrangement is beyond its budget.  KeyboardInterrupt while verdicts are found ends the work:
+    what was not reached says so.
+    """
+    watch("first approximation", 0, 1)
+    there = section(analysis, axes, settings)
+    kept = admissibility(analysis, there)
+    if kept.broken:
+        raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
+    watch("boundaries", 0, 1)
+    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+    x, y = (_ends(axis) for axis in axes)
+    made = decompose(found.factors, Box(*x, *y), progress=watch)
+    judge = Judge(there, kept)
+    places = _places(made)
+    strata: list[Stratum] = []
+    interrupted = False
+    for done, (shape, number, point) in enumerate(places):
+        if not interrupted:
+            try:
+                watch("verdicts", done, len(places))
+                strata.append(judge(shape, number, point))
+                continue
+            except KeyboardInterrupt:
+                interrupted = True
+        strata.append(Stratum(shape, number, Standing.NOT_REACHED))
+    ends = len(made.regions), len(made.regions) + len(made.arcs)
+    return PlaneMap(
+        of,
+        there,
+        kept,
+        found,
+        made,
+        tuple(strata[: ends[0]]),
+        tuple(strata[ends[0] : ends[1]]),
+        tuple(strata[ends[1] :]),
+        areas(made),
+        interrupted,
+    )
+
+
+def _ends(axis: Axis) -> tuple[Any, Any]:
+    return fmpq(axis.low.numerator, axis.low.denominator), fmpq(axis.high.numerator, axis.high.denominator)
+
+
+def asked(there: Section) -> list[Condition]:
+    """The axes' own zeros, where the law of the energy may depend on their signs."""
+    return [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
+
+
+def _places(made: Arrangement) -> list[tuple[Shape, int, Point]]:
+    regions = [(Shape.REGION, one.id, Point(*one.sample)) for one in made.regions]
+    arcs = [(Shape.ARC, one.id, one.point) for one in made.arcs]
+    return [*regions, *arcs, *((Shape.CORNER, one.id, one.point) for one in made.corners)]
+
+
+class Judge:
+    """Judges exact points of a section, one by one."""
+
+    def __init__(self, there: Section, kept: Admissibility) -> None:
+        self.section, self.kept = there, kept
+
+    def __call__(self, shape: Shape, number: int, point: Point) -> Stratum:
+        """What is proved at a point."""
+        broken = tuple(one for one in self.kept.demands if not one.kept(point.sign(one.condition.polynomial)))
+        if broken:
+            return Stratum(shape, number, Standing.OUTSIDE, None, broken)
+        if any(point.sign(x) == 0 for x in self.section.undefined):
+            return Stratum(shape, number, Standing.UNDEFINED)
+        if not self.positive(point):
+            return Stratum(shape, number, Standing.MASSLESS)
+        try:
+            return Stratum(shape, number, Standing.JUDGED, self.judged(shape, point))
+        except TooLargeError:
+            return Stratum(shape, number, Standing.TOO_LARGE)
+
+    def judged(self, shape: Shape, point: Point) -> Judged:
+        if shape is Shape.REGION:
+            return verdict_at(self.section, (point.x, point.y))
+        return self._on_curves(point)
+
+    @cached_property
+    def _on_curves(self) -> ExactVerdicts:
+        return ExactVerdicts(self.section)
+
+    def positive(self, point: Point) -> bool:
+        """Whether M of every part is positive definite: its leading minors are."""
+        if point.rational:
+            return all(inertia(matrix_at(part.M, (point.x, point.y)))[0] == part.size for part in self.section.parts)
+        return all(point.sign(minor) > 0 for minors in self._minors for minor in minors)
+
+    @cached_property
+    def _minors(self) -> list[tuple[Any, ...]]:
+        return [leading_minors(part.M) for part in self.section.parts]

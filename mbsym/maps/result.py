@@ -1,0 +1,126 @@
+"""A map as a value: its regions, arcs and corners, each with what was proved there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from mbsym.algebra.plane import Arrangement, Point
+from mbsym.maps.admissible import Admissibility, Demand
+from mbsym.maps.boundaries import Boundaries
+from mbsym.maps.section import Section
+from mbsym.maps.verdicts import Judged
+from mbsym.problems.stability.word import Word
+
+
+class Of(StrEnum):
+    """What a map is coloured by."""
+
+    STABILITY = "stability"
+    SIGNATURE = "signature"
+
+
+class Shape(StrEnum):
+    """What a place of a map is."""
+
+    REGION = "region"
+    ARC = "arc"
+    CORNER = "corner"
+
+
+class Standing(StrEnum):
+    """Whether there is a verdict at a place, and if not, why."""
+
+    JUDGED = "judged"
+    OUTSIDE = "outside of the assumptions"
+    MASSLESS = "the mass matrix is not positive definite"
+    UNDEFINED = "formulas divide by zero"
+    TOO_LARGE = "too large to be decided"
+    NOT_REACHED = "not reached"
+
+
+@dataclass(frozen=True)
+class Stratum:
+    """A region, an arc of a curve, or a corner: ``number`` is its place in the arrangement's list.
+
+    ``judged`` is None but where ``standing`` is JUDGED; ``broken``: the demands that are not kept there.
+    """
+
+    shape: Shape
+    number: int
+    standing: Standing
+    judged: Judged | None = None
+    broken: tuple[Demand, ...] = ()
+
+    @property
+    def word(self) -> Word | None:
+        return None if self.judged is None else self.judged.verdict.word
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What strata have in common that look alike in every respect that a map shows."""
+        if self.judged is None:
+            return (self.standing,)
+        found = self.judged
+        return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
+
+
+@dataclass(frozen=True)
+class PlaneMap:
+    """``regions``, ``arcs`` and ``corners`` in the order of ``arrangement``; ``interrupted``: some were not reached.
+
+    ``areas``: of the regions, with estimates of their errors.  ``checked``: regions in which one more random point was
+    judged by a route without the boundary polynomials.
+    """
+
+    of: Of
+    section: Section
+    admissibility: Admissibility
+    boundaries: Boundaries
+    arrangement: Arrangement
+    regions: tuple[Stratum, ...]
+    arcs: tuple[Stratum, ...]
+    corners: tuple[Stratum, ...]
+    areas: tuple[tuple[float, float], ...]
+    interrupted: bool = False
+    checked: int = 0
+
+    @property
+    def strata(self) -> Iterator[Stratum]:
+        yield from self.regions
+        yield from self.arcs
+        yield from self.corners
+
+    def beside(self, arc: Stratum) -> tuple[Stratum | None, Stratum | None]:
+        """The regions below and above an arc (left and right of a vertical one); None is outside of the box."""
+        below, above = self.arrangement.arcs[arc.number].regions
+        return None if below is None else self.regions[below], None if above is None else self.regions[above]
+
+    def separates(self, arc: Stratum) -> bool:
+        """Whether what is shown differs between the two sides of an arc."""
+        below, above = self.beside(arc)
+        return below is not None and above is not None and self.look(below) != self.look(above)
+
+    def singles_out(self, arc: Stratum) -> bool:
+        """Whether what is shown on an arc differs from both of its sides, which are alike."""
+        sides = {self.look(x) for x in self.beside(arc) if x is not None}
+        undecided = arc.standing in (Standing.TOO_LARGE, Standing.NOT_REACHED)
+        return not undecided and not self.separates(arc) and bool(sides) and self.look(arc) not in sides
+
+    def look(self, stratum: Stratum) -> tuple[object, ...]:
+        """What a picture tells apart."""
+        found = stratum.judged
+        if found is None:
+            return (stratum.standing,)
+        if self.of is Of.SIGNATURE:
+            return (found.degree, found.null)
+        return (found.verdict.word, found.right, found.real_right)
+
+    def point_of(self, stratum: Stratum) -> Point:
+        """The exact point at which a stratum was judged."""
+        if stratum.shape is Shape.REGION:
+            return Point(*self.arrangement.regions[stratum.number].sample)
+        if stratum.shape is Shape.ARC:
+            return self.arrangement.arcs[stratum.number].point
+        return self.arrangement.corners[stratum.number].point

@@ -1,0 +1,305 @@
+"""The picture of a map: regions coloured by verdict, smooth arcs labelled by the condition they come from, corners.
+
+It is as wide as a column of a paper, its legend is in words, and what is told apart by a colour is told apart by its
+lightness or a hatch, too.  Arcs at which nothing changes are left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+
+from mbsym.algebra.plane import polyline
+from mbsym.algebra.plane.drawing import Branches
+from mbsym.formulas.latex import LatexNames
+from mbsym.maps.result import Of, PlaneMap, Standing, Stratum
+from mbsym.model.quantities import unit_of
+from mbsym.model.system import System
+from mbsym.report.drawing import pictures
+from mbsym.report.language import Language
+from mbsym.report.map_language import say
+from mbsym.report.map_words import condition_words, look_words, telling
+from mbsym.report.unit_text import labelled
+from mbsym.report.verdict_colours import NONE, Look, look_of_degree, look_of_roots
+
+XY = tuple[float, float]
+
+#: Inches: the width of a column, and the height of the plane.
+WIDTH, HEIGHT = 3.4, 2.9
+#: Points.
+TEXT, SMALL = 8, 7
+#: Pixels per inch: lines are thin.
+RESOLUTION = 300
+#: Points along a branch over a strip, for what is filled.
+NODES = 28
+#: Arcs deviate by no more than this part of the box.
+TOLERANCE = 4e-4
+
+#: A number is written into a region that is so wide, as a part of the plane.
+ROOM = 0.045
+
+_DARK, _EDGE = "#1a1a1a", "#777777"
+_DASHES: Any = (0, (3, 2))
+
+
+def map_figure(system: System, found: PlaneMap, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
+    """``map.svg``, ``map.pdf`` and ``map.png``, those that are asked for."""
+    ordered = sorted(formats, key=lambda kind: kind != "png")  # a PNG is drawn before others set their resolution
+    return pictures({"map": lambda: _drawn(system, found, language)}, ordered)
+
+
+def look(found: PlaneMap, stratum: Stratum) -> Look:
+    """Colour and hatch of a region."""
+    judged = stratum.judged
+    if judged is None:
+        return NONE if stratum.standing is not Standing.NOT_REACHED else Look("#ffffff")
+    if found.of is Of.SIGNATURE and judged.degree is not None:
+        return look_of_degree(judged.degree)
+    return look_of_roots(judged.verdict.word, judged.right, judged.real_right)
+
+
+def _drawn(system: System, found: PlaneMap, language: Language) -> Figure:
+    told = lettered(found)
+    entries = _entries(found, told, language)
+    height = HEIGHT + 0.35 + 0.155 * len(entries)
+    figure = Figure(figsize=(WIDTH, height), dpi=RESOLUTION, layout="constrained")
+    axes = figure.subplots()
+    _plane(axes, system, found, told)
+    handles, labels = zip(*entries, strict=True)
+    figure.legend(
+        handles,
+        labels,
+        loc="outside lower left",
+        fontsize=SMALL,
+        frameon=False,
+        handlelength=1.6,
+        handleheight=1.0,
+        labelspacing=0.35,
+        borderaxespad=0.2,
+        handler_map={str: _Letter()},
+    )
+    return figure
+
+
+def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str]) -> None:
+    box = found.arrangement.box
+    axes.grid(False)
+    axes.set_xlim(float(box.x0), float(box.x1))
+    axes.set_ylim(float(box.y0), float(box.y1))
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.yaxis.set_major_locator(MaxNLocator(6))
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(True)
+    axes.tick_params(labelsize=SMALL, length=2.5, width=0.6)
+    for spine in axes.spines.values():
+        spine.set_linewidth(0.6)
+    names = LatexNames([axis.name for axis in found.section.axes])
+    across, up = (labelled(_name(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
+    axes.set_xlabel(across, fontsize=TEXT)
+    axes.set_ylabel(up, fontsize=TEXT)
+    branches = Branches(found.arrangement)
+    for stratum in found.regions:
+        _fill(axes, found, branches, stratum)
+    lines = {one.number: polyline(found.arrangement, there, TOLERANCE) for one, there in _arcs(found)}
+    for stratum, _ in _arcs(found):
+        style = _style(found, stratum)
+        if style:
+            xs, ys = zip(*lines[stratum.number], strict=True)
+            axes.plot(xs, ys, solid_capstyle="round", **style)
+    _corners(axes, found)
+    _numbers(axes, found, branches)
+    _letters(axes, found, told, lines)
+
+
+def _name(names: LatexNames, name: str) -> str:
+    symbol = names[name]
+    return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
+
+
+def _arcs(found: PlaneMap) -> list[tuple[Stratum, Any]]:
+    return list(zip(found.arcs, found.arrangement.arcs, strict=True))
+
+
+def _fill(axes: Axes, found: PlaneMap, branches: Branches, stratum: Stratum) -> None:
+    """A region, strip by strip: between the branches below and above."""
+    shown = look(found, stratum)
+    vertices: list[XY] = []
+    codes: list[Any] = []
+    for strip, cell in found.arrangement.regions[stratum.number].cells:
+        below, above = [], []
+        left, right = branches.bounds(strip)
+        for k in range(NODES + 1):
+            t = math.pi * k / NODES
+            x, ys = branches.at(strip, min(max(t, 1e-3), math.pi - 1e-3))
+            x = left if k == 0 else right if k == NODES else x
+            below.append((x, ys[cell]))
+            above.append((x, ys[cell + 1]))
+        ring = [*below, *above[::-1]]
+        vertices += [*ring, ring[0]]
+        codes += [Path.MOVETO, *[Path.LINETO] * (len(ring) - 1), Path.CLOSEPOLY]
+    path = Path(vertices, codes)
+    # an edge of the same colour: no seams between strips
+    axes.add_patch(PathPatch(path, facecolor=shown.colour, edgecolor=shown.colour, linewidth=0.4, zorder=0.5))
+    if shown.hatch:
+        hatched = PathPatch(path, facecolor="none", edgecolor=_hatch(shown), linewidth=0, hatch=shown.hatch, zorder=0.6)
+        axes.add_patch(hatched)
+
+
+def _hatch(shown: Look) -> str:
+    return "#9a9a9a" if shown == NONE else "#5e1830" if shown.hatch == "xxxx" else "#ffffff"
+
+
+def _style(found: PlaneMap, arc: Stratum) -> dict[str, Any] | None:
+    """How an arc is drawn; None where nothing changes at it."""
+    sides = [one for one in found.beside(arc) if one is not None]
+    if len(sides) < 2:
+        return None
+    if all(one.judged is None for one in sides) and not found.separates(arc):
+        return None
+    if found.separates(arc):
+        open_side = any(one.judged is None for one in sides)
+        return {"color": _EDGE if open_side else _DARK, "linewidth": 0.7 if open_side else 0.9, "zorder": 2}
+    if found.singles_out(arc):
+        return {"color": _DARK, "linewidth": 0.8, "linestyle": _DASHES, "zorder": 2}
+    return None
+
+
+def _corners(axes: Axes, found: PlaneMap) -> None:
+    """Points in which drawn arcs meet, and those that differ from what is around them."""
+    points = []
+    for stratum, corner in zip(found.corners, found.arrangement.corners, strict=True):
+        drawn = [k for k in corner.arcs if _style(found, found.arcs[k])]
+        inside = corner.kind != "edge"
+        alone = not corner.arcs and inside and stratum.judged is not None
+        if (inside and len(drawn) > 2) or alone:
+            points.append(corner.point.floats())
+    if points:
+        xs, ys = zip(*points, strict=True)
+        axes.plot(xs, ys, linestyle="none", marker="o", markersize=2.6, color=_DARK, markeredgewidth=0, zorder=3)
+
+
+def lettered(found: PlaneMap) -> dict[int, str]:
+    """A letter for every curve (by its number) of which an arc is drawn, in the order in which they are listed."""
+    drawn = {k for one, there in _arcs(found) if _style(found, one) for k in there.factors}
+    letters = "abcdefghijklmnopqrstuvwxyz"
+    return {k: letters[i] if i < len(letters) else f"{letters[i % 26]}{i // 26}" for i, k in enumerate(sorted(drawn))}
+
+
+def _letters(axes: Axes, found: PlaneMap, told: Mapping[int, str], lines: Mapping[int, Sequence[XY]]) -> None:
+    """Each letter once, on the longest arc of its curve, at a place away from the letters before it."""
+    box = found.arrangement.box
+    size = float(box.x1 - box.x0), float(box.y1 - box.y0)
+    start = float(box.x0), float(box.y0)
+    taken: list[XY] = []
+    taken += [_unit(one.point.floats(), start, size) for one in found.arrangement.corners if len(one.arcs) > 2]
+    for k, letter in told.items():
+        on = [lines[one.number] for one, there in _arcs(found) if k in there.factors and _style(found, one)]
+        places = [_unit(p, start, size) for line in on for p in _along(line)]
+        inside = [p for p in places if min(*p, 1 - p[0], 1 - p[1]) > 0.04] or places
+        place = max(inside, key=lambda p: min((math.dist(p, other) for other in taken), default=1.0))
+        taken.append(place)
+        axes.text(
+            start[0] + place[0] * size[0],
+            start[1] + place[1] * size[1],
+            letter,
+            fontsize=SMALL,
+            style="italic",
+            ha="center",
+            va="center",
+            zorder=4,
+            bbox={"boxstyle": "circle,pad=0.16", "facecolor": "white", "edgecolor": _DARK, "linewidth": 0.4},
+        )
+
+
+def _unit(point: XY, start: XY, size: XY) -> XY:
+    return (point[0] - start[0]) / size[0], (point[1] - start[1]) / size[1]
+
+
+def _along(line: Sequence[XY]) -> list[XY]:
+    """Points spread over a polyline, its ends left out."""
+    if len(line) == 2:
+        (a, b), (c, d) = line
+        return [(a + (c - a) * s, b + (d - b) * s) for s in (0.2, 0.35, 0.5, 0.65, 0.8)]
+    middle = line[1:-1]
+    return list(middle[:: max(1, len(middle) // 24)])
+
+
+def _numbers(axes: Axes, found: PlaneMap, branches: Branches) -> None:
+    """How many roots lie to the right, in the middle of the widest part of every unstable region with room for it."""
+    if found.of is not Of.STABILITY:
+        return
+    box = found.arrangement.box
+    width, height = float(box.x1 - box.x0), float(box.y1 - box.y0)
+    for stratum in found.regions:
+        if stratum.judged is None or not stratum.judged.right:
+            continue
+        best, place = 0.0, (0.0, 0.0)
+        for strip, cell in found.arrangement.regions[stratum.number].cells:
+            left, right = branches.bounds(strip)
+            x, ys = branches.at(strip, math.pi / 2)
+            room = min((right - left) / width, (ys[cell + 1] - ys[cell]) / height)
+            if room > best:
+                best, place = room, (x, (ys[cell] + ys[cell + 1]) / 2)
+        if best > ROOM:
+            halo = [withStroke(linewidth=1.6, foreground=look(found, stratum).colour)]
+            told = str(stratum.judged.right)
+            axes.text(
+                *place, told, fontsize=SMALL, color="white", ha="center", va="center", path_effects=halo, zorder=3
+            )
+
+
+def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> list[tuple[Any, str]]:
+    """The legend: what colours mean, in the order of area, then what curves are."""
+    by_words: dict[str, tuple[float, Look]] = {}
+    for one, (area, _) in zip(found.regions, found.areas, strict=True):
+        words = look_words(found, one, language)
+        by_words[words] = (by_words.get(words, (0.0, NONE))[0] + area, look(found, one))
+    entries: list[tuple[Any, str]] = []
+    for words, (_, shown) in sorted(by_words.items(), key=lambda item: -item[1][0]):
+        patch = Patch(facecolor=shown.colour, edgecolor=_hatch(shown), linewidth=0.3, hatch=shown.hatch or None)
+        entries.append((patch, words))
+    if found.of is Of.STABILITY and any(one.judged is not None and one.judged.right for one in found.regions):
+        entries.append(("2", say(language, "number of roots with positive real part")))
+    by_condition: dict[str, list[str]] = {}
+    for k, letter in told.items():
+        condition = telling(found.boundaries.conditions[k], _borders_open(found, k))
+        by_condition.setdefault(condition_words(condition, found.section, language), []).append(letter)
+    entries += [(", ".join(letters), words) for words, letters in by_condition.items()]
+    if any(found.singles_out(arc) and _style(found, arc) for arc in found.arcs):
+        dashed = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
+        entries.append((dashed, say(language, "dashed: another verdict on the curve alone")))
+    return entries
+
+
+def _borders_open(found: PlaneMap, curve: int) -> bool:
+    """Whether a drawn arc of a curve borders on parameters without a verdict."""
+    drawn = [arc for arc, there in _arcs(found) if curve in there.factors and _style(found, arc)]
+    return any(side is not None and side.judged is None for arc in drawn for side in found.beside(arc))
+
+
+class _Letter:
+    """A letter in a circle, as in the plane, for a legend's handle."""
+
+    def legend_artist(self, legend: Any, handle: str, fontsize: float, box: Any) -> Any:
+        from matplotlib.text import Text
+
+        text = Text(
+            x=box.xdescent + box.width / 2,
+            y=box.height / 2 - box.ydescent,
+            text=handle,
+            fontsize=SMALL - 1,
+            style="italic",
+            ha="center",
+            va="center_baseline",
+        )
+        box.add_artist(text)
+        return text

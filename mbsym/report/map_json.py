@@ -1,0 +1,104 @@
+"""A map as JSON: every region, arc and corner with its exact point, what was proved there, and the polynomials."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from flint import fmpq
+
+from mbsym.algebra.plane import AlgebraicNumber, Point
+from mbsym.maps.admissible import Demand
+from mbsym.maps.boundaries import Condition
+from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.model.system import System
+from mbsym.report.schemas import version
+from mbsym.report.sections.stability import verdict_data
+from mbsym.source.meaning import meaning
+
+#: The version of ``schemas/map.json`` that it follows.
+FORMAT = 1
+
+#: Digits of numbers beside their exact form.
+DIGITS = 15
+
+
+def map_json(system: System, found: PlaneMap) -> str:
+    """One JSON object, keys in a fixed order, the same text for the same input."""
+    arrangement = found.arrangement
+    data = {
+        "format": FORMAT,
+        "version": version(),
+        "system": system.name,
+        "description_sha256": meaning(system),
+        "of": found.of.value,
+        "axes": [{"name": x.name, "low": str(x.low), "high": str(x.high)} for x in found.section.axes],
+        "values": {name: str(value) for name, value in sorted(found.section.told.items())},
+        "subsystems": [list(names) for names in found.section.coordinates],
+        "demands": [_demand(one) for one in found.admissibility.demands],
+        "left_out": list(found.admissibility.left_out),
+        "curves": [
+            {"number": k, "polynomial": str(p), "conditions": [_condition(one) for one in conditions]}
+            for k, (p, conditions) in enumerate(zip(found.boundaries.factors, found.boundaries.conditions, strict=True))
+        ],
+        "vanishing": [_condition(one) for one in found.boundaries.vanishing],
+        "interrupted": found.interrupted,
+        "checked": found.checked,
+        "regions": [
+            _stratum(found, one)
+            | {"signs": list(there.signs), "arcs": list(there.arcs), "area": area, "area_error": error}
+            for one, there, (area, error) in zip(found.regions, arrangement.regions, found.areas, strict=True)
+        ],
+        "arcs": [
+            _stratum(found, one)
+            | {
+                "curves": list(there.factors),
+                "regions": list(there.regions),
+                "corners": list(there.corners),
+                "separates": found.separates(one),
+            }
+            for one, there in zip(found.arcs, arrangement.arcs, strict=True)
+        ],
+        "corners": [
+            _stratum(found, one) | {"curves": list(there.factors), "arcs": list(there.arcs), "kind": str(there.kind)}
+            for one, there in zip(found.corners, arrangement.corners, strict=True)
+        ],
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _stratum(found: PlaneMap, one: Stratum) -> dict[str, Any]:
+    judged = one.judged
+    return {
+        "number": one.number,
+        "point": _point(found.point_of(one)),
+        "standing": one.standing.value,
+        "broken": [x.condition.about or str(x.condition.polynomial) for x in one.broken],
+        "stability": None if judged is None else verdict_data(judged.verdict),
+        "unstable_roots": None if judged is None else judged.right,
+        "real_unstable_roots": None if judged is None else judged.real_right,
+        "negative_eigenvalues_of_K": None if judged is None else judged.degree,
+        "zero_eigenvalues_of_K": None if judged is None else judged.null,
+        "border": None if judged is None or judged.border is None else judged.border.value,
+    }
+
+
+def _condition(one: Condition) -> dict[str, Any]:
+    return {"origin": one.origin.value, "subsystem": one.part, "about": one.about, "reduced": one.reduced}
+
+
+def _demand(one: Demand) -> dict[str, Any]:
+    return _condition(one.condition) | {"polynomial": str(one.condition.polynomial), "relation": one.relation}
+
+
+def _point(point: Point) -> list[dict[str, Any]]:
+    return [_coordinate(x, ball) for x, ball in zip((point.x, point.y), point.enclosures(64), strict=True)]
+
+
+def _coordinate(x: Any, ball: Any) -> dict[str, Any]:
+    """A rational number as text, an algebraic one by its minimal polynomial and an interval with no other root."""
+    if isinstance(x, fmpq):
+        return {"exact": str(x), "polynomial": None, "between": None, "number": float(ball.mid())}
+    between = [str(x.low), str(x.high)]
+    polynomial = [str(c) for c in x.polynomial.coeffs()] if isinstance(x, AlgebraicNumber) else None
+    return {"exact": None, "polynomial": polynomial, "between": between, "number": float(ball.mid())}

@@ -1,0 +1,119 @@
+"""Given points of a map's plane, each with the region, arc or corner it lies in and the verdict there."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import fmpq
+
+from mbsym.algebra.plane import Arc, Corner
+from mbsym.maps.result import PlaneMap, Stratum
+
+#: Rows beyond this number are refused.
+MOST_POINTS = 1_000_000
+#: A number may be written in so many characters.
+LONGEST = 200
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?)(?:/(\d+))?\s*\Z", re.ASCII)
+
+WHERE, VERDICT = "where", "verdict"
+
+
+@dataclass(frozen=True)
+class Points:
+    """``rows`` as they were read, with the ``header``; ``values`` are the coordinates in the order of the axes."""
+
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    values: tuple[tuple[Fraction, Fraction], ...]
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """What is wrong in a line of the file (1 is the header)."""
+
+    line: int
+    message: str
+
+
+def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wrong]]:
+    """The points of a CSV file that has a column for each axis, by name; every mistake at once."""
+    try:
+        lines = list(csv.reader(io.StringIO(text, newline="")))
+    except csv.Error as error:
+        return None, [Wrong(1, f"it cannot be read: {error}")]
+    if not lines:
+        return None, [Wrong(1, "it is empty: a header with the names of the axes is needed")]
+    header = [name.strip() for name in lines[0]]
+    wrong = [Wrong(1, f"there is no column '{name}'") for name in axes if name not in header]
+    wrong += [Wrong(1, f"there are two columns '{name}'") for name in axes if header.count(name) > 1]
+    wrong += [
+        Wrong(1, f"the column '{name}' would be written a second time") for name in (WHERE, VERDICT) if name in header
+    ]
+    if len(lines) - 1 > MOST_POINTS:
+        wrong.append(Wrong(1, f"more than {MOST_POINTS} rows"))
+    if wrong:
+        return None, wrong
+    places = [header.index(name) for name in axes]
+    rows, values = [], []
+    for number, line in enumerate(lines[1:], start=2):
+        if not line:
+            continue
+        if len(line) != len(header):
+            wrong.append(Wrong(number, f"{len(line)} entries under {len(header)} columns"))
+            continue
+        found = [_number(line[k]) for k in places]
+        wrong += [
+            Wrong(number, f"{name}: a rational or decimal number is wanted")
+            for name, value in zip(axes, found, strict=True)
+            if value is None
+        ]
+        x, y = found
+        if x is not None and y is not None:
+            rows.append(tuple(line))
+            values.append((x, y))
+    return (None, wrong) if wrong else (Points(tuple(header), tuple(rows), tuple(values)), [])
+
+
+def _number(text: str) -> Fraction | None:
+    match = _NUMBER.match(text) if len(text) <= LONGEST else None
+    if match is None or (match[2] is not None and not int(match[2])):
+        return None
+    return Fraction(match[1]) / Fraction(match[2] or 1)
+
+
+def located_csv(points: Points, found: PlaneMap) -> str:
+    """The same rows with the columns ``where`` and ``verdict``."""
+    out = io.StringIO(newline="")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow((*points.header, WHERE, VERDICT))
+    for row, (x, y) in zip(points.rows, points.values, strict=True):
+        writer.writerow((*row, *located(found, x, y)))
+    return out.getvalue()
+
+
+def located(found: PlaneMap, x: Fraction, y: Fraction) -> tuple[str, str]:
+    """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there."""
+    stratum = stratum_at(found, x, y)
+    if stratum is None:
+        return "outside of the box", ""
+    word = stratum.word
+    return f"{stratum.shape} {stratum.number}", stratum.standing.value if word is None else word.value
+
+
+def stratum_at(found: PlaneMap, x: Fraction, y: Fraction) -> Stratum | None:
+    """The region, arc or corner of a rational point, exactly; None outside of the box."""
+    at = fmpq(x.numerator, x.denominator), fmpq(y.numerator, y.denominator)
+    if at not in found.arrangement.box:
+        return None
+    place = found.arrangement.locate(*at)
+    if isinstance(place, Arc):
+        return found.arcs[place.id]
+    if isinstance(place, Corner):
+        return found.corners[place.id]
+    return found.regions[place.id]
