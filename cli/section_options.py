@@ -57,7 +57,10 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
         options.complain(option, "bad-interval", told, f"write name=low:high, for example {option} alpha=-1:1")
         return None
     exists = known(name, option, usable(system), options)
-    ends = [read_rational(part, f"{option} {name if name.isidentifier() else ascii_safe(name)}", options) for part in (low, high)]
+    ends = [
+        read_rational(part, f"{option} {name if name.isidentifier() else ascii_safe(name)}", options)
+        for part in (low, high)
+    ]
     start, stop = ends
     if start is None or stop is None:
         return None

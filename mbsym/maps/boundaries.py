@@ -9,6 +9,7 @@ is read off is constant there:
   QQ(axes); a factor f that is no polynomial in lambda^2 has no pair lambda, -lambda unless its last but one Hurwitz
   minor vanishes (Orlando), one h(lambda^2) has its real roots in mu apart unless its discriminant vanishes; zero roots
   and roots at infinity show in the first and the last coefficient;
+* how many of the roots to the right are real: real ones meet where the discriminant of a factor vanishes;
 * whether D, G and N vanish, as a whole or in the rows of cyclic coordinates;
 * what Routh's reduction gives, by the same polynomials of the reduced matrices.
 
@@ -47,6 +48,7 @@ class Origin(Enum):
     CONSTANT = "constant term"
     LEADING = "leading coefficient"
     HURWITZ = "Hurwitz minor"
+    MEETING = "discriminant in lambda"
     DISCRIMINANT = "discriminant"
     RESULTANT = "resultant"
     STIFFNESS = "det K"
@@ -167,6 +169,7 @@ def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condit
             continue
         if any(c != 0 for c in p[1::2]):
             yield told(Origin.HURWITZ, hurwitz_minors(p)[len(p) - 3], about)
+            yield told(Origin.MEETING, discriminant(p), about)
             continue
         h = p[::2]
         if not potential:

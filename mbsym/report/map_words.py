@@ -18,6 +18,7 @@ ENGLISH = Language()
 #: Of several conditions that vanish on one curve, the first says most about it.
 _TELLING = (
     *(Origin.CONSTANT, Origin.HURWITZ, Origin.DISCRIMINANT, Origin.STIFFNESS, Origin.RESULTANT),
+    Origin.MEETING,
     *(Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.UNDEFINED, Origin.MASS, Origin.LEADING),
     *(Origin.DAMPING, Origin.UNDAMPED, Origin.POTENTIAL, Origin.NOT_GYROSCOPIC, Origin.CYCLIC, Origin.ENERGY),
 )
@@ -26,6 +27,7 @@ _CONDITIONS = {
     Origin.CONSTANT: "zero root: constant term",
     Origin.HURWITZ: "imaginary roots: Hurwitz minor",
     Origin.DISCRIMINANT: "double root: discriminant",
+    Origin.MEETING: "real roots meet: discriminant",
     Origin.RESULTANT: "common root: resultant",
     Origin.STIFFNESS: "det K = 0",
     Origin.MASS: "det M = 0",
