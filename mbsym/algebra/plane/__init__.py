@@ -7,6 +7,7 @@ from mbsym.algebra.plane.line import Interval, Line, Zero, decompose_line
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget
+from mbsym.algebra.plane.space import Slice, critical_levels, decompose_space
 
 __all__ = [
     "AlgebraicNumber",
@@ -20,9 +21,12 @@ __all__ = [
     "Line",
     "Point",
     "Region",
+    "Slice",
     "Zero",
     "areas",
+    "critical_levels",
     "decompose",
     "decompose_line",
+    "decompose_space",
     "polyline",
 ]

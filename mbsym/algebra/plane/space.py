@@ -1,0 +1,173 @@
+"""Three variables: all values of the third at which the arrangement in the plane of the first two may change.
+
+Surfaces f(x, y, z) = 0 are projected along y (discriminants, leading coefficients, resultants, the box's edges), what
+that gives along x: between two neighbouring roots of the polynomials in z that are left, the arrangements in the box
+are deformed into each other, and so no topology is missed (McCallum 1988).  f must not vanish identically over a point
+(x, z) away from these roots: unless one of its coefficients in y is a number, all of them are projected, not the
+leading one alone.  Values may be listed at which nothing visible happens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from flint import fmpq, fmpq_mpoly_ctx
+
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import Limit, TooLargeError
+from mbsym.algebra.plane.arrangement import Arrangement
+from mbsym.algebra.plane.decomposition import decompose
+from mbsym.algebra.plane.line import Line, decompose_line
+from mbsym.algebra.plane.numbers import Number, Rational
+from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
+
+_X, _Y, _Z = range(3)
+
+
+@dataclass(frozen=True)
+class Slice:
+    """The arrangement at one value of z.
+
+    ``critical``: the picture may be another one on its two sides; None at an irrational such value.
+    """
+
+    z: Number
+    critical: bool
+    arrangement: Arrangement | None
+
+
+def decompose_space(
+    factors: Sequence[Polynomial],
+    box: Box,
+    low: Rational,
+    high: Rational,
+    budget: Budget | None = None,
+    progress: Progress = nothing,
+) -> tuple[Slice, ...]:
+    """Exact slices at all critical values of the third variable that are rational, and at one value between any two.
+
+    Raises ValueError for a polynomial that is zero, TooLargeError where the budget does not suffice.
+    """
+    line = critical_levels(factors, box, low, high, budget, progress)
+    levels: list[tuple[Number, bool]] = []
+    for at, interval in enumerate(line.intervals):
+        if interval.ends[0] is not None and at == 0:
+            levels.append((line.zeros[interval.ends[0]].number, True))
+        levels.append((interval.sample, False))
+        if interval.ends[1] is not None:
+            levels.append((line.zeros[interval.ends[1]].number, True))
+    slices = []
+    for at, (z, critical) in enumerate(levels):
+        progress("slices", at, len(levels))
+        found = _slice(factors, box, z, budget) if isinstance(z, fmpq) else None
+        slices.append(Slice(z, critical, found))
+    progress("slices", len(levels), len(levels))
+    return tuple(slices)
+
+
+def _slice(factors: Sequence[Polynomial], box: Box, z: Rational, budget: Budget | None) -> Arrangement:
+    """Polynomials that vanish on the whole slice bound nothing in it; in their places stands 1."""
+    names = factors[0].context().names() if factors else ("x", "y", "z")
+    plane = fmpq_mpoly_ctx.get(names[:2])
+    x, y = plane.gens()
+    flat = [p.compose(x, y, plane.constant(z), ctx=plane) for p in factors]
+    return decompose([p if p != 0 else plane.constant(1) for p in flat], box, budget)
+
+
+def critical_levels(
+    factors: Sequence[Polynomial],
+    box: Box,
+    low: Rational,
+    high: Rational,
+    budget: Budget | None = None,
+    progress: Progress = nothing,
+) -> Line:
+    """The values of z in [low, high] at which the arrangement in the box may change, as zeros on a line."""
+    budget = budget or Budget()
+    for p in factors:
+        if p == 0:
+            raise ValueError("a polynomial that is identically zero bounds nothing")
+    surfaces, rest = _parted(factors, _Y)
+    flat = [*rest, *_projected(surfaces, _Y, (box.y0, box.y1), budget, progress)]
+    curves, levels = _parted(flat, _X)
+    levels += _projected(curves, _X, (box.x0, box.x1), budget, progress)
+    line = fmpq_mpoly_ctx.get(("z",))
+    z = line.gens()[0]
+    zero = line.constant(0)
+    wanted = [p.compose(zero, zero, z, ctx=line) for p in _irreducible(levels)]
+    found = decompose_line(wanted, low, high)
+    if len(found.zeros) > budget.abscissas:
+        raise TooLargeError(f"{len(found.zeros)} values at which the picture may change", limit=Limit.WORK)
+    return found
+
+
+def _irreducible(polynomials: Iterable[Polynomial]) -> list[Polynomial]:
+    """The different irreducible factors."""
+    found: dict[str, Polynomial] = {}
+    for p in polynomials:
+        for factor, _ in irreducible_factors(p)[1]:
+            if not factor.is_constant():
+                found.setdefault(str(factor), factor)
+    return list(found.values())
+
+
+def _parted(polynomials: Iterable[Polynomial], generator: int) -> tuple[list[Polynomial], list[Polynomial]]:
+    """Irreducible factors that hold a generator, and others."""
+    every = _irreducible(polynomials)
+    return [p for p in every if p.degrees()[generator]], [p for p in every if not p.degrees()[generator]]
+
+
+def _projected(
+    polynomials: Sequence[Polynomial],
+    generator: int,
+    edges: tuple[Rational, Rational],
+    budget: Budget,
+    progress: Progress,
+) -> list[Polynomial]:
+    """Discriminants, coefficients, resultants and values at the edges, none of them zero."""
+    _affordable(polynomials, generator, budget)
+    found: list[Polynomial] = []
+    pairs = list(combinations(polynomials, 2))
+    for at, p in enumerate(polynomials):
+        progress("projection", at, len(polynomials) + len(pairs))
+        found += _coefficients(p, generator)
+        if p.degrees()[generator] > 1:
+            found.append(p.discriminant(generator))
+        found += [x for edge in edges if (x := _at(p, generator, edge)) != 0]
+    for at, (p, q) in enumerate(pairs):
+        progress("projection", len(polynomials) + at, len(polynomials) + len(pairs))
+        found.append(p.resultant(q, generator))
+    return _irreducible(found)
+
+
+def _coefficients(p: Polynomial, generator: int) -> list[Polynomial]:
+    """The leading coefficient, and all others where none is a number."""
+    table: dict[int, dict[Any, Any]] = {}
+    for powers, value in p.to_dict().items():
+        key = tuple(0 if k == generator else int(power) for k, power in enumerate(powers))
+        table.setdefault(int(powers[generator]), {})[key] = value
+    every = [p.context().from_dict(table[k]) for k in sorted(table, reverse=True)]
+    return every[:1] if any(c.is_constant() for c in every) else every
+
+
+def _at(p: Polynomial, generator: int, value: Rational) -> Polynomial:
+    context = p.context()
+    places = [context.constant(value) if k == generator else context.gen(k) for k in range(context.nvars())]
+    return p.compose(*places, ctx=context)
+
+
+def _affordable(polynomials: Sequence[Polynomial], generator: int, budget: Budget) -> None:
+    """Refuses resultants whose degree in one of the variables, bounded by those of the polynomials, is too large."""
+    worst = 0
+    for j, p in enumerate(polynomials):
+        own = [int(d) for d in p.degrees()]
+        for q in polynomials[j:]:
+            other = [int(d) for d in q.degrees()]
+            for k in range(3):
+                if k != generator:
+                    worst = max(worst, own[k] * other[generator] + other[k] * own[generator])
+    if worst > budget.degree:
+        raise TooLargeError(f"a resultant of degree up to {worst}, more than {budget.degree}", limit=Limit.DEGREE)
