@@ -49,6 +49,7 @@ def test_slices_at_critical_values_show_the_degenerate_picture() -> None:
     at = next(one for one in slices if one.z == 1)
     assert at.arrangement is not None
     assert [corner.kind for corner in at.arrangement.corners] == ["isolated"]
+    assert not at.alike
     irrational = decompose_space([X**2 + Y**2 + Z**2 - 2], BOX, 0, 2)
     assert [one.arrangement is None for one in irrational if one.critical] == [True]
 
@@ -77,6 +78,15 @@ def test_between_critical_values_the_picture_stays() -> None:
             value = fmpq(*(a + (b - a) * share).as_integer_ratio())
             assert line.locate(value) is interval
             assert shape(value) == shape(interval.sample)
+
+
+def test_levels_at_which_nothing_is_seen() -> None:
+    """One of two circles apart moves past the other: the picture stays.  A line that passes a circle: it does not."""
+    slices = decompose_space([(X - 1) ** 2 + (Y - Z) ** 2 - fmpq(1, 4), (X + 1) ** 2 + Y**2 - fmpq(1, 4)], BOX, -1, 1)
+    assert all(one.alike for one in slices[1:] if one.arrangement is not None)
+    moving = decompose_space([X**2 + Y**2 - 1, Y - Z], BOX, fmpq(-3, 2), fmpq(3, 2))
+    seen = [one for one in moving if not one.critical and not one.alike]
+    assert [len(one.arrangement.regions) for one in seen if one.arrangement is not None] == [3, 4, 3]
 
 
 def test_what_cannot_be_is_refused() -> None:

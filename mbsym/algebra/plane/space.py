@@ -31,12 +31,33 @@ _X, _Y, _Z = range(3)
 class Slice:
     """The arrangement at one value of z.
 
-    ``critical``: the picture may be another one on its two sides; None at an irrational such value.
+    ``critical``: the picture may be another one on its two sides; the arrangement is None at an irrational such value.
+    ``alike``: it has the ``shape`` of the slice at the last value before that is not critical; which is no proof that
+    nothing happens between the two.
     """
 
     z: Number
     critical: bool
     arrangement: Arrangement | None
+    alike: bool = False
+
+
+def shape(found: Arrangement) -> tuple[object, ...]:
+    """What two arrangements of one topology have in common: regions, arcs and corners with what they adjoin.
+
+    Each is told by the signs or the positions of the polynomials, not by its place in the plane.
+    """
+    corners = [(corner.kind.value, corner.branches, corner.factors) for corner in found.corners]
+    arcs = [
+        (
+            arc.factors,
+            sorted(() if k is None else found.regions[k].signs for k in arc.regions),
+            sorted(("",) if k is None else corners[k] for k in arc.corners),
+        )
+        for arc in found.arcs
+    ]
+    regions = [(region.signs, sorted(arcs[k] for k in region.arcs)) for region in found.regions]
+    return sorted(regions), sorted(arcs), sorted(corners)
 
 
 def decompose_space(
@@ -60,10 +81,13 @@ def decompose_space(
         if interval.ends[1] is not None:
             levels.append((line.zeros[interval.ends[1]].number, True))
     slices = []
+    last: tuple[object, ...] | None = None
     for at, (z, critical) in enumerate(levels):
         progress("slices", at, len(levels))
         found = _slice(factors, box, z, budget) if isinstance(z, fmpq) else None
-        slices.append(Slice(z, critical, found))
+        own = None if found is None else shape(found)
+        slices.append(Slice(z, critical, found, own is not None and own == last))
+        last = last if critical else own
     progress("slices", len(levels), len(levels))
     return tuple(slices)
 
