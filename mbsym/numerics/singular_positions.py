@@ -87,11 +87,15 @@ def singular_positions(given: Scenario, sizes: Sequence[float], seconds: float) 
     constraints = Dynamics(given).constraints
     if constraints is None or not constraints.kept:
         return None
-    search = _Search(given, constraints, np.asarray(sizes, dtype=float))
+    search = Search(given, constraints, np.asarray(sizes, dtype=float))
     return search.found(time.perf_counter() + seconds)
 
 
-class _Search:
+class Search:
+    """Gauss-Newton steps to singular positions, with the time held at ``time`` (0 unless said otherwise)."""
+
+    time = 0.0
+
     def __init__(self, given: Scenario, constraints: Constraints, sizes: Any) -> None:
         self.given, self.constraints, self.sizes = given, constraints, sizes
         self.names, self.n = given.system.coordinates, constraints.size
@@ -99,7 +103,22 @@ class _Search:
         self.h = constraints.holonomic
         self.denominators = angle_denominators(given.system)
         self.angular = np.array([name in self.denominators for name in self.names])
+        self.scales = np.where(self.angular, 1.0, self.sizes)
         self.source = np.random.default_rng(11)
+
+    def reached(self, state: Any, time: float) -> Any | None:
+        """A singular position that is reached from a state at a time, or None."""
+        self.time = time
+        return self._from(state)
+
+    def falls(self, position: Any, time: float) -> bool:
+        """Whether rows become dependent at a position, to roundings."""
+        self.time = time
+        return self._rank(position) < len(self.kept)
+
+    def difference(self, one: Any, other: Any) -> Any:
+        """By how much positions differ, angles by the shorter way, in parts of the coordinates' sizes."""
+        return self._wrapped(one - other) / self.scales
 
     def found(self, until: float) -> SingularPositions:
         places: list[Any] = []
@@ -127,7 +146,7 @@ class _Search:
     def _values(self, q: Any) -> tuple[Any, Any]:
         """(f (h, m), J (r, n, m)) at positions in columns."""
         states = np.vstack([q, np.zeros_like(q)])
-        found = self.constraints.along(np.zeros(q.shape[1]), states)
+        found = self.constraints.along(np.full(q.shape[1], self.time), states)
         return found.positions, found.partials[self.kept]
 
     def _residual(self, x: Any, rows: Any, lengths: Any) -> Any:
@@ -156,9 +175,9 @@ class _Search:
     def _from(self, state: Any) -> Any | None:
         """A singular position that is reached from a state, or None."""
         with np.errstate(all="ignore"):
-            led = self.constraints.led(0.0, state)
+            led = self.constraints.led(self.time, state)
             q = (state if led is None else led)[: self.n]
-            lengths = np.where(self.angular, 1.0, self.sizes)
+            lengths = self.scales
             _, partials = self._values(q[:, None])
             scaled = partials[:, :, 0] * lengths
             rows = self._lengths[self.kept]
@@ -196,7 +215,7 @@ class _Search:
         return found
 
     def _same(self, one: Any, other: Any) -> bool:
-        return bool(np.all(np.abs(self._wrapped(one - other)) < SAME * np.where(self.angular, 1.0, self.sizes)))
+        return bool(np.all(np.abs(self._wrapped(one - other)) < SAME * self.scales))
 
     # --- what is said of one ---
 
@@ -216,7 +235,7 @@ class _Search:
     def _weighted(self, q: Any, every: bool = False) -> Any:
         """J at a position, or ``every`` row, by the lengths that rows have elsewhere."""
         states = np.concatenate([q, np.zeros(self.n)])
-        found = self.constraints.at(0.0, states).partials * np.where(self.angular, 1.0, self.sizes)
+        found = self.constraints.at(self.time, states).partials * self.scales
         found = found / self._lengths[:, None]
         return found if every else found[self.kept]
 
@@ -235,7 +254,7 @@ class _Search:
 
     def _family(self, q: Any, rank: int) -> bool:
         """Whether the equations leave a direction free, beside those of lambda."""
-        lengths = np.where(self.angular, 1.0, self.sizes)
+        lengths = self.scales
         rows = self._lengths[self.kept]
         left = np.linalg.svd(self._weighted(q).T)[2][-1]
         slopes = self._slopes(np.concatenate([q, left]), rows, lengths)

@@ -33,6 +33,8 @@ def constraint_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     yield "drift", drift_line(run.drift, known)
     if run.trajectory.work.singular:
         yield "singular", singular_line(run.trajectory.work.singular, pretty(time_unit(run.system)))
+    if run.stepped_over:
+        yield "warning", stepped_over_line(run.stepped_over, pretty(time_unit(run.system)))
 
 
 def rows_line(known: Constraints) -> str:
@@ -87,6 +89,16 @@ def singular_line(times: Sequence[float], unit: str | None) -> str:
     )
 
 
+def stepped_over_line(times: Sequence[float], unit: str | None) -> str:
+    """Where steps went over positions in which constraints lose their rank."""
+    shown = ", ".join(f"{time:.4g}" for time in times[:MOST_MOVES]) + (", ..." if len(times) > MOST_MOVES else "")
+    return (
+        f"near t = {with_unit(shown, unit)} steps went over a position in which the constraints lose their rank "
+        "(branches of motion may meet): the branch behind is the one that the step met; a smaller tolerance or step "
+        "shows whether it is the smooth one"
+    )
+
+
 def drift_columns(run: Simulation) -> Mapping[str, Any]:
     """The columns of the drift by their names; none without constraints."""
     if run.drift is None:
@@ -114,5 +126,6 @@ def constraints_json(run: Simulation) -> dict[str, Any]:
             },
             "drift": {"positions": positions, "velocities": velocities},
             "singular": list(run.trajectory.work.singular),
+            "stepped_over": list(run.stepped_over),
         }
     }

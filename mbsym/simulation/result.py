@@ -75,7 +75,8 @@ class Simulation:
     ``conservation`` is that of the latter and ``energy_conservation`` that of the former.  ``scenario`` is that of the
     model that was integrated, ``given`` the one that was described where that is another; ``plan`` is how an accuracy
     that was asked for is reached.  With constraints ``closed`` says how the initial state was made to satisfy them, and
-    ``drift`` how far each row strays from them.
+    ``drift`` how far each row strays from them, ``stepped_over`` are times of positions in which they lose their rank
+    that steps went over.
     """
 
     scenario: Scenario
@@ -94,6 +95,7 @@ class Simulation:
     plan: Plan | None = None
     closed: Closed | None = None
     drift: Drift | None = None
+    stepped_over: tuple[float, ...] = ()
 
     def __repr__(self) -> str:
         rows = len(self.times)

@@ -32,6 +32,7 @@ from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
 from mbsym.numerics.states import StateDynamics, scenario_in_states, state_names
+from mbsym.numerics.stepped_over import stepped_over
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
@@ -120,6 +121,7 @@ def simulate(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
         *(certificate, happened, given, None, closed),
         None if closed is None else drift_along(dynamics, found),
+        () if closed is None else stepped_over(dynamics, dense.times, dense.states, found.work.singular),
     )
 
 

@@ -19,7 +19,9 @@ from mbsym.numerics.reference import EXPLICIT, IMPLICIT, Reference
 from mbsym.numerics.reference_search import WAYS, _Search, whole_reference
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
+from mbsym.report.constrained_run_words import constraint_lines
 from mbsym.report.tradeoff_table import tradeoff_csv
+from mbsym.simulation import Request, simulate
 from mbsym.source import read
 
 #: On the unit circle, from rest at height 0 in a field of 1: at angle a from the vertical v^2 = 2 cos a.
@@ -146,3 +148,47 @@ def test_stiff_constrained_scenes_have_a_reference_by_two_methods_that_keep_to_c
     x, y, vx, vy = _at_end(truth)
     assert x * x + y * y == pytest.approx(1, abs=1e-12)
     assert vx * vx + vy * vy == pytest.approx(-2 * y, abs=1e-7)
+
+
+# --- steps that go over a position in which links are in line ---
+
+#: 1 + 3 = 2 + 2: at a = 0 the links are in line, once in every turn of the crank.
+CHANGE_POINT = """
+mbsym: 1
+name: Change-point four-bar
+parameters: {m: 1}
+bodies:
+  - {name: crank, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: m, mass centre: [1/2, 0, 0],
+     inertia about: mass centre, inertia: [0, 0, m/12]}
+  - {name: coupler, attached to: crank, connection point: [1, 0, 0], rotation: {axes: [3], angles: [b]}, mass: m,
+     mass centre: [1, 0, 0], inertia about: mass centre, inertia: [0, 0, m/3]}
+  - {name: rocker, attached to: coupler, connection point: [2, 0, 0], rotation: {axes: [3], angles: [c]}, mass: m,
+     mass centre: [3/2, 0, 0], inertia about: mass centre, inertia: [0, 0, 3*m/4]}
+constraints:
+  - coincide: [{body: rocker, point: [3, 0, 0]}, {body: 0, point: [2, 0, 0]}]
+initial: {a: {position: 1, velocity: -1}, b: 1, c: -2}
+"""
+
+
+@pytest.mark.parametrize(("method", "how"), [("rk4", {"step": 0.05}), ("dop853", {"tolerance": 1e-4})])
+def test_steps_that_go_over_a_singular_position_are_told(method: str, how: dict[str, float]) -> None:
+    """A run with small steps is carried over it and names the time; one with long steps passes, and is told."""
+    system, _ = read(CHANGE_POINT)
+    assert system is not None
+    fine = simulate(scenario(system), Request(time=5.0, tolerance=1e-11, estimate=False))
+    (when,) = fine.trajectory.work.singular
+    assert not fine.stepped_over
+    assert np.sin(fine.at(when)[0]) == pytest.approx(0, abs=1e-6)
+    coarse = simulate(scenario(system), Request(time=5.0, method=method, estimate=False, **how))  # type: ignore[arg-type]
+    assert not coarse.trajectory.work.singular
+    assert coarse.stepped_over == pytest.approx([when], abs=0.01)
+    assert any("steps went over" in text for _, text in constraint_lines(coarse))
+
+
+def test_near_misses_are_not_called_singular() -> None:
+    """The ground link is longer by a hundredth: the loop comes near a line and never lies in one."""
+    system, _ = read(CHANGE_POINT.replace("point: [2, 0, 0]}]", "point: [2.01, 0, 0]}]"))
+    assert system is not None
+    found = simulate(scenario(system), Request(time=5.0, method="rk4", step=0.05, estimate=False))
+    assert not found.stepped_over
+    assert not found.trajectory.work.singular
