@@ -6,7 +6,7 @@ The modules that know how are imported when a system has constraints; most have 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.problems import equations
@@ -16,9 +16,11 @@ from mbsym.problems.equations import Equations
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
+    from mbsym.problems.speeds import SpeedEquations
 
 #: The checks of what only constrained systems have.
 CHECKS = ("constraints", "constrained motion")
@@ -31,13 +33,30 @@ def constraints_of(analysis: Analysis) -> Constraints:
     """The rows, their ranks and what they leave free."""
     from mbsym.problems.constraints import constraints
 
-    return constraints(analysis.scene)
+    if analysis.speed_form is None:
+        return constraints(analysis.scene)
+    from mbsym.problems.constraints.in_speeds import constraints_in_speeds
+
+    tied = analysis.tied_in_coordinates
+    return constraints_in_speeds(analysis.speed_form, analysis.scene, tied, programs_of(analysis))
+
+
+def constraints_in_coordinates(analysis: Analysis) -> Constraints:
+    """The same in generalised velocities, where speeds are declared: ranks and integrability are found there."""
+    from mbsym.mechanics.kinematics import Scene
+    from mbsym.mechanics.variables import ring_environment
+    from mbsym.problems.constraints import constraints
+
+    plain = analysis.system.without_speeds
+    return constraints(Scene(plain, analysis.ring, ring_environment(plain, analysis.ring), analysis.ring))
 
 
 def equations_of(analysis: Analysis) -> Equations:
     """The equations of the open tree with the constraints, and those without multipliers if they are not too long."""
     from mbsym.problems.constraints import embedded_equations
 
+    if analysis.speed_form is not None:
+        return _in_speeds(analysis, analysis.speed_form)
     tree, found = equations.equations(analysis.scene, analysis.energy), analysis.constraints
     try:
         embedded = embedded_equations(analysis.scene, tree, found)
@@ -46,12 +65,28 @@ def equations_of(analysis: Analysis) -> Equations:
     return replace(tree, constraints=found, embedded=embedded)
 
 
+def _in_speeds(analysis: Analysis, form: SpeedForm) -> SpeedEquations:
+    """Kane's equations of the open tree with the constraints, and those of the independent speeds."""
+    from mbsym.problems import speeds
+    from mbsym.problems.constraints.in_speeds import embedded_in_speeds
+
+    found = analysis.constraints
+    rows = [x.polynomial for x in (*found.velocity, *(f for f in found.position if f is not None))]
+    tree = speeds.equations(form, analysis.scene, rows)
+    try:
+        embedded = embedded_in_speeds(form, tree, found)
+    except NoClosedForm:
+        embedded = None
+    return replace(tree, constraints=found, embedded=embedded)
+
+
 def programs_of(analysis: Analysis) -> ConstrainedPrograms:
-    """M, f and the rows as straight-line code."""
+    """M, f and the rows as straight-line code, in coordinates."""
     from mbsym.mechanics.constraints.programs import constrained_programs
 
-    kept = [(name.constraint, name.component) for name in analysis.constraints.names]
-    return constrained_programs(analysis.system, analysis.ring, kept)
+    tied = analysis.constraints if analysis.speed_form is None else analysis.tied_in_coordinates
+    kept = [(name.constraint, name.component) for name in tied.names]
+    return constrained_programs(analysis.system.without_speeds, analysis.ring, kept)
 
 
 def rows_check(analysis: Analysis) -> Check | None:
@@ -59,6 +94,10 @@ def rows_check(analysis: Analysis) -> Check | None:
     found = analysis.optional("constraints") if analysis.system.constraints else None
     if found is None:
         return None
+    if analysis.speed_form is not None:
+        from mbsym.problems.constraints import speed_checks
+
+        return speed_checks.check_rows(analysis.speed_form, found, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_rows
 
     return check_rows(analysis.system, analysis.ring, found, programs_of(analysis))
@@ -69,6 +108,11 @@ def motion_check(analysis: Analysis) -> Check | None:
     closed = analysis.optional("equations") if analysis.system.constraints else None
     if closed is None or closed.constraints is None or closed.embedded is None:
         return None
+    if analysis.speed_form is not None:
+        from mbsym.problems.constraints import speed_checks
+
+        form, tied = analysis.speed_form, analysis.tied_in_coordinates
+        return speed_checks.check_embedded(form, closed.constraints, closed.embedded, tied, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_embedded
 
     return check_embedded(analysis.system, analysis.ring, closed.constraints, closed.embedded, programs_of(analysis))
@@ -76,6 +120,11 @@ def motion_check(analysis: Analysis) -> Check | None:
 
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     """What the constrained motion keeps."""
+    if analysis.speed_form is not None:
+        from mbsym.problems.constraints import speed_integrals
+
+        equations = cast("SpeedEquations", analysis.equations)
+        return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
     from mbsym.problems.constraints.integrals import integrals
 
     return integrals(analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
@@ -83,6 +132,11 @@ def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
 
 def integrals_check(analysis: Analysis, found: tuple[Integral, ...]) -> Check:
     """Their rates along the motion with multipliers."""
+    if analysis.speed_form is not None:
+        from mbsym.problems.constraints import speed_checks
+
+        tied = analysis.tied_in_coordinates
+        return speed_checks.check_integrals(analysis.speed_form, found, tied, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_integrals
 
     return check_integrals(analysis.system, analysis.ring, found, analysis.constraints, programs_of(analysis))

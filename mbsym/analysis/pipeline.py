@@ -75,6 +75,7 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
+        "tied_in_coordinates",
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
@@ -92,6 +93,8 @@ KNOW_SPEEDS = frozenset(
         "kinematics",
         "energy",
         "equations",
+        "constraints",
+        "tied_in_coordinates",
         "programs",
         "integrals",
         "first_order",
@@ -273,6 +276,8 @@ class Analysis(Stages):
         ("equations of motion", "constraints", "constrained motion"),
     )
     constraints = Derived["Analysis", "Constraints"](lambda a: a._constraints(), ("constraints",))
+    #: The same in generalised velocities, of a system in speeds.
+    tied_in_coordinates = Derived["Analysis", "Constraints"](constrained.constraints_in_coordinates)
     reactions = Derived["Analysis", tuple[Any, ...]](constrained.reactions_of, (constrained.REACTIONS,))
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
     residuals = Derived["Analysis", Column](approximation.residuals)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Ring
 from mbsym.expressions.place import Complaints
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
 from mbsym.problems import given_system, knowledge
-from mbsym.problems.constraints import Fault, faults
+from mbsym.problems.constraints import Fault, Unsound, constraints, faults
 
 
 def complain(system: System, complaints: Complaints) -> None:
@@ -21,13 +22,12 @@ def complain_of_constraints(system: System, complaints: Complaints) -> None:
     """Adds an error for every constraint that contradicts others or ties nothing, and for a wrong dependent set."""
     if not system.constraints:
         return
-    if system.speeds:
-        message = "constraints are not taken into account yet where there are 'speeds' or an 'orientation'"
-        complaints.error("constraints", message, system.constraints[0].span, "write the system in its coordinates")
-        return
-    ring = ring_of(system)
+    ring, plain = ring_of(system), system.without_speeds if system.speeds else system
     try:
-        found = faults(Scene(system, ring, ring_environment(system, ring), ring))
+        scene = Scene(plain, ring, ring_environment(plain, ring), ring)
+        found = faults(scene)
+        if system.speeds and system.dependent and not found:
+            found = _in_speeds(system, ring, scene)
     except Failure:  # nothing is known to be wrong; the derivation says what it has met
         return
     for fault in found:
@@ -45,6 +45,21 @@ def complain_of_matrices(system: System, complaints: Complaints) -> None:
             complaints.error(fault.code, fault.message, fault.span, fault.hint or None)
     except Failure:
         return
+
+
+def _in_speeds(system: System, ring: Ring, plain: Scene) -> tuple[Fault, ...]:
+    """What is wrong with the dependent set among speeds; ``plain`` is the system in coordinates."""
+    from mbsym.mechanics.constraints.programs import constrained_programs  # few systems have speeds and constraints
+    from mbsym.mechanics.speeds import SpeedForm
+    from mbsym.problems.constraints.in_speeds import constraints_in_speeds
+
+    tied, form = constraints(plain), SpeedForm(system, ring)
+    kept = [(name.constraint, name.component) for name in tied.names]
+    try:
+        constraints_in_speeds(form, form.scene(), tied, constrained_programs(plain.system, ring, kept))
+    except Unsound as reason:
+        return reason.faults
+    return ()
 
 
 def _complain(fault: Fault, system: System, complaints: Complaints) -> None:

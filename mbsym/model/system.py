@@ -288,7 +288,9 @@ class System(GuessesNames):
     def without_speeds(self) -> System:
         """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
-        return replace(self, bodies=bodies, claims=(), abbreviations=())
+        named = {*self.coordinates}  # a dependent speed is none of the coordinates'
+        dependent = tuple(name for name in self.dependent if name in named)
+        return replace(self, bodies=bodies, claims=(), abbreviations=(), dependent=dependent)
 
     @property
     def claimable(self) -> tuple[str, ...]:

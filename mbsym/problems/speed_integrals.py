@@ -95,12 +95,12 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
     field = Field(form, equations)
     found: list[Integral] = []
     known: list[Polynomial] = []
-    for integral, multipliers in _candidates(form, scene, energy, equations):
+    for integral, multipliers in candidates(form, scene, energy, equations):
         x = integral.formula.polynomial
         geometric = integral.kind in (GEOMETRIC, NORM)
         with suppress(Failure):  # what is too long is not known to be conserved
             proved = bool(multipliers) and field.combines(x, multipliers) is True
-            if (proved or field.keeps(x) is True) and (geometric or _is_new(form, x, known)):
+            if (proved or field.keeps(x) is True) and (geometric or is_new(form, x, known)):
                 found.append(integral)
                 if integral.kind not in (ENERGY, GEOMETRIC, NORM):
                     known.append(x)
@@ -111,7 +111,7 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
 Candidate = tuple[Integral, Sequence[Polynomial]]
 
 
-def _candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> Iterator[Candidate]:
+def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> Iterator[Candidate]:
     """What may be conserved, each with the multipliers that would prove it where they are known."""
     ring = form.ring
     kinetic, force = energy.kinetic_energy.polynomial, energy.force_function.polynomial
@@ -146,7 +146,7 @@ def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> 
     return Integral(name, kind, of, Formula(form.ring, form.ring.reduce(x)), PROVED)
 
 
-def _is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
+def is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
     """Whether it depends on the state, and is none of the others."""
     ring = form.ring
     state = [*form.system.coordinates, *(u.name for u in form.speeds)]

@@ -17,6 +17,7 @@ Source: Kane & Levinson, Dynamics: Theory and Applications (1985); Lurie, Analyt
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.ring import Polynomial
@@ -106,8 +107,11 @@ def energy(form: SpeedForm, scene: Scene) -> SpeedEnergy:
     )
 
 
-def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
-    """Kane's equations as M u' = f, and the kinematic equations."""
+def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) -> SpeedEquations:
+    """Kane's equations as M u' = f, and the kinematic equations.
+
+    What ``rows`` of constraints depend on is not aside either.
+    """
     ring, loads = form.ring, scene.system.loads
     kane = Kane(form, scene)
     needed, supplied = kane.inertia(), kane.active(loads)
@@ -116,7 +120,7 @@ def equations(form: SpeedForm, scene: Scene) -> SpeedEquations:
     forcing = [ring.reduce(b - ring.substitute(a, still)) for a, b in zip(needed, supplied, strict=True)]
     mass = [[a.derivative(u.rate_index) for u in form.speeds] for a in needed]
     names = tuple(s.name for s in form.positions)
-    occurring = {s.name for s in form.occurring([*needed, *supplied])}
+    occurring = {s.name for s in form.occurring([*needed, *supplied, *rows])}
     told = [(body.name, one) for body in form.oriented for one in body.orientation if set(one.components) & occurring]
     return SpeedEquations(
         mass_matrix=Matrix.of(ring, mass),

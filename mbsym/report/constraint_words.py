@@ -19,12 +19,13 @@ Said = tuple[str, dict[str, object]]
 
 @dataclass(frozen=True)
 class Writer:
-    """How a medium writes a list of coordinates, a word in its language, rates that are known, and a formula != 0."""
+    """How a medium writes lists of coordinates and of speeds, a word in its language, known rates, a formula != 0."""
 
     names: Callable[[tuple[str, ...]], str]
     word: Callable[[str], str] = str
     rates: Callable[[tuple[tuple[str, Formula], ...]], str] = lambda rates: ", ".join(f"{n}' = {x}" for n, x in rates)
     nonzero: Callable[[Formula], str] = lambda value: f"{value} != 0"
+    speeds: Callable[[tuple[str, ...]], str] = ", ".join
 
 
 def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
@@ -60,7 +61,12 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
         rows = "; ".join(label(name, write) for name, decided in found.alone if decided is whole)
         if rows and len(found.alone) > 1:  # of one alone it has been said
             yield sentence, {"rows": rows}
-    if found.dependent and found.free:
+    if found.dependent and found.free and found.in_speeds:
+        yield (
+            "Dependent speeds: [[dependent]]; independent ones: [[free]].",
+            {"dependent": write.speeds(found.dependent), "free": write.speeds(found.free)},
+        )
+    elif found.dependent and found.free:
         yield (
             "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
             {"dependent": write.names(found.dependent), "free": write.names(found.free)},

@@ -140,7 +140,10 @@ def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
     """The sentences about constraints, names in MathML."""
     from mbsym.report.constraint_words import Writer, sentences
 
-    write = Writer(lambda listed: shown.math(*_separated([str(names[name]) for name in listed])))
+    write = Writer(
+        lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        speeds=lambda listed: shown.math(*_separated([str(speed(name, names)) for name in listed])),
+    )
     yield from _filled(sentences(tied, write))
 
 

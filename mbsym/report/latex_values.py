@@ -243,6 +243,7 @@ def _writer(names: LatexNames, tongue: Language) -> Any:
         lambda word: escaped(tongue.say(word)),
         lambda rates: ", ".join(f"${names[name].accented('dot')} = {formula(x)}$" for name, x in rates),
         lambda value: f"${formula(value)} \\neq 0$",
+        lambda listed: "$" + ",\\, ".join(speed(name, names) for name in listed) + "$",
     )
 
 

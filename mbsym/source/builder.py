@@ -135,7 +135,10 @@ def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[t
     from mbsym.source.constraints import read_constraints
 
     found = read_constraints(node, bodies, reading)
-    named = _coordinates(fields, "dependent", "a dependent coordinate", reading)
+    if "speed" in reading.scope.kinds.values():
+        named = _coordinates(fields, "dependent", "a dependent coordinate or speed", reading, ("coordinate", "speed"))
+    else:
+        named = _coordinates(fields, "dependent", "a dependent coordinate", reading)
     if dependent is not None and node is None:
         message = "nothing depends on anything: there are no 'constraints'"
         reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
@@ -164,9 +167,11 @@ def _language(fields: Fields, reading: Reading) -> str:
     return "" if node is None else reading.word(node, "'language'", LANGUAGES) or ""
 
 
-def _coordinates(fields: Fields, key: str, what: str, reading: Reading) -> tuple[str, ...]:
-    """A list of coordinates, none twice."""
-    node, allowed = fields.get(key), Allowed(what, ("coordinate",))
+def _coordinates(
+    fields: Fields, key: str, what: str, reading: Reading, kinds: tuple[str, ...] = ("coordinate",)
+) -> tuple[str, ...]:
+    """A list of coordinates, or of names of other ``kinds``, none twice."""
+    node, allowed = fields.get(key), Allowed(what, kinds)
     found: list[str] = []
     for item in () if node is None else reading.items(node, f"'{key}'"):
         scalar = reading.scalar(item, "a coordinate")

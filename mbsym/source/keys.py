@@ -20,7 +20,7 @@ SYSTEM = {
     "linear system": "in place of bodies and loads: the matrices of M x'' + (D + G) x' + (K + N) x = B u",
     "loads": "gravity, springs, dampers, forces: a list of {kind of load: {...}}",
     "constraints": "what ties bodies or coordinates besides the joints: a list of {kind of constraint: {...}}",
-    "dependent": "coordinates that the constraints express by the others: [q2, q3]; those left out are found",
+    "dependent": "coordinates or speeds that constraints express by the others: [q2, q3]; what is left out is found",
     "reactions": "bodies whose joints' forces and moments are wanted: [hinge]",
     "relations": "parameters that are functions of others, used from problem 4 on: {nu: omega0**2*R**3}",
     "assumptions": "inequalities between parameters and notation, such as alpha > -1",

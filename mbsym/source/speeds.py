@@ -252,6 +252,7 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
     found = [(name, "a load") for load in system.loads for name in _held(load)]
+    found += [(name, "a constraint") for one in system.constraints for name in _held(one)]
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:
         if other is not body:

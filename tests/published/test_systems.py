@@ -33,6 +33,7 @@ NO_MOTION = {
     "gyrostat.yaml",
     "gyrostat-poisson.yaml",
     "rolling-sphere.yaml",
+    "rolling-sphere-speeds.yaml",
     "spatial-arm.yaml",
     "stick-slip.yaml",
     "tethered-satellites.yaml",

@@ -44,6 +44,17 @@ class OnManifold:
     state: State
     exact: bool
 
+    @property
+    def enclosed(self) -> OnManifold:
+        """The same state in enclosures, for what has no rational value there; its angles by their sines and cosines."""
+        numbers = self.state.numbers
+        if not isinstance(numbers, Rationals):
+            return self
+        values = {name: arb(x) for name, x in self.state.values.items()} | {"pi": arb.pi()}
+        for name, (sine, cosine) in numbers.basic.items():
+            values[name] = arb(numbers.denominators[name]) * arb.atan2(arb(sine), arb(cosine))
+        return OnManifold(State(Balls(values), values), False)
+
 
 class Manifold:
     """The constraint manifold of a system, and states on it."""

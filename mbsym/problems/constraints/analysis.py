@@ -151,7 +151,7 @@ class _Analysis:
     def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
         columns, required = self._columns(len(independent))
         try:
-            return choose(self.ring, jacobian, independent, columns, _regular(points.jacobians()), required)
+            return choose(self.ring, jacobian, independent, columns, regular_at(points.jacobians()), required)
         except Constrained as reason:
             if not self.system.dependent:
                 raise
@@ -316,7 +316,7 @@ class _Analysis:
         return self.manifold.rank_with_parameters(points.states[0]) - position_rank
 
 
-def _regular(jacobians: Sequence[Sequence[Sequence[Any]]]) -> Any:
+def regular_at(jacobians: Sequence[Sequence[Sequence[Any]]]) -> Any:
     """Whether a square block is regular at one of the points."""
 
     def regular(rows: Sequence[int], columns: Sequence[int]) -> bool:

@@ -107,7 +107,7 @@ def check_embedded(
             (f"second rate of {name.label}", row.acceleration, zero)
             for name, row in zip(found.names, rows, strict=True)
         ]
-        for place, y in enumerate(_null_space([row.partials for row in rows], len(names), state.numbers)):
+        for place, y in enumerate(null_space([row.partials for row in rows], len(names), state.numbers)):
             work = sum((a * b for a, b in zip(y, residual, strict=True)), zero)
             compared.append((f"work along displacement {place + 1}", work, zero))
         return compared
@@ -175,7 +175,7 @@ def accelerated(state: State, carry: Any, found: Constraints, embedded: Embedded
     return State(state.numbers, {**state.values, **accelerations})
 
 
-def _null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:
+def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:
     """A basis of {y: J y = 0}, from J alone."""
     done = eliminated(rows, range(n))
     owner = {column: row for row, column in done.pivots}
@@ -190,12 +190,22 @@ def _null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list
 
 
 def compared_on_manifold(
-    name: str, routes: tuple[str, str], system: System, ring: Ring, programs: ConstrainedPrograms, pairs: At
+    name: str,
+    routes: tuple[str, str],
+    system: System,
+    ring: Ring,
+    programs: ConstrainedPrograms,
+    pairs: At,
+    irrational: bool = False,
 ) -> Check:
-    """Compares two routes at states that keep the constraints: rational ones, or certified enclosures."""
+    """Compares two routes at states that keep the constraints: rational ones, or certified enclosures.
+
+    With ``irrational`` values are wanted that are not rational at rational states, either.
+    """
     done, exact = 0, True
     with ctx.workprec(PRECISION):
-        for one in Manifold(system, ring, programs).states(3 * STATES):
+        for found in Manifold(system, ring, programs).states(3 * STATES):
+            one = found.enclosed if irrational else found
             try:
                 outcome, detail = _verdict(pairs(one))
             except ZeroDivisionError:

@@ -84,7 +84,8 @@ class Constraints(Shown):
     ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``parameter_conditions``
     is how many relations between the parameters the position constraints demand.  ``alone`` says of every independent
     velocity constraint whether it is integrable by itself, on all configurations (None: undecided).  ``solved`` is None
-    where the formulas outgrow the budget; ``pivots`` say how a program does it.
+    where the formulas outgrow the budget; ``pivots`` say how a program does it.  With ``in_speeds`` the
+    ``coordinates``, ``dependent`` and ``free`` are names of speeds, velocity and J are in them, f is in the positions.
     """
 
     names: tuple[RowName, ...]
@@ -103,6 +104,7 @@ class Constraints(Shown):
     exact_points: bool
     pivots: Pivots
     solved: Solved | None
+    in_speeds: bool = False
 
     @property
     def velocity_rank(self) -> int:

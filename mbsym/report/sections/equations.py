@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 def data(found: Equations, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     section = {"mass_matrix": matrix_text(found.mass_matrix, write), "forcing": column_text(found.forcing, write)}
+    if found.in_speeds:
+        section |= _in_speeds(cast("SpeedEquations", found), write)
     if found.constraints is not None:
-        return section | {"constraints": _constraints(found.constraints, write)} | _embedded(found, write)
-    return section | _in_speeds(cast("SpeedEquations", found), write) if found.in_speeds else section
+        section |= {"constraints": _constraints(found.constraints, write)} | _embedded(found, write)
+    return section
 
 
 def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:

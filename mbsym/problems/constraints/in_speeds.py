@@ -1,0 +1,152 @@
+"""Constraints and the equations without multipliers in speeds u: what is known in coordinates, told in the variables.
+
+    J u + j = 0,   J u' + gamma = 0           J = J_q Y of  q' = Y (u - s0): of the same rank
+    u = V v + v0,  u' = V v' + a0             v: the independent speeds
+    V^T M V v' = V^T (f - M a0)               Kane's equations projected (Maggi); no multipliers
+
+Which rows are independent, redundant, integrable is a matter of the directions in which the system can move, whatever
+they are told by: it is found once, in coordinates (``analysis``).
+
+Source: Kane & Levinson, Dynamics: Theory and Applications (1985), sections 2.13, 4.4 (nonholonomic partial velocities).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from flint import ctx
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Constrained, NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded, projected
+from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+from mbsym.mechanics.constraints.ranks import eliminated
+from mbsym.mechanics.constraints.speed_rows import SpeedRow, speed_rows
+from mbsym.mechanics.constraints.states import PRECISION, Manifold
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.oracle import Oracle
+from mbsym.mechanics.speed_states import completed
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.model.system import velocity_name
+from mbsym.problems.constraints.analysis import POINTS, Fault, Unsound, regular_at
+from mbsym.problems.constraints.motion import Embedded
+from mbsym.problems.constraints.result import Constraints, Solved
+from mbsym.problems.speeds import SpeedEquations
+
+
+def constraints_in_speeds(
+    form: SpeedForm, scene: Scene, tied: Constraints, programs: ConstrainedPrograms
+) -> Constraints:
+    """The constraints ``tied`` (in coordinates) in speeds; ``programs`` are those in coordinates.
+
+    Raises Unsound where the dependent set of the description cannot be solved for, Constrained, NoClosedForm.
+    """
+    ring, names = form.ring, tuple(u.name for u in form.speeds)
+    rows = speed_rows(form, scene, tied.names)
+    pivots = _pivots(form, rows, tied, programs)
+    still = {u.index: ring.zero for u in form.speeds}
+    sides = [(ring.substitute(row.velocity, still), row.gamma) for row in rows]
+    try:
+        found = embedded(ring, [row.partials for row in rows], sides, pivots)
+    except NoClosedForm:
+        found = None
+    return replace(
+        tied,
+        position=tuple(None if row.position is None else Formula(ring, row.position) for row in rows),
+        velocity=column(ring, [row.velocity for row in rows]),
+        jacobian=Matrix.of(ring, [list(row.partials) for row in rows]),
+        acceleration=column(ring, [row.gamma for row in rows]),
+        coordinates=names,
+        dependent=tuple(names[k] for k in pivots.columns),
+        pivots=pivots,
+        solved=None if found is None else _solved(ring, found),
+        in_speeds=True,
+    )
+
+
+def embedded_in_speeds(form: SpeedForm, equations: SpeedEquations, found: Constraints) -> Embedded:
+    """The equations of the independent speeds.  Raises NoClosedForm where they outgrow the budget."""
+    if found.solved is None:
+        raise NoClosedForm("the dependent speeds have no closed form within the budget of terms")
+    ring, n = form.ring, len(found.coordinates)
+    mass = [[equations.mass_matrix[i, j].polynomial for j in range(n)] for i in range(n)]
+    forcing = [x.polynomial for x in equations.forcing]
+    matrix, right = projected(ring, found.solved.embedding, mass, forcing)
+    images = dependent_speeds(form, found, found.solved)
+    right = [ring.reduce(ring.substitute(x, images)) for x in right]
+    return Embedded(found.free, Matrix.of(ring, matrix), column(ring, right))
+
+
+def dependent_speeds(form: SpeedForm, found: Constraints, solved: Solved) -> dict[int, Polynomial]:
+    """The generators of the dependent speeds, and what they are in the independent ones."""
+    ring, by_name = form.ring, {u.name: u for u in form.speeds}
+    free = [ring.context.gen(by_name[name].index) for name in found.free]
+    parts = zip(found.dependent, solved.embedding.matrix, solved.embedding.shift, strict=True)
+    return {
+        by_name[name].index: ring.reduce(sum((ring.times(x, v) for x, v in zip(row, free, strict=True)), shift))
+        for name, row, shift in parts
+    }
+
+
+def wanted_speeds(form: SpeedForm) -> list[int]:
+    """The places of the speeds that the description wants dependent: by their names, or those of coordinates."""
+    named = {*form.system.dependent, *map(velocity_name, form.system.dependent)}
+    return [k for k, u in enumerate(form.speeds) if u.name in named]
+
+
+def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, programs: ConstrainedPrograms) -> Pivots:
+    """Which speeds depend on the others; kept velocities of plain coordinates rather than declared speeds."""
+    required, rank = wanted_speeds(form), tied.velocity_rank
+    if len(required) > rank:
+        how = "depends" if rank == 1 else "depend"
+        message = f"{rank} of {len(form.speeds)} speeds {how} on the others, and 'dependent' names {len(required)}"
+        raise Unsound([Fault("dependent-set", message, hint="leave 'dependent' out to have them found")])
+    declared = {speed.name for speed in form.system.speeds}
+    names = [u.name for u in form.speeds]
+    turning = {velocity_name(name) for name in form.ring.angles}
+    columns = sorted(range(len(names)), key=lambda k: (names[k] not in declared, names[k] not in turning))
+    with ctx.workprec(PRECISION):
+        jacobians = _at_points(form, rows, programs)
+        try:
+            return choose(
+                form.ring, [x.partials for x in rows], tied.independent, columns, regular_at(jacobians), required
+            )
+        except Constrained as reason:
+            if not required or not jacobians:
+                raise
+            listed = ", ".join(names[k] for k in required)
+            message = f"the constraints cannot be solved for the speeds {listed}"
+            block = eliminated([jacobians[0][i] for i in tied.independent], columns[::-1])
+            hint = f"for example dependent: [{', '.join(names[k].removesuffix('_dot') for k in sorted(block.columns))}]"
+            raise Unsound([Fault("dependent-set", message, hint=hint)]) from reason
+
+
+def _at_points(form: SpeedForm, rows: Sequence[SpeedRow], programs: ConstrainedPrograms) -> list[list[list[Any]]]:
+    """J in numbers at points of the manifold."""
+    found = []
+    for one in Manifold(form.system.without_speeds, form.ring, programs).states(POINTS):
+        place = one.enclosed if form.by_quaternion else one
+        state = completed(Oracle(form.system, place.state))
+        carry = Carrier(form.ring, state.numbers, state.values)
+        found.append([[carry(x) for x in row.partials] for row in rows])
+    return found
+
+
+def _solved(ring: Ring, found: Embedding) -> Solved:
+    """V (n x (n - r)), v0 and a0, with the rows of all speeds."""
+    n = len(found.dependent) + len(found.free)
+    columns = [basis_vector(ring, found, place) for place in range(len(found.free))]
+    shift, acceleration = [ring.zero] * n, [ring.zero] * n
+    for k, x, y in zip(found.dependent, found.shift, found.acceleration, strict=True):
+        shift[k], acceleration[k] = x, y
+    return Solved(
+        Matrix.of(ring, [[y[k] for y in columns] for k in range(n)]),
+        column(ring, shift),
+        column(ring, acceleration),
+        Formula(ring, found.determinant),
+        found,
+    )

@@ -1,0 +1,91 @@
+"""Problem 7 with constraints, in speeds: what  V^T M V v' = V^T (f - M a0),  u = V v + v0  keep constant.
+
+With D = det(V^T M V) an expression I(s, u, t) is an integral if
+
+    D (dI/dt at u' = 0) + grad_u I . (V adj(V^T M V) V^T (f - M a0) + D a0)  =  0
+
+identically once the dependent speeds are expressed.  Tried are those of the system without constraints
+(``speed_integrals``): the energy, the momenta of coordinates, of the whole system and of speeds.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import cached_property
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.problems.constraints.in_speeds import dependent_speeds
+from mbsym.problems.constraints.motion import Embedded
+from mbsym.problems.constraints.result import Constraints, Solved
+from mbsym.problems.energy import Energy
+from mbsym.problems.integrals import ENERGY, Integral
+from mbsym.problems.speed_integrals import GEOMETRIC, candidates, is_new
+from mbsym.problems.speeds import SpeedEquations
+
+#: Equations longer than this, or with more speeds, are not tried.
+MOST_TERMS, MOST_SPEEDS = 600, 4
+
+
+class TiedField:
+    """The vector field of a constrained system in speeds, times D."""
+
+    def __init__(self, form: SpeedForm, tied: Constraints, solved: Solved, embedded: Embedded) -> None:
+        self.form, self.tied, self.solved, self.embedded = form, tied, solved, embedded
+        self.images = dependent_speeds(form, tied, solved)
+
+    @cached_property
+    def determinant(self) -> Polynomial:
+        return determinant(self.form.ring, self.embedded.mass_matrix.polynomials)
+
+    @cached_property
+    def scaled(self) -> list[Polynomial]:
+        """D u', by Cramer's rule."""
+        ring, mass = self.form.ring, self.embedded.mass_matrix.polynomials
+        right, own = [x.polynomial for x in self.embedded.forcing], []
+        for k in range(len(right)):
+            replaced = [[*row[:k], f, *row[k + 1 :]] for row, f in zip(mass, right, strict=True)]
+            own.append(determinant(ring, replaced))
+        found = []
+        for i, shift in enumerate(self.solved.acceleration_shift):
+            row = [self.solved.transformation[i, k].polynomial for k in range(len(own))]
+            found.append(ring.reduce(ring.dot(row, own) + ring.times(self.determinant, shift.polynomial)))
+        return found
+
+    def on_constraints(self, x: Polynomial) -> Polynomial:
+        """x with the dependent speeds expressed."""
+        return self.form.ring.reduce(self.form.ring.substitute(x, self.images))
+
+    def keeps(self, x: Polynomial) -> bool:
+        """Whether dx/dt = 0 is proved for every motion."""
+        ring = self.form.ring
+        total = ring.times(self.determinant, self.form.drift(x))
+        for u, scaled in zip(self.form.speeds, self.scaled, strict=True):
+            slope = ring.derivative(x, u.name)
+            if not ring.vanishes(slope):
+                total = total + ring.times(slope, scaled)
+        return self.form.vanishes(self.on_constraints(total)) is True
+
+
+def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> tuple[Integral, ...]:
+    """All first integrals of the kinds above, each proved; none where there is no short form without multipliers."""
+    tied, embedded = equations.constraints, equations.embedded
+    if tied is None or tied.solved is None or embedded is None:
+        return ()
+    if embedded.terms > MOST_TERMS or len(embedded.free) > MOST_SPEEDS:
+        return ()
+    field = TiedField(form, tied, tied.solved, embedded)
+    found: list[Integral] = []
+    known: list[Polynomial] = []
+    for integral, _ in candidates(form, scene, energy, equations):
+        x = integral.formula.polynomial
+        with suppress(Failure):  # what is too long is not known to be conserved
+            on = field.on_constraints(x)
+            if field.keeps(x) and (integral.kind == GEOMETRIC or is_new(form, on, known)):
+                found.append(integral)
+                if integral.kind not in (ENERGY, GEOMETRIC):
+                    known.append(on)
+    return tuple(found)
