@@ -8,6 +8,12 @@ Forwards, in each body's axes (turn by turn alpha <- C alpha + x'' e + omega x x
 
 and backwards: the joint must supply what the body and everything beyond it need less what the loads supply.  Its
 projections on the joint's partial velocities are the residuals  M q'' - forcing.
+
+``bias_forces`` is a second recursion for what kernels are made of, q'' = 0, and stays beside this one: it needs 2017
+operations for the right-hand sides of the shipped systems where this one needs 2305, and 229 instead of 338 for the arm
+of six joints (``tests/mechanics/test_two_recursions.py``).  This one takes any q'', and angular velocities and
+accelerations that are given as such (speeds, reactions, inverse dynamics); the self-check compares both with
+d'Alembert's principle.
 """
 
 from __future__ import annotations
