@@ -21,6 +21,7 @@ from typing import Any, Generic, Protocol, Self, TypeVar
 
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.rates import is_rate
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, curve_name
 
@@ -204,7 +205,7 @@ class Lowering(Generic[S]):
     @staticmethod
     def _is_angle(form: LinearForm) -> bool:
         """No rates in it: the sine of a velocity is that of a plain value."""
-        return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
+        return not any(is_rate(name) for name, _ in form.coefficients)
 
     def _value(self, expression: Expression) -> S:
         algebra = self.algebra

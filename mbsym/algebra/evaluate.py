@@ -13,6 +13,7 @@ from mbsym.algebra.failures import NoValue
 from mbsym.algebra.point import BallsAtRationals, Rationals
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.rates import ENDINGS, acceleration_name, velocity_name
 
 
 class Carrier:
@@ -87,7 +88,7 @@ class Carrier:
         if g.kind in ("sine", "cosine") and g.argument is None:
             # the generator is the sine of name/denominator, which is what the half-angle tangent belongs to
             return algebra.basic[g.name][0 if g.kind == "sine" else 1]
-        name = g.name + {"velocity": "_dot", "acceleration": "_ddot"}.get(g.kind, "")
+        name = g.name + ENDINGS.get(g.kind, "")
         # a name may have been given another value here than at the state
         own = g.argument is None and name in algebra.exact and self.environment.get(name) is algebra.values[name]
         return algebra.exact[name] if own else None
@@ -115,9 +116,9 @@ class Carrier:
             case "function":
                 return self.algebra.function(g.name, self(g.argument))
             case "velocity":
-                return self._named(g.name + "_dot")
+                return self._named(velocity_name(g.name))
             case "acceleration":
-                return self._named(g.name + "_ddot")
+                return self._named(acceleration_name(g.name))
             case "sine" | "cosine":
                 return self.algebra.sin_cos_of(self(g.argument))[0 if g.kind == "sine" else 1]
         return self._named(g.name)

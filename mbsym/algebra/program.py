@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Tabulated
 
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
@@ -372,7 +373,7 @@ class Program(Algebra[Node]):
         match instruction.operation:
             case "input" if instruction.payload == "pi":
                 return LinearForm(turns=Fraction(1))
-            case "input" if str(instruction.payload).endswith("_dot"):
+            case "input" if is_velocity(str(instruction.payload)):
                 return None  # a velocity is no angle: its sine is that of a plain value
             case "input":
                 return LinearForm(((str(instruction.payload), Fraction(1)),))

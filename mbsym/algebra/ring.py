@@ -34,6 +34,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.rates import ENDINGS, acceleration_name, velocity_name
 from mbsym.expressions.table import Tabulated
 
 Polynomial = Any
@@ -159,7 +160,7 @@ class Ring(Algebra[Polynomial]):
             index = self._index["time", "t"] if name == "t" else self._index[kind, name]
             self._derivatives[name] = {index: self.one}
             if kind == "coordinate":  # loads may hold functions of velocities: exp(q'), which the chain rule must reach
-                self._derivatives[name + "_dot"] = {self._index["velocity", name]: self.one}
+                self._derivatives[velocity_name(name)] = {self._index["velocity", name]: self.one}
         for name, denominator in self.angles.items():
             s, c = self._index["sine", name], self._index["cosine", name]
             self._relate(((s, 2),), self._gens[s] ** 2 + self._gens[c] ** 2 - 1)
@@ -747,8 +748,8 @@ class Ring(Algebra[Polynomial]):
 
     def velocity_derivative(self, x: Polynomial, name: str) -> Polynomial:
         """Partial derivative with respect to the velocity of a coordinate."""
-        if len(self._derivatives[name + "_dot"]) > 1 or self._jumps:
-            return self.derivative(x, name + "_dot")
+        if len(self._derivatives[velocity_name(name)]) > 1 or self._jumps:
+            return self.derivative(x, velocity_name(name))
         return x.derivative(self._index["velocity", name])
 
     def depends_on(self, x: Polynomial, name: str) -> bool:
@@ -919,9 +920,8 @@ class Ring(Algebra[Polynomial]):
 
     def names(self) -> list[str]:
         """The keys that ``evaluate`` wants: declared names and ``<name>_dot``, ``<name>_ddot``."""
-        suffix = {"velocity": "_dot", "acceleration": "_ddot"}
         plain = ("coordinate", "prescribed", "time", "parameter", "velocity", "acceleration")
-        return [g.name + suffix.get(g.kind, "") for g in self.generators if g.kind in plain and g.name != "pi"]
+        return [g.name + ENDINGS.get(g.kind, "") for g in self.generators if g.kind in plain and g.name != "pi"]
 
     def evaluate(self, x: Polynomial, values: Mapping[str, Any]) -> Any:
         """The value as a ball (``arb``, working precision ``flint.ctx.prec``) at numbers for all names."""
@@ -1000,9 +1000,9 @@ class _Evaluation:
             case "function":
                 return enclosed(g.name, self(g.argument))
             case "velocity":
-                return arb(self.values[g.name + "_dot"])
+                return arb(self.values[velocity_name(g.name)])
             case "acceleration":
-                return arb(self.values[g.name + "_ddot"])
+                return arb(self.values[acceleration_name(g.name)])
         return arb.pi() if g.name == "pi" else arb(self.values[g.name])
 
 

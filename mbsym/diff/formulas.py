@@ -20,6 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.parser import DERIVED, parse_expression
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Operation, walk
 from mbsym.formulas.formula import Formula
 
@@ -35,7 +36,7 @@ _ADJOINED = 64
 #: Adjoined elements behind which a nonzero normal form may hide a zero.
 _OPEN = ("root", "function", "sine", "cosine")
 
-_RATES = ("_ddot", "_dot")
+_RATES = (ACCELERATION_ENDING, VELOCITY_ENDING)
 
 
 @dataclass(frozen=True)

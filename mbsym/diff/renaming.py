@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from itertools import permutations, product
 from typing import Any
 
+from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
+
 #: Up to so many names of one kind every pairing is tried; of more, the one in the order of the lists.
 MOST_PERMUTED = 3
 
@@ -46,7 +48,7 @@ def renamed(a: Mapping[str, Any], proposal: tuple[Renaming, ...]) -> dict[str, A
     for one in proposal:
         names[one.before] = one.after
         if one.kind == "coordinate":
-            names |= {one.before + rate: one.after + rate for rate in ("_dot", "_ddot")}
+            names |= {one.before + rate: one.after + rate for rate in (VELOCITY_ENDING, ACCELERATION_ENDING)}
     longest = sorted(names, key=len, reverse=True)
     pattern = re.compile(r"(?<![A-Za-z0-9_])(" + "|".join(map(re.escape, longest)) + r")(?![A-Za-z0-9_])")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from mbsym.editing.keys import keys_in
 from mbsym.editing.markdown import code, plain
 from mbsym.editing.place import key_at, where, word_at
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import text as written
 from mbsym.model.claims import CLAIMS
 from mbsym.source.keys import ALIASES
@@ -53,7 +54,7 @@ def _name(word: str, analysis: Analysis) -> str | None:
             value = "" if parameter.value is None else f" = {code(written(parameter.value))}"
             meaning = f": {plain(parameter.meaning)}" if parameter.meaning else ""
             return f"**{plain(word)}**{value}{told}, {parameter.sign}{meaning}"
-    name = word.removesuffix("_dot")
+    name = without_velocity(word)
     if name in system.coordinates:
         body = next(body.name for body in system.bodies if name in body.coordinates)
         parts = [

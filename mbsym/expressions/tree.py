@@ -13,6 +13,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from mbsym.expressions.place import Span
+from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Curve, Table, Tabulated
 
 #: Smooth functions of one argument that a description may call, in the spelling of Python's ``math``.
@@ -197,7 +198,7 @@ def without_tables(expression: Expression, chosen: Callable[[Call], bool]) -> Ex
 
 def sticks(call: Call) -> bool:
     """Whether a table has kinks in velocities: as a dissipation function it is dry friction, which holds there."""
-    moving = any(name.endswith("_dot") for name in names(call.argument))
+    moving = any(is_velocity(name) for name in names(call.argument))
     return moving and call.table is not None and call.table.curve.smoothness == 0
 
 

@@ -12,12 +12,13 @@ from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.expressions.guessing import guess
 from mbsym.expressions.parser import DERIVED, parse_expression
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.tree import Expression, Number, names, number
 
 if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
 
-_SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
+
 _NAMED = ("coordinate", "velocity", "acceleration", "prescribed", "time", "parameter")
 
 
@@ -58,7 +59,7 @@ def power(formula: Formula, exponent: object) -> tuple[Ring, Polynomial]:
 
 def environment(ring: Ring) -> dict[str, Polynomial]:
     """Every name of the system and its generator."""
-    found = {g.name + _SUFFIX.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
+    found = {g.name + ENDINGS.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
     return {name: ring.context.gen(k) for name, k in found.items()}
 
 
@@ -71,7 +72,7 @@ def substituted(formula: Formula, values: Mapping[str, Any]) -> tuple[Ring, Poly
     ring, x = whole(formula)
     known = environment(ring)
     lower = Lowering(ring, known)
-    indices = {g.name + _SUFFIX.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
+    indices = {g.name + ENDINGS.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
     images: dict[int, Polynomial] = {}
     for name, value in values.items():
         if name not in known or name == "pi":

@@ -6,11 +6,10 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 from __future__ import annotations
 
 from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
-
-_SUFFIX = {"velocity": "_dot", "acceleration": "_ddot"}
 
 
 def python_text(ring: Ring, polynomial: Polynomial) -> str:
@@ -20,7 +19,7 @@ def python_text(ring: Ring, polynomial: Polynomial) -> str:
 
 def declared_name(generator: Generator) -> str:
     """``theta``, ``theta_dot``, ``theta_ddot``, ``Jx``."""
-    return generator.name + _SUFFIX.get(generator.kind, "")
+    return generator.name + ENDINGS.get(generator.kind, "")
 
 
 class InfixPrinter:

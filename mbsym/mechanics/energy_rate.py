@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.rates import velocity_name
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import actions, force_function
@@ -57,7 +58,7 @@ def _applied(scene: Scene, program: Program) -> Iterator[Node]:
     speeds = [program.input(name) for name in scene.system.velocities]
     for action in actions(scene, potential=False):
         for name, force in action.generalized.items():
-            yield program.product(scene.environment[f"{name}_dot"], force)
+            yield program.product(scene.environment[velocity_name(name)], force)
         for wrench in action.wrenches:
             motion = scene.motions[wrench.body]
             moving = (*motion.velocity_origin, *motion.angular_velocity)

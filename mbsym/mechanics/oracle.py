@@ -20,6 +20,7 @@ from typing import Any
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.rates import acceleration_name
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import names
 from mbsym.model import loads
@@ -375,7 +376,7 @@ class Oracle:
         for item in self.system.prescribed:
             environment[item.name] = Series(values[item.name], rates(item.rate), zero)
         for name in self.system.coordinates:
-            speed, acceleration = values[name + "_dot"], values[name + "_ddot"]
+            speed, acceleration = values[velocity_name(name)], values[acceleration_name(name)]
             environment[name] = Series(values[name], speed, half * acceleration)
             environment[velocity_name(name)] = Series(speed, acceleration, zero)
         return environment
@@ -638,7 +639,7 @@ _FORCE_FUNCTIONS: dict[type, Any] = {
 def _coordinate_damper(oracle: Oracle, load: loads.CoordinateDamper, name: str) -> Scalar:
     if name != load.coordinate:
         return oracle.numbers.zero
-    return -(oracle.moving.lower(load.coefficient).a * oracle.state.values[name + "_dot"])
+    return -(oracle.moving.lower(load.coefficient).a * oracle.state.values[velocity_name(name)])
 
 
 def _point_damper(oracle: Oracle, load: loads.PointDamper, name: str) -> Scalar:
@@ -674,7 +675,7 @@ def _ends_apart(
 def _rayleigh(oracle: Oracle, load: loads.Rayleigh, name: str) -> Scalar:
     environment = oracle._constants()
     zero, one = oracle.numbers.zero, oracle.numbers.one
-    environment[velocity_name(name)] = Series(oracle.state.values[name + "_dot"], one, zero)
+    environment[velocity_name(name)] = Series(oracle.state.values[velocity_name(name)], one, zero)
     return -Lowering(TaylorSeries(oracle.numbers, environment), environment)(load.expression).b
 
 

@@ -12,6 +12,7 @@ from mbsym.algebra.base import Scalar
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.rates import is_rate
 from mbsym.expressions.tree import (
     ONE,
     ZERO,
@@ -175,7 +176,7 @@ def has_linear_angles(system: System) -> bool:
 def _is_plain(form: LinearForm | None) -> bool:
     if form is None or (form.constant and form.coefficients):
         return False
-    return not any(name.endswith(("_dot", "_ddot")) for name, _ in form.coefficients)
+    return not any(is_rate(name) for name, _ in form.coefficients)
 
 
 def ring_of(

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
+from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.model.system import System
 from mbsym.model.units import (
     ACCELERATION,
@@ -42,7 +43,7 @@ def unit_of(system: System, name: str) -> str | None:
         return system.units.of(name)
     if name == "t":
         return time_unit(system)
-    for end, order in (("_dot", 1), ("_ddot", 2)):
+    for end, order in ((VELOCITY_ENDING, 1), (ACCELERATION_ENDING, 2)):
         base = name.removesuffix(end)
         if base != name and base in system.coordinates:
             return system.units.rate_of(base, order)

@@ -25,6 +25,8 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.place import Span
+from mbsym.expressions.rates import acceleration_name as acceleration_name
+from mbsym.expressions.rates import velocity_name as velocity_name
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Expression
 from mbsym.model.basics import INERTIAL as INERTIAL
@@ -45,15 +47,6 @@ Tensor = tuple[Vector, Vector, Vector]
 
 #: The languages of reports: English, Russian, Spanish.
 LANGUAGES = ("en", "ru", "es")
-
-
-def velocity_name(coordinate: str) -> str:
-    """``theta_dot``: the name under which a description may use a generalised velocity."""
-    return coordinate + "_dot"
-
-
-def acceleration_name(coordinate: str) -> str:
-    return coordinate + "_ddot"
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Name, names
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import constants, programs
@@ -120,7 +121,7 @@ def _uses_elsewhere(system: System, body: Body, angles: Sequence[str]) -> list[s
     used: set[str] = set()
     for part in parts:
         for expression in expressions(tuple(part)):
-            used |= {name.removesuffix("_dot") for name in names(expression)}
+            used |= {without_velocity(name) for name in names(expression)}
     return [name for name in angles if name in used or any(_mentions(load, name) for load in system.loads)]
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.mathml import (
     APPLY,
@@ -77,7 +78,7 @@ def speed_form(one: Speed, names: MathNames, number: int) -> Markup:
 
 def speed(name: str, names: MathNames) -> Markup:
     """A speed by name: p, or a dotted coordinate."""
-    plain = name.removesuffix("_dot")
+    plain = without_velocity(name)
     return Markup(str(names[name]) if plain == name else str(names[plain].dotted("˙")))
 
 

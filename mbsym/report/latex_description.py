@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import KINKED, ZERO, Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.latex import LatexNames, Symbol
@@ -73,7 +74,7 @@ def speed_form(one: Speed, names: LatexNames, number: int) -> str:
 
 def speed(name: str, names: LatexNames) -> str:
     """A speed by name: p, or a dotted coordinate."""
-    plain = name.removesuffix("_dot")
+    plain = without_velocity(name)
     return str(names[name]) if plain == name else names[plain].accented("dot")
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym import __version__
+from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.formulas.latex import LatexNames, latex_names
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
@@ -292,8 +293,8 @@ def _code(analysis: Analysis, names: LatexNames) -> Any:
         return None
     symbols = {name: str(names[name]) for name in programs.environment if name != "pi"} | {"pi": r"\pi"}
     for name in system.coordinates:
-        symbols[name + "_dot"] = names[name].accented("dot")
-        symbols[name + "_ddot"] = names[name].accented("ddot")
+        symbols[velocity_name(name)] = names[name].accented("dot")
+        symbols[acceleration_name(name)] = names[name].accented("ddot")
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     nodes = [programs.mass_matrix[i][j] for i, j in upper]

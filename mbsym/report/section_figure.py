@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from matplotlib.figure import Figure
 
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
@@ -64,7 +65,7 @@ def _limits(found: SectionPoints, row: int, limit: Callable[[float, float], obje
 
 def _label(axis: Axis, system: System) -> str:
     """A name as mathematical text with its unit, anything else as it was written."""
-    base = axis.text.removesuffix("_dot")
+    base = without_velocity(axis.text)
     if base not in system.coordinates:
         return axis.text.replace("$", r"\$")
     symbol = LatexNames(["t", *system.coordinates])[base]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import free_name
@@ -93,7 +94,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 def _rate(velocity: str, names: WolframNames) -> str:
     """``x'[t]`` for ``x_dot``."""
-    return f"{names[velocity.removesuffix('_dot')]}'[t]"
+    return f"{names[without_velocity(velocity)]}'[t]"
 
 
 def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Expression]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING, is_rate, without_velocity
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import (
     CONSTANTS,
@@ -117,7 +118,7 @@ class Scope:
     def declare(self, name: str, kind: str, span: Span) -> bool:
         """Enter a name; False (with a complaint) if it is no name, or taken."""
         if not self.is_name(name, span):
-            if name and not name.endswith(("_dot", "_ddot")):
+            if name and not is_rate(name):
                 self.kinds.setdefault(name, kind)  # one complaint about it is enough
             return False
         if name in self.kinds:
@@ -141,10 +142,10 @@ class Scope:
             return "time"
         if name in self.kinds:
             return self.kinds[name]
-        for suffix, kind in (("_dot", "velocity"), ("_ddot", "acceleration")):
+        for suffix, kind in ((VELOCITY_ENDING, "velocity"), (ACCELERATION_ENDING, "acceleration")):
             if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
                 return kind
-        if self.kinds.get(name.removesuffix("_dot")) in ("speed", "unit vector", "quaternion"):
+        if self.kinds.get(without_velocity(name)) in ("speed", "unit vector", "quaternion"):
             return "acceleration"  # what the equations give
         return None
 
@@ -187,7 +188,7 @@ class Scope:
             self.beside = set()
 
     def check_name(self, name: str, span: Span, allowed: Allowed) -> bool:
-        if name in self.assumed or name.removesuffix("_dot") in self.assumed:
+        if name in self.assumed or without_velocity(name) in self.assumed:
             return True
         kind = self.kind_of(name)
         if kind == "acceleration" and kind not in allowed.kinds:
@@ -219,7 +220,7 @@ class Scope:
     def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
         if name in self.later:
             return f"{self.ordered} read in order: move its definition up"
-        if name.endswith("_ddot") and "acceleration" not in allowed.kinds:
+        if name.endswith(ACCELERATION_ENDING) and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
             return f"accelerations are what the equations are solved for; {none}"
         known = [one for one in self.kinds if self.kinds[one] in allowed.kinds and one not in self.beside]
@@ -227,12 +228,12 @@ class Scope:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
             known += [acceleration_name(one) for one in self.of_kind("coordinate")]
-        if self.kinds.get(name.removesuffix("_dot")) == "input":
+        if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
         close = did_you_mean(name, known)
         if close is not None:
             return close
-        if self.kinds.get(name.removesuffix("_dot")) == "prescribed":
+        if self.kinds.get(without_velocity(name)) == "prescribed":
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)
         if reason is not None:
@@ -330,7 +331,7 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
     if keyword.iskeyword(name):
         hint = f"write {'lam or ' if name == 'lambda' else ''}{name}1"
         return "it is a reserved word of Python, in which results are written", hint
-    if name.endswith(("_dot", "_ddot")):
+    if is_rate(name):
         return "the ending _dot is kept for velocities", None
     if "__" in name or name.endswith("_"):
         return "underscores stand single and inside a name", None

@@ -9,6 +9,7 @@ from functools import partial
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
+from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import (
     ZERO,
     Call,
@@ -260,7 +261,7 @@ def _uses(system: System, body: Body) -> list[tuple[str, str]]:
             expressions = (*other.rotation.angles, *other.connection_point)
             found += [(name, place) for x in expressions for name in names(x)]
         for speed in other.speeds:
-            held = {name.removesuffix("_dot") for name in names(speed.form)}
+            held = {without_velocity(name) for name in names(speed.form)}
             found += [(name, f"the speed '{speed.name}'") for name in held]
     return found
 
@@ -272,7 +273,7 @@ def _held(load: object) -> set[str]:
     while pending:
         part = pending.pop()
         if isinstance(part, str):
-            found.add(part.removesuffix("_dot"))
+            found.add(without_velocity(part))
         elif isinstance(part, tuple):
             pending.extend(part)
         elif is_dataclass(part):

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Scalar
+from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import Expression, subtract
 from mbsym.mechanics.constraints.rows import normals
 from mbsym.mechanics.oracle import Oracle, Placement, Series, State
@@ -103,10 +104,10 @@ class _Rows:
         moving = self.oracle.moving.lower(g)
         values, zero = dict(self.oracle.state.values), self.numbers.zero
         for name in self.system.coordinates:
-            values[name + "_dot"] = zero
+            values[velocity_name(name)] = zero
         slopes = []
         for name in ("", *self.system.coordinates):
-            there = {**values, name + "_dot": self.numbers.one} if name else values
+            there = {**values, velocity_name(name): self.numbers.one} if name else values
             place = {key: Series(value, zero, zero) for key, value in there.items()}
             slopes.append(type(self.oracle.moving.lower)(self.oracle.moving.algebra, self._angles(place))(g).a)
         return OracleRow(None, moving.a, moving.b, tuple(x - slopes[0] for x in slopes[1:]))

@@ -12,6 +12,7 @@ from typing import cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
@@ -77,7 +78,7 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
 def _speed(form: SpeedForm, name: str) -> int:
     """The place of a speed, or of the generalised velocity of a coordinate that is one."""
     for r, u in enumerate(form.speeds):
-        if name in (u.name, u.name.removesuffix("_dot")):
+        if name in (u.name, without_velocity(u.name)):
             return r
     raise NoClosedForm(f"the velocity of {name} is no speed: other speeds have taken its place")
 

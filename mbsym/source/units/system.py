@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from mbsym.expressions.place import Span
+from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
 from mbsym.model.loads import (
@@ -66,9 +67,9 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
 
 def _form_of(system: System) -> Callable[[str], Form]:
     """The dimension of a name, that of its rates included."""
-    rates = {f"{name}_dot": (name, 1) for name in system.coordinates}
-    rates |= {f"{name}_ddot": (name, 2) for name in system.coordinates}
-    rates |= {f"{name}_dot": (name, 1) for name in system.variables}
+    rates = {velocity_name(name): (name, 1) for name in system.coordinates}
+    rates |= {acceleration_name(name): (name, 2) for name in system.coordinates}
+    rates |= {velocity_name(name): (name, 1) for name in system.variables}
     momenta = {} if system.speeds else {p: q for q, p in momentum_names(system).items()}
     vectors = {name for body in system.bodies for vector in body.orientation for name in vector.components}
 

@@ -1,0 +1,34 @@
+"""What derivatives with respect to time are called: ``theta_dot``, ``theta_ddot``; such names are put together here."""
+
+from __future__ import annotations
+
+#: Behind the name of a coordinate, a speed or a component of a unit vector.
+VELOCITY_ENDING, ACCELERATION_ENDING = "_dot", "_ddot"
+
+#: The same by the kinds of the ring's generators.
+ENDINGS = {"velocity": VELOCITY_ENDING, "acceleration": ACCELERATION_ENDING}
+
+
+def velocity_name(name: str) -> str:
+    """theta_dot of theta."""
+    return name + VELOCITY_ENDING
+
+
+def acceleration_name(name: str) -> str:
+    """theta_ddot of theta."""
+    return name + ACCELERATION_ENDING
+
+
+def without_velocity(name: str) -> str:
+    """theta of theta_dot; any other name as it is."""
+    return name.removesuffix(VELOCITY_ENDING)
+
+
+def is_velocity(name: str) -> bool:
+    """Whether it is a name of a velocity, by its ending."""
+    return name.endswith(VELOCITY_ENDING)
+
+
+def is_rate(name: str) -> bool:
+    """Whether it is a name of a velocity or an acceleration, by its ending."""
+    return name.endswith((VELOCITY_ENDING, ACCELERATION_ENDING))
