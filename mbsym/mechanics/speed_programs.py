@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.evaluate import Carrier
@@ -19,6 +20,7 @@ from mbsym.mechanics.loads.kinds import actions
 from mbsym.mechanics.newton_euler import inertia_wrenches
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import program_environment
+from mbsym.model.system import System
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,31 @@ def speed_program(form: SpeedForm) -> SpeedProgram:
         forcing=tuple(-x for x in forcing),
         rates=tuple(carry(form.rates[position.name]) for position in form.positions),
     )
+
+
+def orthonormal(system: System) -> tuple[tuple[tuple[str, ...], ...], ...]:
+    """Of every body told by unit vectors or a quaternion the components of the vectors whose products are kept."""
+    return tuple(tuple(one.components for one in body.orientation) for body in system.bodies if body.orientation)
+
+
+def restoring(program: Program, system: System) -> dict[str, Node]:
+    """What leads components back to lengths of 1 and right angles, by name: Newton's step to the nearest such,
+
+    e + (1 - e.e) e/2  of a quaternion,      e_i - 1/2 sum_j (e_i.e_j - delta_ij) e_j  of unit vectors,
+
+    less e and e_i themselves; its square is left.
+    """
+    half, found = program.number(Fraction(1, 2)), {}
+    for vectors in orthonormal(system):
+        for vector in vectors:
+            totals = [program.zero] * len(vector)
+            for other in vectors:
+                pairs = zip(vector, other, strict=True)
+                gap = sum((program.input(a) * program.input(b) for a, b in pairs), program.zero)
+                gap = gap - program.one if other is vector else gap
+                totals = [x + gap * program.input(name) for x, name in zip(totals, other, strict=True)]
+            found |= {name: -(half * x) for name, x in zip(vector, totals, strict=True)}
+    return found
 
 
 def _residuals(form: SpeedForm, scene: Scene, inputs: Mapping[str, Node]) -> list[Node]:

@@ -31,7 +31,7 @@ from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.factorisation import solve
 from mbsym.mechanics.falling import relative_lagrangian
 from mbsym.mechanics.loads.kinds import force_function
-from mbsym.mechanics.speed_programs import speed_program
+from mbsym.mechanics.speed_programs import orthonormal, restoring, speed_program
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.speeds import Quaternion
@@ -42,9 +42,6 @@ from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
 from mbsym.numerics.specialise import bound, substituted
-
-#: Groups of vectors that keep their products: the names of the components of each.
-Orthonormal = tuple[tuple[str, ...], ...]
 
 
 def state_names(system: System) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -69,11 +66,6 @@ def scenario_in_states(given: Scenario) -> Scenario:
     n = len(form.positions)
     names = tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
     return replace(given, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
-
-
-def orthonormal(system: System) -> tuple[Orthonormal, ...]:
-    """Of every body told by unit vectors or a quaternion the vectors whose products are kept."""
-    return tuple(tuple(one.components for one in body.orientation) for body in system.bodies if body.orientation)
 
 
 class StateDynamics(Dynamics):
@@ -116,19 +108,9 @@ class StateDynamics(Dynamics):
 
         A last output is 0: nothing is singular there.
         """
-        fresh, groups = self._specialised, orthonormal(self.described)
-        if not groups:
+        fresh, moved = self._specialised, restoring(self._specialised, self.described)
+        if not moved:
             return None
-        half = fresh.number(Fraction(1, 2))
-        moved: dict[str, Node] = {}
-        for vectors in groups:
-            for vector in vectors:
-                totals = [fresh.zero] * len(vector)
-                for other in vectors:
-                    gap = sum((fresh.input(a) * fresh.input(b) for a, b in zip(vector, other, strict=True)), fresh.zero)
-                    gap = gap - fresh.one if other is vector else gap
-                    totals = [x + gap * fresh.input(name) for x, name in zip(totals, other, strict=True)]
-                moved |= {name: -(half * x) for name, x in zip(vector, totals, strict=True)}
         return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in self.inputs[1:]), fresh.zero))
 
     @cached_property

@@ -32,6 +32,7 @@ from mbsym.report.numbers import number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.speed_code import SpeedCode
 
 #: Words of C, C++ and their preprocessors, what <math.h> defines or declares, and what the file itself uses.
 _WORDS = """
@@ -59,6 +60,7 @@ DECLARED = """
     right_hand_side jacobian input_names INPUTS H OK NOT_FINITE COORDINATES STATES PARAMETERS
     constraints constraint_velocity constraint_jacobian constraint_acceleration multipliers consistent reactions given
     CONSTRAINTS HOLONOMIC DEPENDENT NOT_CLOSED
+    speed_state speed_state_names speed_right_hand_side speed_restore SPEED_STATES
 """
 
 #: The matrix of accelerations and multipliers stands on the stack.
@@ -101,6 +103,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
     n = len(system.coordinates)
     prefix = prefix_of(system.name)
     reserved = RESERVED | declared(prefix) | ({"u"} if system.inputs else set())
+    reserved |= {"y", "yd"} if system.speeds else set()
     members = injective(system.parameter_names, proposed, taken=reserved)
     writer = Functions(system, DIALECT, reserved, proposed, "3.14159265358979323846")
     upper = [(i, j) for i in range(n) for j in range(i, n)]
@@ -161,11 +164,21 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
             "reactions": bool(known.reactions),
         },
         tied=tied,
+        speeds=_speeds(analysis, writer) if functions["accelerations"] or (forward and not tied) else None,
         functions=functions,
         upper=upper,
         entries=entries,
         lookups=[c_definition(table) for table in writer.tables],
     )
+
+
+def _speeds(analysis: Analysis, writer: Functions) -> SpeedCode | None:
+    """The code in speeds; None where the description declares none."""
+    if not analysis.system.speeds:
+        return None
+    from mbsym.report.speed_code import speed_code
+
+    return speed_code(analysis, writer)
 
 
 def _told(system: System, item: Parameter) -> str:

@@ -23,6 +23,7 @@ from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.quantities import told_units, unit_of
+from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
@@ -42,7 +43,8 @@ RESERVED = {
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
     "Parameters", "INTEGRALS", "UNITS", "with_unit",
-    "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "y", "right", "matrix",
+    "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
+    "speed_simulate", "y", "right", "matrix",
 }  # fmt: skip
 #: What a module of a constrained system calls something besides.
 TIED = frozenset({
@@ -120,6 +122,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         no_code=plain(no_code),
         tied=tied,
         speeds=speeds,
+        quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         forms=forms,
         lacking=[plain(line) for line in forms.lacking] if forms else [],
         upper=upper,

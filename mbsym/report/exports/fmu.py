@@ -31,7 +31,7 @@ from mbsym.numerics.scenario import exact
 from mbsym.report import c_source
 from mbsym.report.environment import rendered
 from mbsym.report.exports.fmu_units import Unit, time_and_energy, variable_unit
-from mbsym.report.exports.interface import Export, Language, export
+from mbsym.report.exports.interface import Export, Language, export, told_in
 from mbsym.report.model_code import programs_of, solved
 
 if TYPE_CHECKING:
@@ -168,7 +168,10 @@ def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
     }  # fmt: skip
     shared = rendered("exports/fmi.h.j2", {}, **values)
     written = rendered(f"exports/fmi{version}.c.j2", {}, shared=shared, refused=_refused(), **values)
-    about = values | {"title": system.name, "description": system.description}
+    about = values | {
+        "title": system.name,
+        "description": " ".join(filter(None, [system.description, told_in(system)])),
+    }
     measured, units = _measured(system, variables)
     about |= {"variables": measured, "units": units}
     files = {

@@ -69,6 +69,14 @@ class Written:
         return [[table.get((i, j) if columns else (i,), zero) for j in range(width)] for i in range(height)]
 
 
+def told_in(system: System) -> str:
+    """Which variables the states are, of a system that declares others; nothing otherwise."""
+    if not system.speeds:
+        return ""
+    others = ", ".join(system.variables)
+    return f"The states are coordinates and their velocities: {others} of the description are none here."
+
+
 @dataclass(frozen=True)
 class Export:
     """``parameters`` in the order of the description; ``initial`` the texts of x(0), empty for a position not given.
@@ -91,6 +99,11 @@ class Export:
     def law(self) -> str:
         """The equations that the functions hold."""
         return "M(q) q'' = f(q, q', t) + J^T lambda" if self.system.constraints else "M(q) q'' = f(q, q', t)"
+
+    @property
+    def told_in(self) -> str:
+        """What is said where the description has other variables than coordinates and their velocities."""
+        return told_in(self.system)
 
     @property
     def tied(self) -> list[str]:
@@ -180,7 +193,7 @@ def export(
         ordered=ordered(parameters),
         initial=tuple(initial_values(system, writer)),
         integrals=first_integrals(analysis, problems).named,
-        lacking=lacking,
+        lacking=(*lacking, *filter(None, [told_in(analysis.system)])),
         names=writer.names,
         tables=tuple(writer.tables),
     )
