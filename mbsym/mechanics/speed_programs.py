@@ -63,7 +63,8 @@ def restoring(program: Program, system: System) -> dict[str, Node]:
 
     less e and e_i themselves; its square is left.
     """
-    half, found = program.number(Fraction(1, 2)), {}
+    half = program.number(Fraction(1, 2))
+    found: dict[str, Node] = {}
     for vectors in orthonormal(system):
         for vector in vectors:
             totals = [program.zero] * len(vector)
