@@ -43,10 +43,17 @@ demo: $(READY)
 systems: $(READY)
 	$(BIN)/mbsym run systems --brief
 
-# The system, how long it moves, which of its figures, further options.
+# Most figures are kept smaller than they are drawn, in fewer colours: the repository holds them.
+define SMALL
+import sys; from PIL import Image; \
+image = Image.open(sys.argv[1]).convert('RGB'); image.thumbnail((512, 512), Image.Resampling.LANCZOS); \
+image.quantize(32, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(sys.argv[2], optimize=True)
+endef
+
+# The system, how long it moves, which of its figures, further options, anything for a small one.
 define figure
 $(BIN)/mbsym simulate systems/$(1).yaml --time $(2) --format png --out reports/gallery/$(1) --no-estimate --quiet $(4)
-cp reports/gallery/$(1)/$(3).png systems/figures/$(1).png
+$(if $(5),$(BIN)/python -c "$(SMALL)",cp) reports/gallery/$(1)/$(3).png systems/figures/$(1).png
 
 endef
 
@@ -61,6 +68,20 @@ gallery: $(READY)
 	$(call figure,dumbbell,6000,motion,--set alpha=0.8 --set beta=0.4)
 	$(call figure,satellite,20,motion)
 	$(call figure,double-pendulum,6,motion)
+	$(call figure,bicycle,1,motion,,small)
+	$(call figure,rolling-disc,2,motion,,small)
+	$(call figure,rolling-disc-in-a-circle,3,motion,--set x=0 --set y=0 --set yaw=0 --set spin=0 \
+	    --set lean=0.5235987755982988 --set yaw_dot=2 --set spin_dot=-4.609183,small)
+	$(call figure,rolling-sphere,6,motion,,small)
+	$(call figure,turntable-sphere,4,motion,,small)
+	$(call figure,dish-sphere,3,motion,,small)
+	$(call figure,snakeboard,6,motion,,small)
+	$(call figure,chaplygin-sleigh,10,motion,,small)
+	$(call figure,four-bar,6,motion,,small)
+	$(call figure,cartesian-pendulum,4,motion,,small)
+	$(call figure,cart-pole,2,motion,,small)
+	$(call figure,gyrostat-poisson,0.1,motion,,small)
+	$(call figure,clebsch-poisson,8,motion,,small)
 
 docs: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'

@@ -165,10 +165,14 @@ def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
 
 def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:
     """Pictures of the bodies themselves, where there is something to be seen."""
+    import numpy
+
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.between import between
+    from mbsym.numerics.body_motion import body_motions
     from mbsym.numerics.positions import positions
     from mbsym.report.motion_figure import motion_figures
+    from mbsym.report.outlines import Outline, outlines
 
     found = run.trajectory
     most = min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies)))
@@ -179,6 +183,12 @@ def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, byte
         times, states = between(times, states, rates, [pieces] * (len(times) - 1))
     try:
         places = positions(run.scenario, times, states)
+        if places is None:
+            return {}
+        shapes: tuple[Outline, ...] = ()
+        if places.bodied and any(body.shapes for body in run.system.bodies):
+            still = numpy.zeros((len(states) // 2, len(times)))  # places and axes do not need accelerations
+            shapes = outlines(run.scenario, body_motions(run.scenario, times, states, still, places.frame))
     except Failure:
         return {}
-    return motion_figures(places, kinds, note(found)) if places is not None else {}
+    return motion_figures(places, kinds, note(found), shapes)

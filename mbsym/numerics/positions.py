@@ -23,7 +23,9 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import expressions, program_environment, ring_of
+from mbsym.model.constraints import Coincide, Distance
 from mbsym.model.system import INERTIAL, Body, System
+from mbsym.model.system import Point as PointOfBody
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
@@ -42,16 +44,20 @@ PLANAR, SPATIAL, TURNING = 5.0, 10.0, 15.0
 #: Axes of a body that is seen with others are so much longer than the others are far from it.
 BEYOND = 1.25
 
-ORIGIN, JOINT, MASS_CENTRE, AXIS = "origin", "joint", "mass centre", "axis"
+ORIGIN, JOINT, MASS_CENTRE, AXIS, END = "origin", "joint", "mass centre", "axis", "end"
 
 
 @dataclass(frozen=True)
 class Point:
-    """A point that is drawn: the origin of the frame; of ``body``, its joint, mass centre, or tip of an ``axis``."""
+    """A point that is drawn: the origin of the frame; of ``body``, its joint, mass centre, or tip of an ``axis``.
+
+    Of kind END the one that a constraint ties: ``end`` is its place in ``_tied`` (constraint, 0 or 1).
+    """
 
     body: str
     kind: str
     axis: int = 0
+    end: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True)
@@ -174,7 +180,18 @@ def _points(system: System, frame: str) -> list[Point]:
             found.append(Point(body.name, MASS_CENTRE))
         if body.inertia is not None:
             found += [Point(body.name, AXIS, axis) for axis in (1, 2, 3)]
+    there = {point.body for point in found[1:]}
+    for number, ends in _tied(system).items():
+        for side, one in enumerate(ends):
+            if one.body in there and any(x != ZERO for x in one.position):
+                found.append(Point(one.body, END, end=(number, side)))
     return found
+
+
+def _tied(system: System) -> dict[int, tuple[PointOfBody, PointOfBody]]:
+    """The two points that a constraint lets coincide, or holds at a distance, by its number."""
+    kinds = (Coincide, Distance)
+    return {k: (one.first, one.second) for k, one in enumerate(system.constraints) if isinstance(one, kinds)}
 
 
 def _place(scene: Scene, frame: str, point: Point) -> Vector:
@@ -183,6 +200,9 @@ def _place(scene: Scene, frame: str, point: Point) -> Vector:
         return scene.zero(frame)
     if point.kind == AXIS:
         return scene.to_axes(axis_vector(scene.algebra, point.axis, scene.algebra.one, point.body), frame)
+    if point.kind == END:
+        number, side = point.end
+        return scene.position(scene.vector(_tied(scene.system)[number][side].position, point.body), frame)
     own = scene.motions[point.body].mass_centre if point.kind == MASS_CENTRE else scene.zero(point.body)
     return scene.position(own, frame)
 
@@ -204,7 +224,7 @@ def _positions(system: System, frame: str, values: Any, times: Any) -> Positions
     length = float(np.linalg.norm(upward)) if len(upward) else 0.0
     up = (float(upward[0] / length), float(upward[1] / length), float(upward[2] / length)) if length > 0 else None
     joints = {point.body: i for i, point in enumerate(points) if point.kind == JOINT}
-    own = [i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE)]
+    own = [i for i, point in enumerate(points) if point.kind in (JOINT, MASS_CENTRE, END)]
     extent = float(np.max(np.linalg.norm(np.ptp(places[own], axis=0), axis=0)))
     travelled = float(np.linalg.norm(np.ptp(places[own], axis=(0, 2))))
     scale = float(np.max(np.abs(places[own])))
@@ -218,9 +238,9 @@ def _positions(system: System, frame: str, values: Any, times: Any) -> Positions
     kept = [
         i
         for i, point in enumerate(points)
-        if point.kind in (JOINT, MASS_CENTRE) or (point.kind == AXIS and (point_like or point.body in drawn))
+        if point.kind in (JOINT, MASS_CENTRE, END) or (point.kind == AXIS and (point_like or point.body in drawn))
     ]
-    if any(_held(system, frame, points[i]) for i in kept):
+    if _ties_to_origin(system, frame) or any(_held(system, frame, points[i]) for i in kept):
         kept.insert(0, 0)
     shown = tuple(points[i] for i in kept)
     links, slides = _lines(system, frame, shown)
@@ -279,7 +299,7 @@ def _lines(
     links: list[tuple[int, int]] = []
     slides: list[tuple[int, int]] = []
     for i, point in enumerate(points):
-        if point.kind in (MASS_CENTRE, AXIS):
+        if point.kind in (MASS_CENTRE, AXIS, END):
             links.append((number[point.body, JOINT], i))
         elif point.kind == JOINT:
             body = system.body(point.body)
@@ -289,7 +309,22 @@ def _lines(
             if parent is not None:
                 moves = any(moving & names(x) for x in body.connection_point)
                 (slides if moves else links).append((parent, i))
+    ends = {point.end: i for i, point in enumerate(points) if point.kind == END}
+    for k, constraint in enumerate(system.constraints):
+        if isinstance(constraint, Distance):
+            sides = [
+                ends.get((k, side), number.get((one.body, ORIGIN if one.body == frame else JOINT)))
+                for side, one in enumerate((constraint.first, constraint.second))
+            ]
+            if sides[0] is not None and sides[1] is not None:
+                links.append((sides[0], sides[1]))
     return tuple(links), tuple(slides)
+
+
+def _ties_to_origin(system: System, frame: str) -> bool:
+    """Whether a rod leads to the origin of the frame."""
+    ends = (one for k, pair in _tied(system).items() if isinstance(system.constraints[k], Distance) for one in pair)
+    return any(one.body == frame and all(x == ZERO for x in one.position) for one in ends)
 
 
 def _extent(found: Positions) -> float:

@@ -21,6 +21,7 @@ from mbsym.model.quantities import length_unit, time_unit, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
 from mbsym.report.drawing import pictures, thinned
+from mbsym.report.outlines import Outline
 from mbsym.report.unit_text import labelled, pretty
 
 #: Early and late; the eye reads darker as later, in print too.
@@ -32,15 +33,23 @@ _PATHS = ("#b3372f", "#2e8b57", "#d9822b", "#8e5ea2", "#17a2b8", "#7a5c3e", "#c2
 #: About so many snapshots; azimuth and elevation of the eye in degrees.
 SNAPSHOTS, AZIMUTH, ELEVATION = 12, 35.0, 22.0
 
+#: At most so many snapshots show shapes: lines of more of them hide each other.
+OUTLINED = 6
+
 #: Rows of places over time on one page.
 ROWS = 6
 
 
-def motion_figures(found: Positions, formats: Sequence[str], note: str = "") -> dict[str, bytes]:
-    """``motion`` and, where a mass centre moves, ``mass-centres`` in every format, by file name."""
+def motion_figures(
+    found: Positions, formats: Sequence[str], note: str = "", shapes: Sequence[Outline] = ()
+) -> dict[str, bytes]:
+    """``motion`` and, where a mass centre moves, ``mass-centres`` in every format, by file name.
+
+    ``shapes`` are outlines of bodies at the same times, in the same frame.
+    """
     if len(found.times) < 2:
         return {}
-    drawings = {"motion": lambda: _motion(found.readable(), note, float(found.times[-1]))}
+    drawings = {"motion": lambda: _motion(found.readable(), note, float(found.times[-1]), shapes)}
     pages = _pages(found)
     for number, page in enumerate(pages):
         name = "mass-centres" + (f"-{number + 1}" if number else "")
@@ -92,10 +101,14 @@ def _nearest_axis(up: tuple[float, float, float] | None) -> Any:
     return np.round(np.array(up))
 
 
-def _motion(found: Positions, note: str, end: float) -> Figure:
+def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
     view = _View(found)
     flat = view(found.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
+    for one in shapes:
+        whole = view(one.places[:, : len(found.times)])
+        low = np.minimum(low, np.min(whole, axis=1) - one.reach)
+        high = np.maximum(high, np.max(whole, axis=1) + one.reach)
     if found.tips:
         for centre, radius in _spheres(found, flat):  # the whole sphere on which the tips move
             low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
@@ -116,6 +129,7 @@ def _motion(found: Positions, note: str, end: float) -> Figure:
     if found.bodied:
         _paths(axis, found, view, flat)
         _bodies(axis, found, flat, shown, time)
+        _outlines(axis, found, view, shapes, shown, time)
     _scale(axis, found, view)
     from matplotlib.cm import ScalarMappable
 
@@ -203,6 +217,17 @@ def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: 
             edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
             size = 5 * thin
             axis.plot(*flat[i, :, k], "o", color=colour, markeredgecolor=edge, markersize=size, zorder=zorder + 0.01)
+
+
+def _outlines(
+    axis: Any, found: Positions, view: _View, shapes: Sequence[Outline], shown: Sequence[int], time: Normalize
+) -> None:
+    """The bodies' shapes, thinner than their links, and in every second or third snapshot."""
+    every = -(-len(shown) // OUTLINED)
+    for k in shown[::-1][::every]:
+        colour, zorder = _TIME(time(found.times[k])), 3 + k / len(found.times)
+        lines = [view(line).T for one in shapes for line in one.at(k)]
+        axis.add_collection(LineCollection(lines, colors=[colour], linewidths=0.8, zorder=zorder))
 
 
 def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:

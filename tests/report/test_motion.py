@@ -11,9 +11,11 @@ import pytest
 from conftest import SHIPPED, parsed, reference
 from scipy.spatial.transform import Rotation
 
-from mbsym.numerics.positions import AXIS, JOINT, MASS_CENTRE, ORIGIN, Positions, positions
+from mbsym.numerics.body_motion import body_motions
+from mbsym.numerics.positions import AXIS, END, JOINT, MASS_CENTRE, ORIGIN, Positions, positions
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.motion_figure import motion_figures
+from mbsym.report.outlines import outlines
 from mbsym.source import load
 
 TRUTH = reference("tethered-satellites")["trajectories"]["table1"]["states"]
@@ -298,3 +300,25 @@ initial: {x: 1, y: 2}
     found = along(scenario_of(tmp_path / "bob.yaml"), [0.0, 1.0], x=[1, 2])
     assert [point.kind for point in found.points] == [ORIGIN, JOINT]
     assert (found.links, found.slides) == ((), ((0, 1),))
+
+
+def test_a_loop_is_closed_and_a_rod_is_drawn() -> None:
+    """Four-bar: the rocker reaches the ground where it is tied; the pendulum's rod leads to the origin."""
+    loop = along(scenario_of(SHIPPED / "four-bar.yaml"), [0.0, 1.0])
+    (end,) = [i for i, point in enumerate(loop.points) if point.kind == END]
+    assert loop.points[end].body == "rocker"
+    assert np.max(np.abs(loop.places[end])) < 1e-7  # at the state that the description gives, the loop is closed
+    assert any(j == end and loop.points[i].body == "rocker" for i, j in loop.links)
+    rod = along(scenario_of(SHIPPED / "cartesian-pendulum.yaml"), [0.0, 1.0], y=np.array([0.0, -0.5]))
+    assert [(rod.points[i].kind, rod.points[j].kind) for i, j in rod.links] in ([(ORIGIN, JOINT)], [(JOINT, ORIGIN)])
+
+
+def test_shapes_are_seen_in_a_picture() -> None:
+    disc = scenario_of(SHIPPED / "rolling-disc.yaml")
+    times = np.linspace(0, 1, 5)
+    places = along(disc, times, x=times)
+    states = np.array([float(x) for x in disc.state])[:, None] + np.zeros(5)
+    shapes = outlines(disc, body_motions(disc, times, states, np.zeros((5, 5)), places.frame))
+    assert len(shapes) == 1
+    plain, shaped = (motion_figures(places, ["png"], "", some)["motion.png"] for some in ((), shapes))
+    assert plain != shaped
