@@ -101,6 +101,12 @@ def run(request: Request) -> int:
         from mbsym_cli.map_table import show_map
 
         show_map(request.file, request.system, found, request.folder, list(files), time.perf_counter() - started)
+    if found.check is not None and not found.check.holds:
+        for one in found.check.findings[:MOST_TOLD]:
+            what = "the plane" if one.region is None and one.arc is None else ""
+            what = what or (f"region {one.region}" if one.region is not None else f"arc {one.arc}")
+            complain(request.file, f"withdrawn, as the map's own check fails in {what}: {one.mistake}")
+        return FAILED
     if found.interrupted:
         complain(request.file, "interrupted; what was proved before that is written")
         return INTERRUPTED

@@ -71,6 +71,10 @@ def remarks(found: PlaneMap) -> list[str]:
     large = sum(one.standing is Standing.TOO_LARGE for one in found.strata)
     if large:
         told.append(f"{counted(large, 'exact point')} of arcs and corners too large to be decided")
-    if found.checked:
-        told.append(f"checked: one more random point in {counted(found.checked, 'region')}, by another route")
+    if found.check is not None and found.check.holds:
+        arcs = f" and {counted(found.check.arcs, 'arc')}" if found.check.arcs else ""
+        told.append(
+            f"check: {counted(found.check.points, 'more point')} in regions{arcs} agree; at {found.check.enclosed} of "
+            "them eigenvalues in balls confirm the counts"
+        )
     return told

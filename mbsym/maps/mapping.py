@@ -4,6 +4,7 @@ and at every corner."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -16,6 +17,7 @@ from mbsym.algebra.plane import Arrangement, Box, Point, areas, decompose
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Condition, Origin, boundaries
+from mbsym.maps.check import Check, check
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
@@ -65,18 +67,42 @@ def plane_map(
             except KeyboardInterrupt:
                 interrupted = True
         strata.append(Stratum(shape, number, Standing.NOT_REACHED))
-    ends = len(made.regions), len(made.regions) + len(made.arcs)
-    return PlaneMap(
-        of,
-        there,
-        kept,
-        found,
-        made,
-        tuple(strata[: ends[0]]),
-        tuple(strata[ends[0] : ends[1]]),
-        tuple(strata[ends[1] :]),
-        areas(made),
-        interrupted,
+    split = len(made.regions), len(made.regions) + len(made.arcs)
+    parts = strata[: split[0]], strata[split[0] : split[1]], strata[split[1] :]
+    checked = None
+    if not interrupted:
+        try:
+            cells, arcs = ([x.judged for x in part] for part in parts[:2])
+            checked = check(there, made, cells, arcs, progress=watch)
+            parts = withdrawn(parts, checked)
+        except KeyboardInterrupt:
+            interrupted = True
+    regions, curved, corners = (tuple(part) for part in parts)
+    return PlaneMap(of, there, kept, found, made, regions, curved, corners, areas(made), interrupted, checked)
+
+
+Strata = list[Stratum]
+
+
+def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Strata, Strata, Strata]:
+    """Regions, arcs and corners without the verdicts that the check does not confirm.
+
+    What is wrong with the arrangement as a whole takes all verdicts with it.
+    """
+    if checked.holds:
+        return parts
+    lone = all(one.breach is None and (one.region is not None or one.arc is not None) for one in checked.findings)
+    regions = {one.region for one in checked.findings}
+    arcs = {one.arc for one in checked.findings}
+
+    def kept(stratum: Stratum, doubted: bool) -> Stratum:
+        falls = stratum.judged is not None and (doubted or not lone)
+        return replace(stratum, standing=Standing.WITHDRAWN, judged=None) if falls else stratum
+
+    return (
+        [kept(one, one.number in regions) for one in parts[0]],
+        [kept(one, one.number in arcs) for one in parts[1]],
+        [kept(one, False) for one in parts[2]],
     )
 
 

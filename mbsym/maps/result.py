@@ -9,6 +9,7 @@ from enum import StrEnum
 from mbsym.algebra.plane import Arrangement, Point
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries
+from mbsym.maps.check import Check
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word
@@ -37,6 +38,7 @@ class Standing(StrEnum):
     MASSLESS = "the mass matrix is not positive definite"
     UNDEFINED = "formulas divide by zero"
     TOO_LARGE = "too large to be decided"
+    WITHDRAWN = "withdrawn: the map's own check failed"
     NOT_REACHED = "not reached"
 
 
@@ -70,8 +72,8 @@ class Stratum:
 class PlaneMap:
     """``regions``, ``arcs`` and ``corners`` in the order of ``arrangement``; ``interrupted``: some were not reached.
 
-    ``areas``: of the regions, with estimates of their errors.  ``checked``: regions in which one more random point was
-    judged by a route without the boundary polynomials.
+    ``areas``: of the regions, with estimates of their errors.  ``check``: more points in every cell and on every arc,
+    judged by a route without the boundary polynomials; None where it was not carried out.
     """
 
     of: Of
@@ -84,7 +86,7 @@ class PlaneMap:
     corners: tuple[Stratum, ...]
     areas: tuple[tuple[float, float], ...]
     interrupted: bool = False
-    checked: int = 0
+    check: Check | None = None
 
     @property
     def strata(self) -> Iterator[Stratum]:
@@ -105,7 +107,7 @@ class PlaneMap:
     def singles_out(self, arc: Stratum) -> bool:
         """Whether what is shown on an arc differs from both of its sides, which are alike."""
         sides = {self.look(x) for x in self.beside(arc) if x is not None}
-        undecided = arc.standing in (Standing.TOO_LARGE, Standing.NOT_REACHED)
+        undecided = arc.standing in (Standing.TOO_LARGE, Standing.WITHDRAWN, Standing.NOT_REACHED)
         return not undecided and not self.separates(arc) and bool(sides) and self.look(arc) not in sides
 
     def look(self, stratum: Stratum) -> tuple[object, ...]:

@@ -10,6 +10,7 @@ from flint import fmpq
 from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.maps.admissible import Demand
 from mbsym.maps.boundaries import Condition
+from mbsym.maps.check import Check
 from mbsym.maps.result import PlaneMap, Stratum
 from mbsym.model.system import System
 from mbsym.report.schemas import version
@@ -43,7 +44,7 @@ def map_json(system: System, found: PlaneMap) -> str:
         ],
         "vanishing": [_condition(one) for one in found.boundaries.vanishing],
         "interrupted": found.interrupted,
-        "checked": found.checked,
+        "check": check_data(found.check),
         "regions": [
             _stratum(found, one)
             | {"signs": list(there.signs), "arcs": list(there.arcs), "area": area, "area_error": error}
@@ -65,6 +66,17 @@ def map_json(system: System, found: PlaneMap) -> str:
         ],
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def check_data(found: Check | None) -> dict[str, Any] | None:
+    """What was tried a second time, and what did not agree."""
+    if found is None:
+        return None
+    findings = [
+        {"mistake": one.mistake.value, "region": one.region, "arc": one.arc, "near": list(one.near)}
+        for one in found.findings
+    ]
+    return {"points": found.points, "arcs": found.arcs, "enclosed": found.enclosed, "findings": findings}
 
 
 def _stratum(found: PlaneMap, one: Stratum) -> dict[str, Any]:

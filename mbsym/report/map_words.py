@@ -49,6 +49,7 @@ STANDINGS = {
     Standing.MASSLESS: "kinetic energy not positive definite",
     Standing.UNDEFINED: "formulas divide by zero",
     Standing.TOO_LARGE: "too large to be decided",
+    Standing.WITHDRAWN: "withdrawn: the check failed",
     Standing.NOT_REACHED: "not reached",
 }
 

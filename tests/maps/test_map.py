@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -162,6 +163,46 @@ def test_flutter_of_the_damped_follower_force_begins_at_41_28ths() -> None:
     assert on.judged.border is Border.IMAGINARY
     over = at(found, border + beside, "1/10")
     assert (over.word, over.judged.right, over.judged.real_right) == (Word.UNSTABLE, 2, 0)
+
+
+def test_a_lost_boundary_is_found_and_its_verdicts_are_withdrawn(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Without the Hurwitz minor of the follower force one region has two verdicts: the check finds it."""
+    from mbsym.maps import mapping
+
+    whole = mapping.boundaries
+
+    def lossy(*arguments: Any) -> Any:
+        found = whole(*arguments)
+        kept = [k for k, x in enumerate(found.conditions) if all(one.origin is not Origin.HURWITZ for one in x)]
+        assert len(kept) < len(found.factors)
+        factors, conditions = (tuple(x[k] for k in kept) for x in (found.factors, found.conditions))
+        return replace(found, factors=factors, conditions=conditions)
+
+    monkeypatch.setattr(mapping, "boundaries", lossy)
+    done = called("systems/ziegler-damped.yaml", "--x", "P=0:4", "--y", "b1=0:1", "--format", "json", "--out", tmp_path)
+    assert done.exit_code == 1
+    assert "the map's own check fails in region" in done.stderr
+    content = json.loads((tmp_path / "map.json").read_text())
+    assert not list(Draft202012Validator(schema("map")).iter_errors(content))
+    assert any(x["standing"] == Standing.WITHDRAWN for x in content["regions"])
+    assert all(x["stability"] is None for x in content["regions"] if x["standing"] == Standing.WITHDRAWN)
+
+
+def test_ctrl_c_keeps_what_is_proved() -> None:
+    """Interrupted at the sixth verdict: five are there, the rest says that it was not reached."""
+    analysis = mbsym.load("systems/ziegler-damped.yaml")
+
+    def watch(what: str, done: int, whole: int) -> None:
+        if what == "verdicts" and done == 5:
+            raise KeyboardInterrupt
+
+    axes = [Axis("P", Fraction(0), Fraction(4)), Axis("b1", Fraction(0), Fraction(1))]
+    found = plane_map(analysis, axes, {}, watch=watch)
+    assert found.interrupted
+    assert [one.standing is Standing.NOT_REACHED for one in found.strata][:6] == [False] * 5 + [True]
+    assert found.check is None
 
 
 # --- the command ------------------------------------------------------------------------------------------------------
