@@ -222,11 +222,12 @@ class _Checking:
 
 
 def _differences(there: Judged, judged: Judged) -> list[Mistake]:
-    """How a verdict at a second point differs; how many of the roots to the right are real may change in a region."""
+    """How a verdict at a second point differs."""
     wrong = []
     if there.verdict.word is not judged.verdict.word:
         wrong.append(Mistake.VERDICT)
-    if (there.right, there.degree, there.null) != (judged.right, judged.degree, judged.null):
+    counts = [(one.right, one.real_right, one.degree, one.null) for one in (there, judged)]
+    if counts[0] != counts[1]:
         wrong.append(Mistake.COUNT)
     return wrong
 

@@ -69,7 +69,7 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
         except ZeroDivisionError:
             return undecided(Because.MASS_SINGULAR)
         coefficients = [arb(x) for x in first.charpoly().coeffs()[zero_power:]]
-        right = _to_the_right(coefficients)
+        right = to_the_right(coefficients)
     if right is None and any(x < 0 for x in coefficients):  # the leading one is 1: not all roots are on this side
         return concluded({Fact.ROOT_RIGHT})
     if right is None:
@@ -79,7 +79,7 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
     return all_left(form, form.zeros(zero_power))
 
 
-def _to_the_right(coefficients: Sequence[arb]) -> int | None:
+def to_the_right(coefficients: Sequence[arb]) -> int | None:
     """How many roots have a positive real part, by Routh's scheme, the other ones a negative one.
 
     None where a ball leaves the sign of a leading element open: sharper than balls around the roots themselves, whose
