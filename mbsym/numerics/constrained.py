@@ -41,6 +41,9 @@ DEPENDENT = 1e-9
 #: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
 BESIDE, AWAY = 3, 0.05
 
+#: The least eigenvalue of M with ones on its diagonal that is not zero to roundings.
+MASSLESS = 1e-13
+
 #: How many times nearer to a singular position than the start states may be computed: S has lost six digits.
 NEAREST = 1e6
 
@@ -196,7 +199,20 @@ class Constraints:
     def dynamics(self) -> ConstrainedDynamics:
         """The equations with the rows that are kept."""
         chosen = tuple((self.names[k].constraint, self.names[k].component) for k in self.kept)
-        return constrained_dynamics(self._scenario.system, self._ring, chosen, self._apart)
+        return constrained_dynamics(self._scenario.system, self._ring, chosen, self._apart, self._massless)
+
+    @property
+    def _massless(self) -> bool:
+        """Whether M is singular at the initial position and beside it."""
+        state = np.array([float(x) for x in self._scenario.state])
+        for place in self._places(state):
+            masses = self._masses(np.concatenate(([0.0], place))).reshape(self.size, self.size)
+            sizes = np.sqrt(np.diag(masses))
+            if not np.all(sizes > 0):
+                continue
+            if np.linalg.eigvalsh(masses / np.outer(sizes, sizes))[0] > MASSLESS:
+                return False
+        return True
 
     @cached_property
     def nearest(self) -> tuple[Fraction, ...]:

@@ -12,6 +12,11 @@ the shortest way back to the constraints, measured by the kinetic energy (by M):
     dq  = -M^-1 J_h^T (J_h M^-1 J_h^T)^-1 f_h          of the holonomic rows f_h(q, t) = 0
     dq' = -M^-1 J^T   (J   M^-1 J^T  )^-1 (J q' + j)
 
+Where M is singular everywhere (a coordinate moves no mass by itself) and positive on what the constraints allow, the
+same accelerations and multipliers follow from a matrix that is positive, with any w > 0 (here the mass of all bodies):
+
+    (M + J^T w J) q'' = f - J^T w c + J^T lambda
+
 Rows that follow from others make S singular, so that the rows are named that are kept.  The pivots of S vanish where
 the rows that are kept lose their rank, as a four-bar does whose links are in line.
 
@@ -24,7 +29,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.articulation import articulation
@@ -101,11 +106,26 @@ def holonomic_first(rows: Sequence[Row]) -> tuple[Row, ...]:
     return tuple(sorted(rows, key=lambda row: row.position is None))
 
 
-def constrained_dynamics(system: System, ring: Ring, kept: Sequence[Kept], apart: bool = False) -> ConstrainedDynamics:
+def constrained_dynamics(
+    system: System, ring: Ring, kept: Sequence[Kept], apart: bool = False, massless: bool = False
+) -> ConstrainedDynamics:
     """See the module; ``kept`` names the rows, which must be independent.
 
-    Raises SingularPoint where M is singular everywhere or the rows are dependent at sight, NoClosedForm as loads do.
+    ``massless``: M is known to be singular everywhere; where that is seen from a pivot, it need not be said.  Raises
+    SingularPoint where M is singular on what the constraints allow or the rows are dependent at sight, NoClosedForm as
+    loads do.
     """
+    if not massless:
+        try:
+            return _constrained_dynamics(system, ring, kept, apart, False)
+        except SingularPoint:
+            pass  # a pivot of M is zero
+    return _constrained_dynamics(system, ring, kept, apart, True)
+
+
+def _constrained_dynamics(
+    system: System, ring: Ring, kept: Sequence[Kept], apart: bool, massless: bool
+) -> ConstrainedDynamics:
     program = Program()
     inputs = program_environment(system, program)
     scene = scene_without_accelerations(system, ring, program, inputs)
@@ -113,7 +133,11 @@ def constrained_dynamics(system: System, ring: Ring, kept: Sequence[Kept], apart
     rows = holonomic_first(constraint_rows(scene, kept))
     partials = [row.partials for row in rows]
     holonomic = sum(row.position is not None for row in rows)
-    tree = Elimination(program, mass_matrix(frames), [forcing(frames, bias_forces(frames)), *partials])
+    masses: Sequence[Sequence[Node]] = mass_matrix(frames)
+    forces: Sequence[Node] = forcing(frames, bias_forces(frames))
+    if massless:
+        masses, forces = _added(scene, rows, masses, forces)
+    tree = Elimination(program, masses, [forces, *partials])
     free, *weighted = tree.forward
 
     def paired(x: Sequence[Node], y: Sequence[Node]) -> Node:
@@ -155,3 +179,26 @@ def constrained_dynamics(system: System, ring: Ring, kept: Sequence[Kept], apart
         position_correction=carried(still, shift),
         velocity_correction=carried(still, change),
     )
+
+
+def _added(
+    scene: Scene[Node], rows: Sequence[Row], masses: Sequence[Sequence[Node]], forces: Sequence[Node]
+) -> tuple[list[list[Node]], list[Node]]:
+    """M + J^T w J and f - J^T w c."""
+    program = scene.algebra
+    weight = program.zero
+    for body in scene.system.bodies:
+        weight = weight + scene.lower(body.mass)
+    if program.vanishes(weight):
+        weight = program.one
+    matrix, right = [list(row) for row in masses], list(forces)
+    for row in rows:
+        for i, slope in enumerate(row.partials):
+            if program.vanishes(slope):
+                continue
+            scaled = weight * slope
+            right[i] = right[i] - scaled * row.acceleration
+            for j, other in enumerate(row.partials):
+                if not program.vanishes(other):
+                    matrix[i][j] = matrix[i][j] + scaled * other
+    return matrix, right
