@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from mbsym.source.labels import CONSTRAINT_BODIES, CONSTRAINT_TYPE, CONSTRAINT_VECTORS, ENDS, LOAD_EXPRESSION
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.text_lines import word_of
+from mbsym.source.text_values import items
 
 if TYPE_CHECKING:
     from mbsym.source.text_reader import TextReader
@@ -38,7 +39,7 @@ def _data(reader: TextReader, kind: Scalar, data: list[tuple[Scalar, Scalar]]) -
         if word in CONSTRAINT_BODIES:
             node = reader.body_reference(value)
         elif word in CONSTRAINT_VECTORS:
-            node = reader.items(value)
+            node = items(value)
         which, key = ENDS.get(word, (None, word))
         entry = Entry(Scalar(key, label.span, literal=False), node)
         (entries if which is None else ends[which]).append(entry)

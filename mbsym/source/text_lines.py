@@ -48,3 +48,8 @@ def label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
 def word_of(text: str) -> str:
     word = " ".join(text.lower().split())
     return SPELLINGS.get(word, word)
+
+
+def key_of(label: Scalar, key: str) -> Scalar:
+    """A key in place of the label that stands for it."""
+    return Scalar(key, label.span, literal=False)

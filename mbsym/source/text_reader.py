@@ -8,30 +8,19 @@ in any case.  Vectors stand in ``( )``, ``{ }`` or ``[ ]``; records are ``positi
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
-from mbsym.model.claims import BODY as BODY_OF
-from mbsym.model.claims import CLAIMS
-from mbsym.source.keys import ALIASES, VERSION
-from mbsym.source.labels import (
-    ASSUMPTIONS,
-    BETWEEN,
-    BODY,
-    HEADER,
-    LOAD_BODIES,
-    LOAD_EXPRESSION,
-    LOAD_TYPE,
-    LOAD_VECTORS,
-    SECTIONS,
-)
+from mbsym.source.keys import VERSION
+from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
-from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
-
-_OPENING = {"(": ")", "{": "}", "[": "]"}
+from mbsym.source.text_claims import claim
+from mbsym.source.text_lines import HEADING, key_of, label_of, lines_of, word_of
+from mbsym.source.text_loads import load
+from mbsym.source.text_values import items, row, split
 
 
 def read_text(text: str, complaints: Complaints) -> Node | None:
@@ -73,8 +62,8 @@ class TextReader:
         self.check_count(header, len(bodies))
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
         entries += _list_entry("bodies", bodies, self.body_form)
-        entries += _list_entry("loads", loads, self.load)
-        entries += _list_entry("claims", claims, self.claim)
+        entries += _list_entry("loads", loads, lambda block: load(self, block.heading, block.lines))
+        entries += _list_entry("claims", claims, lambda block: claim(self, block.heading, block.lines))
         entries += self.constraints(blocks)
         return Mapping(tuple(entries), start)
 
@@ -135,22 +124,18 @@ class TextReader:
             label, word, value = found
             free = word in ("mechanical system", "description", "source")
             read = (
-                self.items(value)
-                if word in ("order", "dependent", "reactions")
-                else self.unquoted(value)
-                if free
-                else value
+                items(value) if word in ("order", "dependent", "reactions") else self.unquoted(value) if free else value
             )
             if word == "reactions" and isinstance(read, Sequence):  # bodies by their numbers
                 named = (self.body_reference(x) if isinstance(x, Scalar) else x for x in read.items)
                 read = Sequence(tuple(named), read.span)
-            entries.append(Entry(_key(label, HEADER[word]), read))
+            entries.append(Entry(key_of(label, HEADER[word]), read))
         return entries
 
     def section(self, block: _Block) -> Entry:
         title = word_of(block.heading.text.rstrip(":"))
         if title == ASSUMPTIONS:
-            return Entry(_key(block.heading, "assumptions"), Sequence(tuple(block.lines), block.heading.span))
+            return Entry(key_of(block.heading, "assumptions"), Sequence(tuple(block.lines), block.heading.span))
         key, first = SECTIONS[title]
         entries = []
         for line in block.lines:
@@ -159,18 +144,18 @@ class TextReader:
                 self.error("syntax", "here 'name = value' is wanted", line.span)
                 continue
             if key == "linear system":
-                rows = self.record(value, "file") if "=" in value.text else self.nested(self.items(value))
+                rows = self.record(value, "file") if "=" in value.text else self.nested(items(value))
                 entries.append(Entry(label, rows))
                 continue
-            read = self.items(value) if key == "limits" else value if first is None else self.record(value, first)
+            read = items(value) if key == "limits" else value if first is None else self.record(value, first)
             if key == "tables":
                 read = self.table(read)
             entries.append(Entry(label, read))
-        return Entry(_key(block.heading, key), Mapping(tuple(entries), block.heading.span))
+        return Entry(key_of(block.heading, key), Mapping(tuple(entries), block.heading.span))
 
     def record(self, value: Scalar, first: str) -> Node:
         """``a; key = b``: a mapping; a single bare value stays what it is."""
-        parts = list(_split(value, ";"))
+        parts = list(split(value, ";"))
         if len(parts) == 1 and "=" not in parts[0].text:
             return self.unquoted(parts[0]) if first == "meaning" else parts[0]
         entries = []
@@ -184,29 +169,29 @@ class TextReader:
                 self.error("syntax", "here 'key = value' is wanted", part.span)
             else:
                 word = word_of(label.text)
-                entries.append(Entry(_key(label, word), self.unquoted(rest) if word == "meaning" else rest))
+                entries.append(Entry(key_of(label, word), self.unquoted(rest) if word == "meaning" else rest))
         return Mapping(tuple(entries), value.span)
 
     def table(self, read: Node) -> Node:
         """A record whose points ``((0, 0), (1, 2.5))`` are a list of lists; such a list alone is a record of it."""
         if isinstance(read, Scalar):
-            read = Mapping((Entry(_key(read, "points"), read),), read.span)
+            read = Mapping((Entry(key_of(read, "points"), read),), read.span)
         assert isinstance(read, Mapping)
         return Mapping(tuple(map(self.table_entry, read.entries)), read.span)
 
     def table_entry(self, entry: Entry) -> Entry:
         value = entry.value
         if entry.key.text == "columns" and isinstance(value, Scalar):
-            return Entry(entry.key, self.items(value))
+            return Entry(entry.key, items(value))
         if entry.key.text != "points" or not isinstance(value, Scalar):
             return entry
-        return Entry(entry.key, self.nested(self.items(value)))
+        return Entry(entry.key, self.nested(items(value)))
 
     def nested(self, read: Node) -> Node:
         """A list whose items may be lists."""
         if not isinstance(read, Sequence):
             return read
-        return Sequence(tuple(self.items(x) if isinstance(x, Scalar) else x for x in read.items), read.span)
+        return Sequence(tuple(items(x) if isinstance(x, Scalar) else x for x in read.items), read.span)
 
     def unquoted(self, value: Scalar) -> Scalar:
         """The text between double quotes, if there are any."""
@@ -227,10 +212,10 @@ class TextReader:
         more = []
         match = HEADING.match(block.heading.text)
         if "name" not in given and match is not None:
-            more.append(Entry(_key(block.heading, "name"), _key(block.heading, _unnamed(int(match.group(2))))))
+            more.append(Entry(key_of(block.heading, "name"), key_of(block.heading, _unnamed(int(match.group(2))))))
         if "inertia" in given and "inertia about" not in given:
             tensor = given["inertia"].key
-            more.append(Entry(_key(tensor, "inertia about"), _key(tensor, "joint")))
+            more.append(Entry(key_of(tensor, "inertia about"), key_of(tensor, "joint")))
         return Mapping((*read.entries, *more), read.span)
 
     def body(self, block: _Block) -> Mapping:
@@ -253,13 +238,13 @@ class TextReader:
             if not value.text and word != "tensor of inertia" and _goes_on(lines, position):
                 value = lines[position]
                 position += 1
-            key = _key(label, BODY[word])
+            key = key_of(label, BODY[word])
             if word == "tensor of inertia" and not value.text:
                 rows = _rows(lines, position)
                 position += len(rows)
-                entries.append(Entry(key, Sequence(tuple(self.row(row) for row in rows), label.span)))
+                entries.append(Entry(key, Sequence(tuple(row(one) for one in rows), label.span)))
             elif key.text in ("axes", "angles"):
-                rotation.append(Entry(key, self.items(value)))
+                rotation.append(Entry(key, items(value)))
             elif key.text == "accept":
                 accept.append(Entry(key, value))
             elif key.text == "shapes":
@@ -272,22 +257,22 @@ class TextReader:
             key = shapes[0][0]
             entries.append(Entry(key, Sequence(tuple(shape for _, shape in shapes), key.span)))
         if rotation:
-            entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
+            entries.append(Entry(key_of(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
         return Mapping(tuple(entries), block.heading.span)
 
     def shape(self, value: Scalar) -> Node:
         """``box = (a, b, c); at = (x, y, z); axes = {3}; angles = {pi/2}`` as a mapping; axes and angles turn it."""
         entries: list[Entry] = []
         rotation: list[Entry] = []
-        for part in _split(value, ";"):
+        for part in split(value, ";"):
             label, rest = label_of(part)
             if label is None:
                 self.error("syntax", "here 'kind = sizes' or 'at = (x, y, z)' is wanted", part.span)
                 continue
             word = word_of(label.text)
-            (rotation if word in ("axes", "angles") else entries).append(Entry(_key(label, word), self.items(rest)))
+            (rotation if word in ("axes", "angles") else entries).append(Entry(key_of(label, word), items(rest)))
         if rotation:
-            entries.append(Entry(_key(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
+            entries.append(Entry(key_of(rotation[0].key, "rotation"), Mapping(tuple(rotation), rotation[0].key.span)))
         return Mapping(tuple(entries), value.span)
 
     def body_value(self, key: str, value: Scalar) -> Node:
@@ -297,51 +282,12 @@ class TextReader:
             return value
         if key in ("speeds", "orientation"):
             return self.numbers(value)
-        return self.items(value)
+        return items(value)
 
     def body_reference(self, value: Scalar) -> Scalar:
         """Bodies are referred to by number; the tree knows them by name."""
         name = self.names.get(value.text)
         return value if name is None else Scalar(name, value.span, literal=False)
-
-    def row(self, line: Scalar) -> Node:
-        """A row of a tensor: ``a, b, c``, ``(a, b, c)``, or three words without commas."""
-        if line.text[:1] in _OPENING and line.text[-1:] == _OPENING[line.text[0]] and _encloses(line.text):
-            return self.items(line)
-        parts = list(_split(line, ","))
-        if len(parts) == 1 and line.text.startswith("|") and line.text.endswith("|") and len(line.text) > 1:
-            parts = list(_split(line.part(1, len(line.text) - 1), "|"))
-        if len(parts) == 1 and len(line.text.split()) == 3:
-            parts = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]
-        return Sequence(tuple(parts), line.span)
-
-    def items(self, value: Scalar) -> Node:
-        """``(a, b, c)``, ``{a, b, c}`` or ``[a, b, c]``."""
-        text = value.text
-        if text[:1] not in _OPENING or not _encloses(text):
-            return value
-        inner = value.part(1, len(text) - 1)
-        return Sequence(tuple(_split(inner, ",")) if inner.text else (), value.span)
-
-    # --- loads -------------------------------------------------------------------------------------------------------
-
-    def load(self, block: _Block) -> Mapping | None:
-        """``{kind: data}`` from the lines below ``Load description (1)``."""
-        found = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
-        kinds = [value for label, value in found if word_of(label.text) == LOAD_TYPE]
-        if len(kinds) != 1:
-            how = "no 'Type of load'" if not kinds else "a second 'Type of load'"
-            place = block.heading.span if not kinds else kinds[1].span
-            self.error("missing-key" if not kinds else "repeated-key", f"this load has {how}", place)
-            return None
-        data = [(label, value) for label, value in found if word_of(label.text) != LOAD_TYPE]
-        if ALIASES.get(kinds[0].text, kinds[0].text) == "generalized force":
-            value: Node = Mapping(tuple(Entry(label, value) for label, value in data), kinds[0].span)
-        elif len(data) == 1 and word_of(data[0][0].text) == LOAD_EXPRESSION:
-            value = data[0][1]
-        else:
-            value = self.load_data(data, kinds[0].span)
-        return Mapping((Entry(kinds[0], value),), block.heading.span)
 
     def constraints(self, blocks: list[_Block]) -> list[Entry]:
         """The blocks ``Constraint description (1)``, ... as a list of {kind: data}."""
@@ -353,29 +299,9 @@ class TextReader:
 
         return _list_entry("constraints", found, lambda block: constraint(self, block.heading, block.lines))
 
-    def claim(self, block: _Block) -> Mapping:
-        """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
-        entries = []
-        lines = [(label, value) for label, value in map(self.load_line, block.lines) if label is not None]
-        kinds = [word_of(value.text) for label, value in lines if word_of(label.text) == "claim"]
-        about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY_OF for kind in kinds)
-        for label, value in lines:
-            word = word_of(label.text)
-            node: Node = value
-            if word == "of" and about_body:
-                node = self.body_reference(value)
-            elif word == "entry":
-                node = self.items(value)
-            elif word == "state":
-                node = self.numbers(value)
-            elif word == "place":
-                node = self.unquoted(value)
-            entries.append(Entry(_key(label, word), node))
-        return Mapping(tuple(entries), block.heading.span)
-
     def numbers(self, value: Scalar) -> Node:
         """``theta = 0.1; theta_dot = 2`` as a mapping; a single word stays what it is."""
-        parts = [label_of(part) for part in _split(value, ";")]
+        parts = [label_of(part) for part in split(value, ";")]
         if len(parts) == 1 and parts[0][0] is None:
             return value
         for label, rest in parts:
@@ -388,31 +314,6 @@ class TextReader:
         if label is None:
             self.error("syntax", "here 'label: value' is wanted", line.span)
         return label, value
-
-    def load_data(self, data: list[tuple[Scalar, Scalar]], span: Span) -> Mapping:
-        """Labels to keys; the first and second points of a spring or damper become its ``between``."""
-        entries: list[Entry] = []
-        points: tuple[list[Entry], list[Entry]] = ([], [])
-        for label, value in data:
-            word = word_of(label.text)
-            if word in BETWEEN:
-                which, key = BETWEEN[word]
-                points[which].append(Entry(_key(label, key), self.load_value(word, value)))
-            else:
-                entries.append(Entry(_key(label, word), self.load_value(word, value)))
-        if any(points):
-            pair = [Mapping(tuple(point), point[0].key.span if point else span) for point in points]
-            entries.append(Entry(Scalar("between", span, literal=False), Sequence(tuple(pair), span)))
-        return Mapping(tuple(entries), span)
-
-    def load_value(self, word: str, value: Scalar) -> Node:
-        if word in LOAD_BODIES:
-            return self.body_reference(value)
-        return self.items(value) if word in LOAD_VECTORS else value
-
-
-def _key(label: Scalar, key: str) -> Scalar:
-    return Scalar(key, label.span, literal=False)
 
 
 def _name_in(block: _Block) -> str:
@@ -448,7 +349,7 @@ def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping
         return []
     first = blocks[0].heading
     return [
-        Entry(_key(first, key), Sequence(tuple(item for item in map(read, blocks) if item is not None), first.span))
+        Entry(key_of(first, key), Sequence(tuple(item for item in map(read, blocks) if item is not None), first.span))
     ]
 
 
@@ -456,8 +357,8 @@ def _with_accepted(entries: list[Entry], accept: list[Entry]) -> list[Entry]:
     """The entries with ``{tensor: ..., accept: true}`` in place of the tensor of inertia."""
     tensors = [entry for entry in entries if entry.key.text == "inertia"]
     first = tensors[0].key if tensors else accept[0].key
-    parts = [Entry(_key(entry.key, "tensor"), entry.value) for entry in tensors]
-    whole = Entry(_key(first, "inertia"), Mapping((*parts, *accept), first.span))
+    parts = [Entry(key_of(entry.key, "tensor"), entry.value) for entry in tensors]
+    whole = Entry(key_of(first, "inertia"), Mapping((*parts, *accept), first.span))
     return [*(entry for entry in entries if entry.key.text != "inertia"), whole]
 
 
@@ -469,38 +370,3 @@ def _rows(lines: list[Scalar], position: int) -> list[Scalar]:
             break
         rows.append(line)
     return rows
-
-
-def _encloses(text: str) -> bool:
-    """Whether the bracket that opens a text closes at its very end."""
-    depth = 0
-    for position, character in enumerate(text):
-        if character in _OPENING:
-            depth += 1
-        elif character in _OPENING.values():
-            depth -= 1
-            if depth == 0:
-                return position == len(text) - 1
-    return False
-
-
-def _split(value: Scalar, separator: str) -> Iterator[Scalar]:
-    """Pieces between separators that stand outside of brackets and quotes."""
-    depth, start, quoted, escaped = 0, 0, False, False
-    for position, character in enumerate(value.text):
-        if escaped:
-            escaped = False
-        elif character == "\\" and quoted:
-            escaped = True
-        elif character == '"':
-            quoted = not quoted
-        elif quoted:
-            continue
-        elif character in _OPENING:
-            depth += 1
-        elif character in _OPENING.values():
-            depth -= 1
-        elif character == separator and depth == 0:
-            yield value.part(start, position)
-            start = position + 1
-    yield value.part(start, len(value.text))
