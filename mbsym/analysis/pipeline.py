@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, constrained, forms, given, judging, second_routes
+from mbsym.analysis import approximation, conserved, constrained, deriving, forms, given, judging, second_routes
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
@@ -24,13 +24,11 @@ from mbsym.formulas.formula import Column
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import Programs, programs
-from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.driven import held
 from mbsym.model.system import System
 from mbsym.problems import (
-    dissipation,
     energy,
     equations,
     equilibrium,
@@ -51,7 +49,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
-from mbsym.problems.telling import ToldSystem, told_system
+from mbsym.problems.telling import ToldSystem
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
@@ -61,7 +59,6 @@ if TYPE_CHECKING:
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduced
-    from mbsym.problems.speeds import SpeedEquations
     from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")
@@ -226,7 +223,7 @@ class Analysis(Stages):
     signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene))
     programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
     expanded = Derived["Analysis", Scene](approximation.expanded)
-    told = Derived["Analysis", ToldSystem](lambda a: a._told())
+    told = Derived["Analysis", ToldSystem](deriving.told_of)
 
     @cached_property
     def oracles(self) -> Oracles:
@@ -267,17 +264,17 @@ class Analysis(Stages):
     kinematics = Problem[Kinematics](
         1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene), ("kinematics",)
     )
-    energy = Problem[Energy](2, "energy and force function", energy, lambda a: a._energy(), ("energy",))
+    energy = Problem[Energy](2, "energy and force function", energy, deriving.energy_of, ("energy",))
     equations = Problem[Equations](
         3,
         "nonlinear Lagrange equations",
         equations,
-        lambda a: a._equations(),
+        deriving.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
     )
-    constraints = Derived["Analysis", "Constraints"](lambda a: a._constraints(), ("constraints",))
+    constraints: Derived[Analysis, Constraints] = Derived(deriving.constraints_of, ("constraints",))
     #: The same in generalised velocities, of a system in speeds.
-    tied_in_coordinates = Derived["Analysis", "Constraints"](constrained.constraints_in_coordinates)
+    tied_in_coordinates: Derived[Analysis, Constraints] = Derived(constrained.constraints_in_coordinates)
     reactions = Derived["Analysis", tuple[Any, ...]](constrained.reactions_of, (constrained.REACTIONS,))
     reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
     residuals = Derived["Analysis", Column](approximation.residuals)
@@ -285,7 +282,7 @@ class Analysis(Stages):
         4,
         "equilibrium conditions",
         equilibrium,
-        lambda a: a._equilibrium(),
+        deriving.equilibrium_of,
         ("equilibrium",),
         says=True,
     )
@@ -293,13 +290,13 @@ class Analysis(Stages):
     linearisation = Problem[Linearisation](
         5, "linearisation", linearisation, approximation.autonomous, ("linearisation", "perturbed motion")
     )
-    state_space = Derived["Analysis", "StateSpace"](
-        lambda a: a._state_space(),
+    state_space: Derived[Analysis, StateSpace] = Derived(
+        deriving.state_space_of,
         ("linearisation", "perturbed motion"),
     )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable)
-    balance = Derived["Analysis", Balance](lambda a: a._balance())
-    stability = Problem[Stability](6, "stability", stability, lambda a: a._stability(), JUDGED, says=True)
+    balance = Derived["Analysis", Balance](deriving.balance_of)
+    stability = Problem[Stability](6, "stability", stability, deriving.stability_of, JUDGED, says=True)
     integrals = Problem[tuple[Integral, ...]](
         7,
         "first integrals",
@@ -311,7 +308,7 @@ class Analysis(Stages):
 
     # --- problem 5 in speeds, of a system that has some ---
 
-    first_order = Derived["Analysis", "FirstOrder"](lambda a: a._first_order(), ("first approximation in speeds",))
+    first_order: Derived[Analysis, FirstOrder] = Derived(deriving.first_order_of, ("first approximation in speeds",))
 
     # --- problem 3 in other forms, for whoever asks ---
 
@@ -323,7 +320,7 @@ class Analysis(Stages):
 
     # --- at numbers ---
 
-    equilibria = Derived["Analysis", "Equilibria"](lambda a: a._equilibria(), ("straight-line program",), says=True)
+    equilibria: Derived[Analysis, Equilibria] = Derived(deriving.equilibria_of, ("straight-line program",), says=True)
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
@@ -362,77 +359,6 @@ class Analysis(Stages):
         """Checks that were carried out on this analysis, or on a copy of it."""
         for check in found:
             self._checks.setdefault(check.name, check)
-
-    def _energy(self) -> Energy:
-        if self.speed_form is None:
-            return energy.energy(self.scene)
-        from mbsym.problems import speeds
-
-        return speeds.energy(self.speed_form, self.scene)
-
-    def _equations(self) -> Equations:
-        if self.system.constraints:
-            return constrained.equations_of(self)
-        if self.speed_form is None:
-            return equations.equations(self.scene, self.energy)
-        from mbsym.problems import speeds
-
-        return speeds.equations(self.speed_form, self.scene)
-
-    def _stability(self) -> Stability:
-        scene, linear = self.parameters_scene, self.judgeable
-        found = stability.stability(scene, self.balance, linear, self.equilibrium, self.signs)
-        if found.numerical is None or not found.numerical.word.open or self.system.constraints:
-            return found  # what looks further at open verdicts knows the open tree alone
-        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
-
-        return open_verdicts.decided(found, scene, self.equilibrium)
-
-    def _equilibrium(self) -> Equilibrium:
-        if self.system.linear is not None:
-            return given.at_zero()
-        residuals = [x.polynomial for x in self.residuals]
-        on_motion = bool(self.system.constraints)
-        return equilibrium.equilibrium(self.parameters_scene, residuals, self.signs, on_motion)
-
-    def _balance(self) -> Balance:
-        if self.system.linear is not None:
-            return given.balance(self)
-        energies = self.optional("energy")
-        if self.system.constraints:
-            from mbsym.problems.constrained_balance import ConstrainedBalance
-
-            return ConstrainedBalance(self.scene, energies, self.signs, {}, about=self.reduced.about)
-        return dissipation.balance(self.parameters_scene if energies is None else self.held_scene, energies, self.signs)
-
-    def _state_space(self) -> StateSpace:
-        from mbsym.problems.state_space import state_space  # few systems have inputs
-
-        return state_space(self.parameters_scene, self.expanded, self.linearisation, self.equilibrium)
-
-    def _first_order(self) -> FirstOrder:
-        from mbsym.problems import first_order
-
-        if self.speed_form is None:
-            why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
-            raise Unavailable("first order", why)
-        return first_order.first_order(self.speed_form, cast("SpeedEquations", self.equations), self.equilibrium)
-
-    def _told(self) -> ToldSystem:
-        return told_system(self.system, self.ring, self.terms)
-
-    def _constraints(self) -> Constraints:
-        return constrained.constraints_of(self)
-
-    def _equilibria(self) -> Equilibria:
-        values = given_values(self.system, {})
-        missing = missing_values(self.system, values)
-        if missing:
-            hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
-            raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
-        from mbsym.problems import equilibria
-
-        return equilibria.equilibria(self.system, values)
 
 
 def _without_speeds() -> None:

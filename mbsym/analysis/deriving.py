@@ -1,0 +1,119 @@
+"""How the results of the pipeline are derived where that takes more than a line: which module, for which system."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from mbsym.analysis import constrained, given
+from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.mechanics.rest import given_values, missing_values
+from mbsym.problems import dissipation, energy, equations, equilibrium, stability
+from mbsym.problems.dissipation import Balance
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.stability import Stability
+from mbsym.problems.telling import ToldSystem, told_system
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.constraints import Constraints
+    from mbsym.problems.equilibria import Equilibria
+    from mbsym.problems.first_order import FirstOrder
+    from mbsym.problems.speeds import SpeedEquations
+    from mbsym.problems.state_space import StateSpace
+
+
+def energy_of(analysis: Analysis) -> Energy:
+    """T, U and their parts, in speeds where the system has some."""
+    if analysis.speed_form is None:
+        return energy.energy(analysis.scene)
+    from mbsym.problems import speeds
+
+    return speeds.energy(analysis.speed_form, analysis.scene)
+
+
+def equations_of(analysis: Analysis) -> Equations:
+    """The equations of motion: with constraints, in speeds, or Lagrange's."""
+    if analysis.system.constraints:
+        return constrained.equations_of(analysis)
+    if analysis.speed_form is None:
+        return equations.equations(analysis.scene, analysis.energy)
+    from mbsym.problems import speeds
+
+    return speeds.equations(analysis.speed_form, analysis.scene)
+
+
+def stability_of(analysis: Analysis) -> Stability:
+    """The verdicts of problem 6; open ones are looked at further."""
+    scene, linear = analysis.parameters_scene, analysis.judgeable
+    found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+    if found.numerical is None or not found.numerical.word.open or analysis.system.constraints:
+        return found  # what looks further at open verdicts knows the open tree alone
+    from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+
+    return open_verdicts.decided(found, scene, analysis.equilibrium)
+
+
+def equilibrium_of(analysis: Analysis) -> Equilibrium:
+    """Whether the given motion satisfies the equations."""
+    if analysis.system.linear is not None:
+        return given.at_zero()
+    residuals = [x.polynomial for x in analysis.residuals]
+    on_motion = bool(analysis.system.constraints)
+    return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion)
+
+
+def balance_of(analysis: Analysis) -> Balance:
+    """What the energy does on the motion."""
+    if analysis.system.linear is not None:
+        return given.balance(analysis)
+    energies = analysis.optional("energy")
+    if analysis.system.constraints:
+        from mbsym.problems.constrained_balance import ConstrainedBalance
+
+        return ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=analysis.reduced.about)
+    return dissipation.balance(
+        analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
+    )
+
+
+def state_space_of(analysis: Analysis) -> StateSpace:
+    """A, B, C, D."""
+    from mbsym.problems.state_space import state_space  # few systems have inputs
+
+    return state_space(analysis.parameters_scene, analysis.expanded, analysis.linearisation, analysis.equilibrium)
+
+
+def first_order_of(analysis: Analysis) -> FirstOrder:
+    """x' = A x in speeds and positions."""
+    from mbsym.problems import first_order
+
+    if analysis.speed_form is None:
+        why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
+        raise Unavailable("first order", why)
+    return first_order.first_order(
+        analysis.speed_form, cast("SpeedEquations", analysis.equations), analysis.equilibrium
+    )
+
+
+def told_of(analysis: Analysis) -> ToldSystem:
+    """The equations through named intermediates."""
+    return told_system(analysis.system, analysis.ring, analysis.terms)
+
+
+def constraints_of(analysis: Analysis) -> Constraints:
+    """What is known of the constraints."""
+    return constrained.constraints_of(analysis)
+
+
+def equilibria_of(analysis: Analysis) -> Equilibria:
+    """Equilibria at the values of the description."""
+    values = given_values(analysis.system, {})
+    missing = missing_values(analysis.system, values)
+    if missing:
+        hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
+        raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+    from mbsym.problems import equilibria
+
+    return equilibria.equilibria(analysis.system, values)
