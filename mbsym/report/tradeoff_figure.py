@@ -33,7 +33,12 @@ OLIVE = "#777700"
 def work_precision(
     found: Tradeoff, target: float, title: str, models: Sequence[ModelError], formats: Sequence[str]
 ) -> dict[str, bytes]:
-    """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines."""
+    """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines.
+
+    None where no run came to the end, in time or at all.
+    """
+    if not any(row.error < WORST for row in found.rows):
+        return {}
     return pictures({"work-precision": lambda: _drawn(found, target, title, models)}, formats)
 
 

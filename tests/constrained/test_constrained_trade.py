@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from mbsym.numerics.reference_search import WAYS, _Search, whole_reference
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
 from mbsym.report.constrained_run_words import constraint_lines
+from mbsym.report.tradeoff_figure import work_precision
 from mbsym.report.tradeoff_table import tradeoff_csv
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
@@ -115,6 +117,12 @@ def test_the_drift_is_a_column_of_the_table_where_there_are_constraints(trade: T
     assert list(rows[0])[5:8] == ["drift", "constraint_drift", "constraint_velocity_drift"]
     off = next(row for row in rows if row["method"] == "dop853")
     assert float(off["constraint_drift"]) == pytest.approx(5e-7, rel=1e-3)
+
+
+def test_where_no_run_came_to_the_end_there_is_no_figure(trade: Tradeoff) -> None:
+    """A budget that is too short leaves rows without errors, which have no place on a logarithmic axis."""
+    none = replace(trade, rows=tuple(replace(row, error=inf, drift=inf) for row in trade.rows))
+    assert work_precision(none, 1e-9, "nothing", (), ("png",)) == {}
 
 
 def _at_end(truth: Reference) -> list[float]:
