@@ -165,6 +165,8 @@ def _judge_turned(whole_polynomial: Any, turned: Sequence[Any], whole: Verdict) 
         return whole
     if roots.zero or roots.imaginary_multiplicity > 1:
         return undecided(Because.ZERO_OR_MULTIPLE_BESIDES_TURNED)
+    if whole.because(Because.JORDAN_BLOCK):  # with the turned roots once more: without angular momentum tilts grow
+        return whole
     return concluded({Fact.BOUNDED}, Reason(Because.IMAGINARY_BESIDES_TURNED), Reason(Because.HIGHER_ORDER))
 
 
