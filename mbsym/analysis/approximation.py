@@ -41,14 +41,30 @@ def expanded(analysis: Analysis) -> Scene:
 def reduced(analysis: Analysis) -> Reduced:
     """A constrained system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
     from mbsym.mechanics.constraints.expansion import expansion
-    from mbsym.mechanics.constraints.perturbed import projected
+    from mbsym.mechanics.constraints.perturbed import felt, on_leaf, projected
     from mbsym.problems.reduction import Reduced, reduction
 
     _demand_motion(analysis)
     scene = analysis.parameters_scene
     found = expansion(scene, analysis.signs, analysis.system)
     equations = projected(scene, found)
-    return Reduced(found, equations, reduction(scene, found, equations))
+    leaf = 0 if len(found.coordinates) == len(found.speeds) else _kept(analysis)
+    if leaf:
+        there, own = on_leaf(scene, found, equations)
+        if len(felt(there, own)) == len(there.speeds):
+            found, equations = there, own
+        else:  # coordinates that drop out, and their families, are judged by the roots of the whole
+            leaf = 0
+    return Reduced(found, equations, reduction(scene, found, equations, leaf))
+
+
+def _kept(analysis: Analysis) -> int:
+    """How many relations the velocity constraints keep if all are proved to be integrable, without time; else 0."""
+    tied = analysis.optional("constraints")
+    known = None if tied is None else tied.integrability
+    if known is None or known.rheonomic or known.word != "holonomic" or known.sureness.value != "proved":
+        return 0
+    return int(known.kept)
 
 
 def residuals(analysis: Analysis) -> Column:

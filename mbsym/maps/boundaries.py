@@ -126,7 +126,7 @@ def conditions_of(system: LinearSystem, part: int, reduced: bool = False) -> Ite
     def told(origin: Origin, polynomial: Polynomial, about: str = "") -> Condition:
         return Condition(origin, polynomial, part, about, reduced)
 
-    yield told(Origin.MASS, determinant(system.M))
+    yield told(Origin.MASS, determinant(system.kinetic))
     if not is_zero(system.K):
         yield told(Origin.STIFFNESS, _lowest_coefficient(system.K))
     if not is_zero(system.D):

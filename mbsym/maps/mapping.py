@@ -153,9 +153,10 @@ class Judge:
     def positive(self, point: Point) -> bool:
         """Whether M of every part is positive definite: its leading minors are."""
         if point.rational:
-            return all(inertia(matrix_at(part.M, (point.x, point.y)))[0] == part.size for part in self.section.parts)
+            place = (point.x, point.y)
+            return all(inertia(matrix_at(m, place))[0] == len(m) for m in (x.kinetic for x in self.section.parts))
         return all(point.sign(minor) > 0 for minors in self._minors for minor in minors)
 
     @cached_property
     def _minors(self) -> list[tuple[Any, ...]]:
-        return [leading_minors(part.M) for part in self.section.parts]
+        return [leading_minors(part.kinetic) for part in self.section.parts]

@@ -11,7 +11,9 @@ others by an equation of first order of its own,
 
     A eta' + B eta + C x = 0,      x_f' = S eta + T x,
 
-so that M has a row of zeros for it.
+so that M has a row of zeros for it.  Where Frobenius' theorem proves that the velocity constraints are integrable, the
+system is holonomic on every leaf that they leave, and its first approximation is that on the leaf of the motion: there
+the theorems of Lagrange, Kelvin and Chetaev hold.
 
 Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapters III and V; A. V. Karapetyan,
 "On the problem of steady motions of nonholonomic systems", J. Appl. Math. Mech. 44 (1980).
@@ -49,7 +51,8 @@ class Reduction(Shown):
     constraints, ``assumed`` polynomials that must not vanish.  ``holonomic``: every constraint is one between
     coordinates, as it is given.  ``family``: the derivatives of the coordinate, and of its velocity, by the parameters
     that stand in the motion only, of every speed and then of all that follow: by these the description gives a family
-    of motions.
+    of motions.  ``leaf``: how many relations between coordinates the velocity constraints keep, all of them proved to
+    be integrable, so that the first approximation is that on the leaf of the motion; 0 where they are not.
     """
 
     coordinates: tuple[str, ...]
@@ -62,6 +65,7 @@ class Reduction(Shown):
     holonomic: bool
     family: tuple[tuple[tuple[Formula, ...], tuple[Formula, ...]], ...]
     following: tuple[str, ...] = ()
+    leaf: int = 0
 
     @property
     def about(self) -> tuple[str, ...]:
@@ -100,8 +104,11 @@ class Reduced:
         return [*self.expansion.conditions, *(-x for x in self.equations.constant)]
 
 
-def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction:
-    """The independent quantities by name.  Raises SingularPoint where the constraints lose their rank on the motion."""
+def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 0) -> Reduction:
+    """The independent quantities by name.  Raises SingularPoint where the constraints lose their rank on the motion.
+
+    ``leaf`` relations are kept by integrable velocity constraints: then ``found`` and ``equations`` are those on it.
+    """
     if found.lost:
         raise SingularPoint("the constraints are not independent on this motion although they are near it")
     names, ring = scene.system.coordinates, scene.ring
@@ -131,6 +138,7 @@ def reduction(scene: Scene, found: Expansion, equations: Projected) -> Reduction
             for i in (*found.speeds, *following)
         ),
         following=tuple(names[i] for i in following),
+        leaf=leaf,
     )
 
 

@@ -109,6 +109,9 @@ class _Disturbed:
         at, moving = self._places(about.dependent_coordinates), self._places(about.dependent_speeds)
         rows = [row for row in self._rows() if row.position is not None]
         places = [row.position.b for row in rows if row.position is not None]
+        if about.leaf:  # deviations on the leaf are displacements that the velocity constraints allow
+            rows = list(self._rows())
+            places = [self._along(row, parts) for row in rows]
         for i, x in _eliminated(rows, at, places)[0].items():
             parts[self.system.coordinates[i]][0] = -x
         rows = list(self._rows())
@@ -124,6 +127,13 @@ class _Disturbed:
         rows = list(self._rows())
         for i, x in _eliminated(rows, moving, [row.acceleration.b for row in rows])[0].items():
             parts[self.system.coordinates[i]][2] = -x
+
+    def _along(self, row: Row, parts: Mapping[str, Sequence[Any]]) -> Any:
+        """J x of the row, x the disturbance of the coordinates."""
+        total = self.state.numbers.zero
+        for partial, name in zip(row.partials, self.system.coordinates, strict=True):
+            total = total + partial.a * parts[name][0]
+        return total
 
     def _places(self, names: Sequence[str]) -> list[int]:
         return [self.system.coordinates.index(name) for name in names]

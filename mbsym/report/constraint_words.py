@@ -84,6 +84,13 @@ def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
             "Dependent coordinates are expanded about the motion, not solved for: [[names]].",
             {"names": write.names(found.dependent_coordinates)},
         )
+    if found.leaf:
+        yield (
+            "The velocity constraints are integrable (Frobenius; proved): they keep relations between the coordinates, "
+            "[[k]] in number, and the first approximation is that of disturbances that keep the values of these; the "
+            "zero roots of others, as many, are not among those below.",
+            {"k": found.leaf},
+        )
     if found.rates:
         yield "On the motion the constraints demand [[rates]].", {"rates": write.rates(found.rates)}
     if found.idle:

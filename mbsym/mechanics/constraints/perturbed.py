@@ -17,7 +17,7 @@ The term Y_x^T r_0 is the one that is forgotten where only f and J_0 are lineari
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mbsym.algebra.jet import Jet
 from mbsym.algebra.ring import Polynomial
@@ -70,6 +70,26 @@ def projected(scene: Scene, found: Expansion) -> Projected:
         S=_cut(scene, rates, speeds),
         T=_cut(scene, rates, places),
     )
+
+
+def on_leaf(scene: Scene, found: Expansion, equations: Projected) -> tuple[Expansion, Projected]:
+    """The same where velocity constraints are integrable: on the leaf F(q) = F(q_0) of the unperturbed motion.
+
+    Frobenius: dF = mu J dq with a regular matrix mu, so that deviations on the leaf are those with  J_0 x = 0,
+    x = Y_0 x_s  with the coordinates x_s of the independent speeds;  x_s' = eta, and  A x_s'' + B x_s' + C Y_0 x_s  are
+    Lagrange's equations of the leaf to first order.
+    """
+    ring = scene.ring
+    rows = [found.null_space[i] for i in found.coordinates]
+    columns = list(zip(*rows, strict=True))
+    position = tuple(tuple(ring.reduce(_dot(scene, line, column)) for column in columns) for line in equations.C)
+    size = range(len(found.speeds))
+    unit = tuple(tuple(ring.one if i == k else ring.zero for k in size) for i in size)
+    still = tuple((ring.zero,) * len(size) for _ in size)
+    forms = tuple(
+        {i: x for i, x in zip(found.speeds, line, strict=True) if not x.is_zero()} for line in found.null_space
+    )
+    return replace(found, coordinates=found.speeds, positions=forms), replace(equations, C=position, S=unit, T=still)
 
 
 def felt(found: Expansion, equations: Projected) -> tuple[int, ...]:

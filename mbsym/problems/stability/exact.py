@@ -19,7 +19,7 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, implied
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, undecided
+from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, off_the_leaf, undecided
 from mbsym.problems.stability.word import Word
 
 Numbers = Any  # a flint.fmpq_mat
@@ -51,6 +51,12 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
 
 def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     """The same where the matrices' entries have exact values of whatever kind; ``polynomial`` is of that kind."""
+    found = _verdict_over(system, at)
+    return replace(found, verdict=off_the_leaf(found.verdict)) if system.leaf else found
+
+
+def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
+    """What holds of disturbances that the matrices are about."""
     m, d, g, k, n = matrices = [evaluated(matrix, at) for matrix in system.matrices]
     try:
         a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)

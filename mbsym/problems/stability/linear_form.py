@@ -41,7 +41,7 @@ class LinearSystem:
     the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
     shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.  ``names`` of the coordinates
     are for sentences.  ``nonholonomic``: the five matrices are no more than the split of two, and say nothing about
-    energy.
+    energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.
     """
 
     M: Matrix
@@ -55,6 +55,7 @@ class LinearSystem:
     driven: tuple[int, ...] = ()
     names: tuple[str, ...] = ()
     nonholonomic: NonholonomicForm | None = None
+    leaf: int = 0
 
     def __post_init__(self) -> None:
         n = len(self.M)

@@ -36,7 +36,7 @@ from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf, undecided
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -208,7 +208,8 @@ def _enclosed(
     matrices = _matrices_at(scene, linear, part.coordinates, values)
     if part.system.nonholonomic is not None:
         return nonholonomic.enclosed(part.system.nonholonomic, matrices, zero_power, PRECISION)
-    return enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
+    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
+    return off_the_leaf(found) if part.system.leaf else found
 
 
 def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, balance: Balance) -> SubsystemStability:
@@ -252,7 +253,8 @@ def prepared_parts(
         for part in linear.subsystems
     )
     if linear.constrained is None or linear.constrained.holonomic:
-        return prepared
+        leaf = 0 if linear.constrained is None else linear.constrained.leaf
+        return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
     about, free = linear.constrained, equilibrium.satisfied
     return tuple(
         replace(part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, about, signs, free)))

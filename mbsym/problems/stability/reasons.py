@@ -22,6 +22,7 @@ class Because(Enum):
     LEFT_BUT_CYCLIC = auto()
     TURNED_DECAYS = auto()
     STEADY_DECAYS = auto()
+    OTHER_LEAF = auto()
     MINIMUM = auto()
     MINIMUM_AND_DISSIPATION = auto()
     UNDAMPED_MOTION = auto()  # (coordinates)

@@ -46,6 +46,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "disturbed motion tends to a steady spin about an axis near by, and every variable that does not change "
         "when everything is turned in space tends to its value there."
     ),
+    Because.OTHER_LEAF: (
+        "A disturbance that changes the relations which the integrable velocity constraints keep does not decay: the "
+        "motion tends to one near by, with other values of them."
+    ),
     Because.STEADY_DECAYS: (
         "All roots have negative real parts but the zero ones, which are as many as the family of steady motions that "
         "the description gives has dimensions: a disturbed motion tends to a steady motion near by, and coordinates on "

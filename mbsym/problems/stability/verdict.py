@@ -27,7 +27,7 @@ from enum import Enum, auto
 
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import LAGRANGE, ROUTH, Fact, Ground, applying, implied, reason_of
+from mbsym.problems.stability.theorems import LAGRANGE, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
 from mbsym.problems.stability.word import Word
 
 
@@ -73,6 +73,7 @@ LAW = (
     Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
+    Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
     Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
@@ -239,6 +240,25 @@ _BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {Reason(Because.DRIFT): Reason(B
 def _at_constant_momenta(theorems: Iterable[str]) -> tuple[str, ...]:
     """A minimum of the effective potential at constant cyclic momenta is Routh's theorem."""
     return tuple(sorted({ROUTH if name == LAGRANGE else name for name in theorems}))
+
+
+def off_the_leaf(verdict: Verdict) -> Verdict:
+    """The verdict on disturbances that keep the relations of integrable constraints as one on those that change them.
+
+    K or the roots on the leaf being what they are, an equilibrium near by belongs to every other value (implicit
+    functions), and depends on it smoothly: what decays on the leaf decays to that, a minimum of the energy stays one.
+    """
+    if Ground.DECAYS not in verdict.laid:
+        return verdict
+    grounds = {
+        ground: tuple(sorted({*names, MALKIN})) if ground is Ground.DECAYS else names
+        for ground, names in verdict.laid.items()
+    }
+    flaws = verdict.flawed | {Flaw.STEADY}
+    row = row_of({*grounds}, flaws)
+    reasons = tuple(sorted((*verdict.reasons, Reason(Because.OTHER_LEAF)), key=lambda reason: reason.rank))
+    names = verdict.theorems if row.ground is None else grounds[row.ground]
+    return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
 
 
 def coasting() -> Verdict:

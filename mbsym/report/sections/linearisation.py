@@ -40,6 +40,7 @@ def _reduction(about: Reduction, write: Write) -> dict[str, Any]:
         "dependent_speeds": list(about.dependent_speeds),
         "idle": list(about.idle),
         **({"following": list(about.following)} if about.following else {}),
+        **({"leaf": about.leaf} if about.leaf else {}),
         "rates": {name: write(rate) for name, rate in about.rates},
         "assumed_nonzero": [write(x) for x in about.assumed],
         "holonomic": about.holonomic,

@@ -1,0 +1,213 @@
+"""Velocity constraints that are integrable: on the leaf of the motion the theorems of holonomic systems hold.
+
+A bead on x y = const, given by its rate, between two springs and two dampers: with y = a^2/x the kinetic energy at
+x = a is m x'^2, the dissipation c x'^2, the potential (k/2) (x^2 + a^4/x^2), and its second derivative there 4 k.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from mbsym.analysis.pipeline import Analysis
+from mbsym.mechanics.constraints import perturbed
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
+from mbsym.problems.constraints import Sureness, analysis, integrability
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.word import Word
+from mbsym.report.constraint_words import Writer, filled, reduction_sentences
+from mbsym.source import read
+
+BEAD = """
+mbsym: 1
+name: Bead on a hyperbola
+parameters:
+  m: {sign: positive, value: 1}
+  k: {sign: real, value: K}
+  a: {sign: positive, value: A}
+  c: {sign: nonnegative, value: C}
+bodies:
+  - {name: bead, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - spring: {coordinate: y, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+  - damper: {coordinate: y, coefficient: c}
+constraints:
+  - GIVEN
+motion: {x: a, y: a}
+"""
+BY_RATE, BY_PLACE = "velocity: y*x_dot + x*y_dot = 0", "relation: x*y = a**2"
+
+
+def described(text: str) -> Analysis:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    return Analysis(system)
+
+
+def bead(k: str = "3", a: str = "2", c: str = "0", given: str = BY_RATE) -> Analysis:
+    text = BEAD.replace("value: K", f"value: {k}").replace("value: A", f"value: {a}").replace("value: C", f"value: {c}")
+    return described(text.replace("GIVEN", given))
+
+
+def test_the_matrices_are_those_of_the_leaf() -> None:
+    for given in (BY_RATE, BY_PLACE):
+        found = bead(given=given).linearisation
+        assert [str(x) for x in found.matrices] == ["[[2*m]]", "[[2*c]]", "[[0]]", "[[4*k]]", "[[0]]"]
+        assert found.constrained is not None
+        assert found.constrained.holonomic
+        assert found.constrained.leaf == (given is BY_RATE)
+
+
+@pytest.mark.parametrize("a", ["2", "sqrt(2)"])
+@pytest.mark.parametrize(
+    ("k", "c", "word", "theorem"),
+    [
+        ("3", "0", Word.STABLE, "Lagrange-Dirichlet"),
+        ("3", "1", Word.ASYMPTOTIC_BUT_STEADY, "Kelvin-Chetaev, Lyapunov-Malkin"),  # another x y stays another one
+        ("-3", "1", Word.UNSTABLE, "Kelvin-Chetaev"),
+        ("-3", "0", Word.UNSTABLE, "Kelvin-Chetaev"),
+    ],
+)
+def test_theorems_on_energy_hold_on_the_leaf(a: str, k: str, c: str, word: Word, theorem: str) -> None:
+    verdict = bead(k, a, c).stability.numerical
+    assert verdict is not None
+    assert (verdict.word, verdict.theorem) == (word, theorem)
+    held = bead(k, a, c, BY_PLACE).stability.numerical
+    assert held is not None
+    assert held.word is (Word.ASYMPTOTIC if word is Word.ASYMPTOTIC_BUT_STEADY else word)
+
+
+def test_it_is_said_in_symbols_too() -> None:
+    """c > 0 declared, and k > 0: K > 0, D > 0."""
+    text = BEAD.replace("k: {sign: real, value: K}", "k: positive").replace(
+        "a: {sign: positive, value: A}", "a: positive"
+    )
+    text = text.replace("c: {sign: nonnegative, value: C}", "c: positive").replace("GIVEN", BY_RATE)
+    verdict = described(text).stability.verdict
+    assert (verdict.word, verdict.theorem) == (Word.ASYMPTOTIC_BUT_STEADY, "Kelvin-Chetaev, Lyapunov-Malkin")
+    assert verdict.because(Because.OTHER_LEAF)
+
+
+def test_a_part_that_decays_beside_one_that_does_not_is_stable() -> None:
+    """One energy does not grow, and has its minimum on every leaf near by."""
+    text = BEAD.replace("GIVEN", BY_RATE + "\n  - velocity: v*u_dot + u*v_dot = 0")
+    text = text.replace("value: K", "value: 3").replace("value: A", "value: 2").replace("value: C", "value: 1")
+    other = "  - {name: other, attached to: 0, connection point: [u, v, 0], coordinates: [u, v], mass: m}\n"
+    springs = "  - spring: {coordinate: u, stiffness: k}\n  - spring: {coordinate: v, stiffness: k}"
+    text = text.replace("loads:", other + "loads:\n" + springs)
+    verdict = described(text.replace("y: a}", "y: a, u: a, v: a}")).stability.numerical
+    assert verdict is not None
+    assert (verdict.word, verdict.theorem) == (Word.STABLE, "Lagrange-Dirichlet")
+
+
+def test_the_report_says_that_it_is_about_the_leaf() -> None:
+    about = bead().linearisation.constrained
+    assert about is not None
+    told = " ".join(filled(x) for x in reduction_sentences(about, Writer(", ".join)))
+    assert "integrable (Frobenius; proved): they keep relations between the coordinates, 1 in number" in told
+    assert "the first approximation is that of disturbances that keep the values of these" in told
+    assert "D, G, K and N are taken as no more" not in told
+
+
+def test_multipliers_agree() -> None:
+    checks = {check.name: check.outcome for check in bead().checks}
+    assert {checks["perturbed motion"], checks["equilibrium"]} <= {EXACT, NUMERICAL}
+    assert FAILED not in checks.values()
+
+
+def test_a_stiffness_that_forgets_the_leaf_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """C of the independent coordinates in place of C Y_0."""
+    original = perturbed.on_leaf
+
+    def wrong(scene: Any, found: Any, equations: Any) -> Any:
+        there, own = original(scene, found, equations)
+        short = tuple(row[: len(own.A)] for row in equations.C)
+        return there, dataclasses.replace(own, C=short)
+
+    monkeypatch.setattr(perturbed, "on_leaf", wrong)
+    check = bead().check("perturbed motion")
+    assert check is not None
+    assert check.outcome == FAILED
+
+
+# --- where it must not be said ---
+
+
+def test_what_is_not_proved_is_no_leaf(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unproved(*arguments: Any) -> Any:
+        return dataclasses.replace(integrability.integrability(*arguments), sureness=Sureness.NUMERICAL)
+
+    monkeypatch.setattr(analysis, "integrability", unproved)
+    found = bead()
+    known = found.constraints.integrability
+    assert known is not None
+    assert (known.word, known.sureness.value) == ("holonomic", "verified numerically")
+    about = found.linearisation.constrained
+    assert about is not None
+    assert (about.leaf, about.holonomic) == (0, False)
+    verdict = found.stability.numerical
+    assert verdict is not None
+    assert verdict.word not in (Word.STABLE, Word.ASYMPTOTIC)
+
+
+def test_what_is_not_integrable_has_no_leaf() -> None:
+    """y x' + x y' = x z': omega ^ d omega = -y dx ^ dy ^ dz or so, not 0."""
+    text = BEAD.replace(
+        "connection point: [x, y, 0], coordinates: [x, y]", "connection point: [x, y, z], coordinates: [x, y, z]"
+    )
+    text = text.replace("constraints:", "  - spring: {coordinate: z, stiffness: k}\nconstraints:")
+    text = text.replace("GIVEN", "velocity: y*x_dot + x*y_dot = x*z_dot").replace("y: a}", "y: 0, z: 0}")
+    text = text.replace("value: K", "value: 3").replace("value: A", "value: 2").replace("value: C", "value: 0")
+    found = described(text)
+    known = found.constraints.integrability
+    assert known is not None
+    assert known.word == "nonholonomic"
+    about = found.reduced.about
+    assert (about.leaf, about.holonomic) == (0, False)
+
+
+def test_with_time_there_is_no_leaf() -> None:
+    found = bead(given="velocity: y*x_dot + x*y_dot = 0*t + 0*a").constraints.integrability
+    assert found is not None
+    moving = described(
+        BEAD.replace("GIVEN", "velocity: y*x_dot + x*y_dot = a*m")
+        .replace("value: K", "value: 3")
+        .replace("value: A", "value: 2")
+        .replace("value: C", "value: 0")
+    )
+    known = moving.constraints.integrability
+    assert known is not None
+    assert known.rheonomic
+    assert moving.optional("reduced") is None or moving.reduced.about.leaf == 0
+
+
+WHEEL = """
+mbsym: 1
+name: Wheel with a pendulum
+parameters: {m: positive, r: positive, J: positive, l: positive, g: positive, c: positive}
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+  - {name: wheel, attached to: cart, rotation: {axes: [3], angles: [phi]}, mass: 0, inertia about: joint,
+     inertia: [0, 0, J]}
+  - {name: bob, attached to: cart, rotation: {axes: [3], angles: [theta]}, mass: m, mass centre: [0, -l, 0]}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - damper: {coordinate: theta, coefficient: c}
+constraints:
+  - velocity: x_dot + r*phi_dot = 0
+motion: {x: {rate: v}, phi: {rate: -v/r}, theta: 0}
+"""
+
+
+def test_coordinates_that_drop_out_are_judged_with_their_family() -> None:
+    """The wheel may be anywhere and run at any speed: not asymptotically stable, but for that."""
+    found = described(WHEEL.replace("c: positive}", "c: positive, v: real}"))
+    about = found.linearisation.constrained
+    assert about is not None
+    assert about.leaf == 0
+    assert set(about.idle) >= {"x", "phi"}
+    assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_STEADY
