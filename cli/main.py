@@ -38,6 +38,7 @@ COMMANDS = {
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("map", "Divide a plane of parameters into regions of one verdict."),
+    "groups": Listed("groups", "Find the dimensionless groups of a system."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
     "convert": Listed("convert", "Convert YAML, plain text, and robots (URDF, MJCF)."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 from mbsym.expressions.tree import (
@@ -14,6 +15,7 @@ from mbsym.expressions.tree import (
     Number,
     Operation,
     add,
+    is_number,
     multiply,
     names,
     negative,
@@ -41,7 +43,7 @@ def put(part: Any, images: Mapping[str, Expression], replaced: Replacing = subst
 
 
 def folded(expression: Expression, images: Mapping[str, Expression]) -> Expression:
-    """The expression with names replaced, products with 0 and 1 and sums with 0 left out.
+    """The expression with names replaced, products with 0 and 1, sums with 0, x/1 and powers of 1 left out.
 
     A quotient keeps its divisor: 0/x is not 0 at x = 0.
     """
@@ -54,4 +56,9 @@ def folded(expression: Expression, images: Mapping[str, Expression]) -> Expressi
             return negative(folded(operand, images))
         case Operation(operator, left, right) if operator in _FOLDING:
             return _FOLDING[operator](folded(left, images), folded(right, images))
+        case Operation("/", left, right):
+            below = folded(right, images)
+            return folded(left, images) if is_number(below, 1) else Operation("/", folded(left, images), below)
+        case Operation("**", base, exponent) if is_number(folded(base, images), 1) and not names(exponent):
+            return Number(Fraction(1))
     return substitute(expression, images)

@@ -1,0 +1,146 @@
+"""A description written in its dimensionless groups: the units are 1, and every other parameter stands for its group.
+
+    m2 -> m2/m1,   l2 -> l2/l1,   m1 = l1 = g = 1,   t in units of sqrt(l1/g)
+
+The equations of the result are those of the system divided through; whatever is derived from it (reports, maps, sweeps)
+is in the groups.  Values follow: those of the groups, and the initial state in the new units, where they are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from mbsym.expressions.tree import (
+    Call,
+    Expression,
+    Name,
+    divide,
+    is_number,
+    multiply,
+    names,
+    number,
+    power,
+    substitute,
+    text,
+)
+from mbsym.model.substitution import folded, put
+from mbsym.model.system import Body, InitialValue, Parameter, System, rational
+from mbsym.model.units import Units
+from mbsym.problems.scaling import Groups
+
+Powers = Iterable[tuple[str, Fraction]]
+
+
+def product(powers: Powers) -> Expression:
+    """x**2*sqrt(y)/z as an expression; 1 where there is nothing."""
+    wholes: list[tuple[str, int]] = []
+    halves: list[tuple[str, int]] = []
+    others: list[tuple[str, Fraction]] = []
+    for name, exponent in powers:
+        if exponent.denominator == 1:
+            wholes.append((name, exponent.numerator))
+        elif exponent.denominator == 2:
+            halves.append((name, exponent.numerator))
+        else:
+            others.append((name, exponent))
+    found = _quotient([(_whole(name, abs(k)), k > 0) for name, k in wholes])
+    if halves:
+        root = Call("sqrt", _quotient([(_whole(name, abs(k)), k > 0) for name, k in halves]))
+        found = root if is_number(found, 1) else multiply(found, root)
+    for name, exponent in others:
+        found = multiply(found, power(Name(name), number(exponent)))
+    return found
+
+
+def _quotient(factors: Iterable[tuple[Expression, bool]]) -> Expression:
+    """The factors that stand above (True) over those that do not."""
+    sides: dict[bool, Expression] = {}
+    for factor, above in factors:
+        sides[above] = factor if above not in sides else multiply(sides[above], factor)
+    top = sides.get(True, number(1))
+    return divide(top, sides[False]) if False in sides else top
+
+
+def _whole(name: str, exponent: int) -> Expression:
+    return Name(name) if exponent == 1 else power(Name(name), number(exponent))
+
+
+def group_of(name: str, powers: Powers) -> Expression:
+    """What a parameter stands for: m2/m1."""
+    return product([(name, Fraction(1)), *powers])
+
+
+def in_groups(system: System, found: Groups, values: bool = True) -> System:
+    """The description in groups, with ``values`` if these are wanted; claims, units of measurement, limits left out."""
+    units = {name: number(1) for name in found.units}
+    known: Mapping[str, Expression] = {x.name: x.value for x in system.parameters if x.value is not None and values}
+    stands = {one.parameter: group_of(one.parameter, one.powers) for one in found.groups}
+    related = {relation.name for relation in system.relations}
+    parameters = []
+    for one in system.parameters:
+        if one.name in units:
+            continue
+        if one.name in stands:
+            parameters.append(_group(one, stands[one.name], known))
+        else:  # one that does not matter, or follows from others
+            kept = values and one.name not in related
+            parameters.append(one if kept else replace(one, value=None))
+    base = replace(system, parameters=(), initial=(), claims=(), units=Units(), limits=(), abbreviations=())
+    changed: System = put(base, units, folded)
+    scale = changed.time_scale
+    told = ", ".join(f"{name} = 1" for name in found.units)
+    return replace(
+        changed,
+        name=f"{system.name}, in dimensionless groups",
+        description=f"In units in which {told}.  {system.description}".strip() if told else system.description,
+        bodies=tuple(map(_accepted, changed.bodies)),
+        parameters=tuple(parameters),
+        initial=tuple(_initial(system.initial, found, known)),
+        time_scale=scale if scale is not None and names(scale) else None,
+        notation=tuple(item for item in changed.notation if names(item.value)),
+    )
+
+
+def _accepted(body: Body) -> Body:
+    """What a rigid body can be is not asked: m l^2 < A need not stand in the equations, which hold m g l and A."""
+    return body if body.inertia is None else replace(body, inertia=replace(body.inertia, accepted=True))
+
+
+def _group(one: Parameter, stands: Expression, values: Mapping[str, Expression]) -> Parameter:
+    meaning = f"{text(stands)}; {one.name}: {one.meaning}" if one.meaning else text(stands)
+    return replace(one, meaning=meaning, value=_valued(stands, values))
+
+
+def _valued(x: Expression, values: Mapping[str, Expression]) -> Expression | None:
+    """With numbers for all names; None where one has none."""
+    if not names(x) <= values.keys():
+        return None
+    found = substitute(x, dict(values))
+    exact = rational(found)
+    return found if exact is None else number(exact)
+
+
+def _initial(given: Sequence[InitialValue], found: Groups, values: Mapping[str, Expression]) -> Iterable[InitialValue]:
+    """Positions by their lengths, velocities by lengths times the rate; left out where a unit has no value."""
+    lengths = {one.parameter: one.powers for one in found.lengths}
+    if found.rate is None:
+        return
+    for one in given:
+        length = _valued(product(lengths.get(one.coordinate, ())), values)
+        rate = _valued(product([*lengths.get(one.coordinate, ()), *found.rate]), values)
+        if length is None or rate is None:
+            continue
+        position = one.position if one.position is None else _divided(one.position, length, values)
+        velocity = one.velocity if one.velocity is None else _divided(one.velocity, rate, values)
+        if (one.position is None) == (position is None):
+            yield replace(one, position=position, velocity=velocity)
+
+
+def _divided(x: Expression, unit: Expression, values: Mapping[str, Expression]) -> Expression | None:
+    value = _valued(x, values)
+    if value is None:
+        return None
+    exact = rational(divide(value, unit))
+    return divide(value, unit) if exact is None else number(exact)
