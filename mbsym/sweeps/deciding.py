@@ -142,7 +142,7 @@ class _Made:
 
     def part(self, system: LinearSystem) -> None:
         """Everything that the exact judge looks at."""
-        for matrix in (system.M, system.K, system.D):
+        for matrix in (system.M, system.kinetic, system.K, system.D):
             if not is_zero(matrix):
                 self._inertia(matrix)
         for matrix in (system.D, system.G, system.N):

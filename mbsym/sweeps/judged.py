@@ -18,16 +18,18 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import admissibility
-from mbsym.maps.section import Section
-from mbsym.maps.verdicts import verdict_at
+from mbsym.maps.section import Complaint, Fault, Section, Unfit
+from mbsym.maps.verdicts import matrix_at, verdict_at
 from mbsym.numerics.kernels import llvm
+from mbsym.problems.stability.exact import inertia
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
 from mbsym.sweeps.measure import Column
 
 #: What may stand in place of a verdict, before the words of verdicts.
-OUTSIDE, UNDEFINED = "outside the assumptions", "not defined"
-WORDS = (OUTSIDE, UNDEFINED, *(word.value for word in Word))
+OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"
+NO_VERDICT = (OUTSIDE, UNDEFINED, MASSLESS)
+WORDS = (*NO_VERDICT, *(word.value for word in Word))
 
 VERDICT = Column(
     "verdict", "what problem 6 says there, exactly, at the numbers in this row taken as they stand", WORDS, whole=True
@@ -39,7 +41,7 @@ EXACT = Column("singly", "1: near a border, judged by itself; 0: by the signs th
 class StabilityMeasure:
     """The verdict, and how many roots have Re > 0, in a section of the space of parameters.
 
-    Raises TooLargeError where a characteristic polynomial is too long.
+    Raises TooLargeError where a characteristic polynomial is too long, Unfit where no point is admissible.
     """
 
     columns = (VERDICT, Column(RIGHT.name, RIGHT.meaning, whole=True), Column(EXACT.name, EXACT.meaning, whole=True))
@@ -48,6 +50,8 @@ class StabilityMeasure:
         self.section = section
         #: What parameters have to keep; ``left_out`` of it could not be expressed in the axes.
         self.admissibility = admissibility(analysis, section)
+        if self.admissibility.broken:
+            raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in self.admissibility.broken])
         further = [
             *section.undefined,
             *section.asked,
@@ -85,10 +89,12 @@ class StabilityMeasure:
             return WORDS.index(UNDEFINED), -1
         numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
         demands = self.admissibility.demands
-        if self.admissibility.broken or any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
+        if any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
             return WORDS.index(OUTSIDE), -1
         if any(x(*numbers) == 0 for x in self.section.undefined):
             return WORDS.index(UNDEFINED), -1
+        if any(inertia(matrix_at(part.kinetic, numbers))[0] < len(part.kinetic) for part in self.section.parts):
+            return WORDS.index(MASSLESS), -1
         try:
             found = verdict_at(self.section, numbers)
         except (Failure, ValueError, ZeroDivisionError):

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.problems.stability.word import Word
-from mbsym.sweeps.judged import VERDICT, WORDS
+from mbsym.sweeps.judged import NO_VERDICT, VERDICT, WORDS
 from mbsym.sweeps.measure import Column
 
 LEVEL = 0.95
@@ -110,7 +110,7 @@ class Totals:
         values = np.concatenate([part for _, part in self.kept])
         if self.columns[0].words:
             there = np.isin(values, [WORDS.index(word) for word in _STABLE])
-            judged = values >= 2
+            judged = values >= len(NO_VERDICT)
             found = [_smirnov(row[judged & there], row[judged & ~there]) for row in points]
         else:
             sound = np.isfinite(values)

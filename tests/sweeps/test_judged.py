@@ -14,7 +14,7 @@ from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import verdict_at
 from mbsym.sweeps import judged
 from mbsym.sweeps.deciding import classes, split
-from mbsym.sweeps.judged import EXACT, OUTSIDE, RIGHT, VERDICT, WORDS, StabilityMeasure
+from mbsym.sweeps.judged import EXACT, MASSLESS, NO_VERDICT, OUTSIDE, RIGHT, VERDICT, WORDS, StabilityMeasure
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 F = Fraction
@@ -49,7 +49,7 @@ def test_every_verdict_is_that_of_the_exact_judge(name, axes, settings) -> None:
     several = set(found[VERDICT.name].tolist())
     assert len(several) > 1
     for place in range(0, 20_000, 160):
-        if found[VERDICT.name][place] == WORDS.index(OUTSIDE):
+        if WORDS[found[VERDICT.name][place]] in NO_VERDICT:
             continue
         assert (WORDS[found[VERDICT.name][place]], found[RIGHT.name][place]) == exact(measure.section, points[:, place])
 
@@ -69,8 +69,8 @@ def test_on_borders_points_are_judged_singly_and_right() -> None:
 
 def test_outside_the_assumptions_nothing_is_judged() -> None:
     measure = made("satellite", [("alpha", -2, 2), ("gamma", -2, 2)], {"p1": F(2, 5), "p2": F(1, 5)})
-    words = [WORDS[code] for code in measure.at(np.array([[1.5, 0.5, 0.5], [0.5, 1.5, 0.5]]))[VERDICT.name]]
-    assert words == [OUTSIDE, OUTSIDE, "stable"]
+    words = [WORDS[code] for code in measure.at(np.array([[1.5, 0.5, 0.5, 0.9], [0.5, 1.5, 0.5, -0.8]]))[VERDICT.name]]
+    assert words == [OUTSIDE, OUTSIDE, "stable", MASSLESS]
 
 
 def test_a_lost_quantity_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,7 +90,8 @@ def test_a_lost_quantity_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = [
         k
         for k in range(0, 4_000, 8)
-        if (WORDS[found[VERDICT.name][k]], found[RIGHT.name][k]) != exact(measure.section, points[:, k])
+        if WORDS[found[VERDICT.name][k]] not in NO_VERDICT
+        and (WORDS[found[VERDICT.name][k]], found[RIGHT.name][k]) != exact(measure.section, points[:, k])
     ]
     assert wrong
 
@@ -115,3 +116,21 @@ def test_classes_partition_the_certain_points() -> None:
     wide = np.array([[3, 3, 7, 7, 3], [0, 1, 0, 0, 0]])
     found = {key: sorted(members.tolist()) for key, members in classes(wide, certain)}
     assert found == {(3, 0): [0, 4], (3, 1): [1], (7, 0): [2]}
+
+
+def test_a_sweep_says_what_the_map_says() -> None:
+    """At random points of the satellite's plane: the region that the map's arrangement finds, and its verdict."""
+    from mbsym.maps.mapping import plane_map
+    from mbsym.maps.result import Standing
+
+    analysis = mbsym.load(SYSTEMS / "satellite.yaml")
+    measure = made(*PLANES[0])
+    whole = plane_map(analysis, measure.section.axes, {"p1": F(2, 5), "p2": F(1, 5)})
+    points = np.random.default_rng(11).uniform(-0.99, 0.99, (2, 500))
+    found = measure.at(points)
+    words = {Standing.OUTSIDE: OUTSIDE, Standing.MASSLESS: MASSLESS}
+    for place, (x, y) in enumerate(points.T):
+        there = whole.arrangement.locate(fmpq(*x.as_integer_ratio()), fmpq(*y.as_integer_ratio()))
+        stratum = whole.regions[there.id]
+        wanted = words.get(stratum.standing) or stratum.word
+        assert WORDS[found[VERDICT.name][place]] == wanted
