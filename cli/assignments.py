@@ -82,16 +82,17 @@ def given_numbers(
     settings: Sequence[str],
     options: Options,
     laws: Mapping[str, Expression] | None = None,
+    declared: bool = False,
 ) -> tuple[Scenario | None, Mapping[str, Expression]]:
     """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``.
 
-    ``laws`` are those of its inputs.
+    ``laws`` are those of its inputs; ``declared``: the run is one in declared variables.
     """
     from mbsym.numerics.scenario import Incomplete, scenario
 
     assigned = assignments(settings, system, options)
     try:
-        return scenario(system, assigned.values, laws=laws), assigned.values
+        return scenario(system, assigned.values, laws=laws, declared=declared), assigned.values
     except Incomplete as error:
         contradictions(file, error.lack, assigned, options)
         unread = _unread(system, assigned)
@@ -129,7 +130,7 @@ class _Places:
 
 
 def _settable(system: System) -> list[str]:
-    return [*system.parameter_names, *system.coordinates, *system.velocities]
+    return [*system.parameter_names, *system.coordinates, *system.velocities, *system.variables]
 
 
 def _check_target(name: str, span: Span, system: System, complaints: Complaints) -> bool:

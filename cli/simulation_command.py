@@ -42,10 +42,11 @@ def simulated(
     complain_of_pairs(typed, asked)
     complain_of_names(settings, {"--vary": many.vary, "--without": context.params["without"]}, asked)
     laws = read_laws(further["driven"], system, asked)
-    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws)
-    system = system if given is None else given.system
     variables = further["variables"]
     assert isinstance(variables, Variables)
+    own = variables.own
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws, own)
+    system = system if given is None else given.system
     seen = variables.seen(system)
     wanted = read_request(system, texts, flags, asked)
     for group in further.values():

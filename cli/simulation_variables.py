@@ -39,6 +39,11 @@ class Variables:
             asked.complain("--variables", "idle-option", "the description declares no speeds", hint)
         return request if word is None else replace(request, variables=word)
 
+    @property
+    def own(self) -> bool:
+        """Whether declared variables are integrated."""
+        return (self.variables or "declared").lower() == "declared"
+
     def seen(self, system: System | None) -> System | None:
         """The system with what is integrated in the place of coordinates and velocities, where that can be told."""
         from mbsym.algebra.failures import Failure

@@ -151,7 +151,8 @@ def simulate(
         longest=max_step,
         variables=variables,
     )
-    given = scenario(system, simulation.read_values(system, values or {}), laws=_laws(system, inputs))
+    read, own = simulation.read_values(system, values or {}), variables == "declared"
+    given = scenario(system, read, laws=_laws(system, inputs), declared=own)
     if accuracy is None:
         return simulation.simulate(given, request)
     from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately

@@ -219,6 +219,8 @@ class System(GuessesNames):
     the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
     ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
     ``reactions`` are the bodies whose joints' forces and moments are wanted.
+    ``start`` are initial values of declared variables, speeds and components of unit vectors and quaternions, as
+    ``initial`` are of coordinates.
     ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
     ``linear`` holds the matrices of a system that is given by these; it has no bodies then.
     """
@@ -235,6 +237,7 @@ class System(GuessesNames):
     notation: tuple[Notation, ...] = ()
     time_scale: Expression | None = None
     initial: tuple[InitialValue, ...] = ()
+    start: tuple[InitialValue, ...] = ()
     abbreviations: tuple[Abbreviation, ...] = ()
     claims: tuple[Claim, ...] = ()
     units: Units = Units()

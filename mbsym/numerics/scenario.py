@@ -7,7 +7,7 @@ may be left out: a coordinate whose initial position is given and whose velocity
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -22,6 +22,7 @@ from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.model.assumptions import broken
 from mbsym.model.comparison import has_sign
 from mbsym.model.driven import driven
+from mbsym.model.inputs import Input
 from mbsym.model.system import InitialValue, System, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -79,6 +80,8 @@ class Scenario:
     ``prescribed`` gives (initial, rate) of every prescribed quantity; ``typed`` keeps the initial positions as they
     were written (pi/2 is exact there).  The system has no inputs any more: ``inputs`` are what they have become.
     ``unstated`` are the velocities that were left out, and are zero where no constraint says otherwise.
+    ``declared`` is the initial state in positions and speeds where it is given in these; where the angles are
+    ``singular`` in it no generalised velocities belong to it, and a run in coordinates cannot begin there.
     """
 
     system: System
@@ -89,6 +92,8 @@ class Scenario:
     typed: Mapping[str, Expression] = field(default_factory=dict)
     inputs: tuple[Driven, ...] = ()
     unstated: tuple[str, ...] = ()
+    declared: tuple[Fraction, ...] = ()
+    singular: bool = False
 
     @property
     def state(self) -> tuple[Fraction, ...]:
@@ -102,6 +107,7 @@ def scenario(
     state: bool = True,
     assumed: bool = True,
     laws: Mapping[str, Expression] | None = None,
+    declared: bool = False,
 ) -> Scenario:
     """The numbers of a description, some of them replaced.
 
@@ -109,6 +115,7 @@ def scenario(
     expressions without coordinates.  Parameters without a value take it from ``relations``.  With ``state`` false the
     initial state may be missing (it is then zero).  With ``assumed`` false values may break assumptions, on which no
     number depends.  ``laws`` gives inputs their expressions; the others keep their values on the unperturbed motion.
+    An initial state in declared variables may be singular in coordinates only where a run in ``declared`` ones begins.
     Raises Incomplete, naming everything that is missing, and GivenByMatrices where nothing moves but a linear form.
     """
     refuse_matrices(system, "no motion is integrated")
@@ -119,6 +126,13 @@ def scenario(
     _parameters(system, overrides, numbers, assumed)
     parameters = numbers.known
     missing = [name for name in system.parameter_names if name not in parameters and name not in numbers.refused]
+    own = own_values(system, overrides)
+    if own and state:
+        return _with_own(system, own, overrides, numbers, missing, given_laws, inputs, declared)
+    for name in own if not state else ():
+        if name in overrides:
+            text = f"'{name}' is a declared variable, and positions are taken in coordinates here"
+            numbers.contradictions.append(Contradiction("misplaced-name", name, text))
     given = initial_values(system, overrides)
     positions, velocities = [], []
     for name in system.coordinates:
@@ -137,6 +151,63 @@ def scenario(
     became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
     unstated = tuple(velocity_name(name) for name in system.coordinates if given[name].velocity is None)
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
+
+
+def own_values(system: System, overrides: Mapping[str, Expression]) -> dict[str, Expression]:
+    """What the description and the overrides say of declared variables at t = 0."""
+    given = {one.coordinate: one.position for one in system.start if one.position is not None}
+    return given | {name: overrides[name] for name in system.variables if name in overrides}
+
+
+def _with_own(
+    system: System,
+    own: Mapping[str, Expression],
+    overrides: Mapping[str, Expression],
+    numbers: _Numbers,
+    missing: list[str],
+    laws: Mapping[str, Expression],
+    inputs: Sequence[Input],
+    declared: bool,
+) -> Scenario:
+    """The scenario of an initial state in declared variables."""
+    from mbsym.numerics.declared_start import declared_start  # few descriptions have any
+
+    given = initial_values(system, overrides)
+    values = {name: numbers.value(name, value) for name, value in own.items()}
+
+    def told(name: str, value: Expression | None) -> Fraction | None:
+        return None if value is None else numbers.value(name, value)
+
+    positions = {name: told(name, given[name].position) for name in system.coordinates}
+    velocities = {name: told(velocity_name(name), given[name].velocity) for name in system.coordinates}
+    prescribed = {}
+    for item in system.prescribed:
+        initial = numbers.value(item.name, item.initial)
+        prescribed[item.name] = initial, numbers.value(f"the rate of {item.name}", item.rate)
+    if missing or numbers.contradictions:
+        raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
+    known = numbers.known | {name: initial for name, (initial, _) in prescribed.items()}
+    found = declared_start(system, values, positions, velocities, known)
+    wrong = [Contradiction("conflicting-values", name, text) for name, text in found.wrong]
+    singular = bool(found.state) and found.velocities is None
+    if singular and not declared:
+        text = "in the initial state angles are singular: their velocities do not follow from the speeds"
+        hint = "other axes of 'rotation' are regular there; mbsym simulate begins there in declared variables"
+        wrong.append(Contradiction("singular-start", next(iter(own)), text, hint))
+    if found.missing or wrong:
+        raise Incomplete(Lack(found.missing, tuple(wrong)))
+    became = tuple(Driven(one.name, laws.get(one.name, one.held), one.name in laws) for one in inputs)
+    rates = found.velocities or (arb(0),) * len(positions)
+    return Scenario(
+        system=system,
+        parameters=numbers.known,
+        positions=tuple(map(rounded, found.positions)),
+        velocities=tuple(map(rounded, rates)),
+        prescribed=prescribed,
+        inputs=became,
+        declared=tuple(map(rounded, found.state)),
+        singular=singular,
+    )
 
 
 def changed(found: Scenario, **parameters: Fraction) -> Scenario:

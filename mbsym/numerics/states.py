@@ -54,6 +54,11 @@ def scenario_in_states(given: Scenario) -> Scenario:
     """The scenario in (s, u), its initial state from that in coordinates, to ``PRECISION`` bits.  Raises Failure."""
     system = given.system
     form = SpeedForm(system, ring_of(system))
+    names = tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
+    n = len(form.positions)
+    if given.declared:
+        seen, state = in_states(system, *names), given.declared
+        return replace(given, system=seen, positions=state[:n], velocities=state[n:], typed={})
     program = Program()
     nodes = form.state_in_coordinates(program)
     values: dict[str, Any] = {"t": Fraction(0)} | dict(given.parameters)
@@ -63,8 +68,6 @@ def scenario_in_states(given: Scenario) -> Scenario:
         values["pi"] = arb.pi()
         found = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
     state = tuple(rounded(value) for value in found)
-    n = len(form.positions)
-    names = tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
     return replace(given, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
 
 

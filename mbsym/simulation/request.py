@@ -80,10 +80,10 @@ class Request:
 def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Values by name as expressions: numbers, or text such as ``pi/6`` made of numbers, pi and parameters.
 
-    A name is that of a parameter, a coordinate (its initial position) or ``<coordinate>_dot`` (its initial velocity).
-    Raises ValueError with everything that is wrong.
+    A name is that of a parameter, a coordinate (its initial position), ``<coordinate>_dot`` (its initial velocity), or
+    a declared variable (its initial value).  Raises ValueError with everything that is wrong.
     """
-    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
     found: dict[str, Expression] = {}
     wrong = [f"there is nothing called {name} to set" for name in given if name not in known]
     for name, value in given.items():

@@ -29,7 +29,8 @@ SYSTEM = {
     "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
     "values": "numerical values of parameters: {l: 2}",
-    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0)",
+    "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0); "
+    "declared variables have values, {p: 0.1, e0: 1}",
     "abbreviations": "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}",
     "source": "where the system is from: a publication, for the references of reports",
     "latex": "how names are written in LaTeX: {d_Ccm1: 'd_{C1}', phi: '\\phi'}: letters, accents, fonts and an index",

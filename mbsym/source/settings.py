@@ -147,12 +147,18 @@ def read_notation(node: Node | None, reading: Reading) -> tuple[Notation, ...]:
     return tuple(notation)
 
 
-def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...]:
-    """``theta: 0.1`` or ``theta: {position: 0.1, velocity: 0}``."""
+#: Variables that a description declares besides its coordinates.
+DECLARED = ("speed", "unit vector", "quaternion")
+
+
+def read_initial(node: Node | None, reading: Reading) -> tuple[tuple[InitialValue, ...], tuple[InitialValue, ...]]:
+    """``theta: 0.1`` or ``theta: {position: 0.1, velocity: 0}``; apart from these ``p: 0.1`` of declared variables."""
     allowed = Allowed("an initial value")
-    entries = []
+    entries: list[InitialValue] = []
+    own: list[InitialValue] = []
+    declared = [kind for kind in DECLARED if reading.scope.of_kind(kind)]
     for entry in () if node is None else reading.entries(node, "'initial'"):
-        known = _is_coordinate(entry.key, "the key of an initial value", node, reading)
+        known = _is_coordinate(entry.key, "the key of an initial value", node, reading, *declared)
         span: Span = entry.key.span
         if isinstance(entry.value, Mapping):
             fields = reading.fields(entry.value, f"the initial value of {ascii_safe(entry.key.text)}", INITIAL)
@@ -161,9 +167,14 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[InitialValue, ...
                 reading.error("missing-key", f"{fields.what} has neither 'position' nor 'velocity'", span)
         else:
             position, velocity = reading.expression(entry.value, allowed), None
-        if known:
+        if known and reading.scope.kind_of(entry.key.text) in DECLARED:
+            if velocity is not None:
+                message = f"'{entry.key.text}' has a value at t = 0 and no velocity: that follows from the equations"
+                reading.error("misplaced-key", message, span, f"{entry.key.text}: 0.1")
+            own.append(InitialValue(entry.key.text, position, None, span))
+        elif known:
             entries.append(InitialValue(entry.key.text, position, velocity, span))
-    return tuple(entries)
+    return tuple(entries), tuple(own)
 
 
 def read_limits(node: Node | None, reading: Reading) -> tuple[Limit, ...]:

@@ -67,7 +67,7 @@ def to_text(system: System) -> str:
     if system.assumptions:
         written = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
         lines += ["", "Assumptions", *(f"  {one}" for one in written)]
-    initial = {one.coordinate: _record(initial_shape(one), "position") for one in system.initial}
+    initial = {one.coordinate: _record(initial_shape(one), "position") for one in (*system.initial, *system.start)}
     lines += _section("Initial state", initial)
     limits = {one.coordinate: f"({text(one.lower)}, {text(one.upper)})" for one in system.limits}
     lines += _section("Limits", limits)

@@ -60,7 +60,7 @@ def to_yaml(system: System) -> str:
     lines += _list("assumptions", [scalar_text(one) for one in assumptions])
     if system.time_scale is not None:
         lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
-    lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in system.initial})
+    lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in (*system.initial, *system.start)})
     lines += _mapping("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
     lines += _mapping("latex", {one.name: one.latex for one in system.symbols})
     lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})

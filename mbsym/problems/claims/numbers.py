@@ -188,6 +188,8 @@ def _state(system: System, claim: Claim) -> State:
         if moved.initial is None or names(moved.initial) <= values.keys():
             start = arb(0) if moved.initial is None else lower(moved.initial)
             values[moved.name] = start
+    if claim.at_initial and system.start:
+        raise NotRational("the initial state is given in declared variables: give the claim a state in coordinates")
     for state in system.initial if claim.at_initial else ():
         for name, chosen in ((state.coordinate, state.position), (velocity_name(state.coordinate), state.velocity)):
             if chosen is not None and names(chosen) <= values.keys():

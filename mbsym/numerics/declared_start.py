@@ -1,0 +1,273 @@
+"""An initial state given in the variables that a description declares: (s, u), and the coordinates that belong to it.
+
+    e -> R (``mechanics.quaternions``) or unit vectors as its columns;  R -> three angles of the joint;
+    S(q) q' = u - s0    for the generalised velocities
+
+in balls of many bits.  Where S is singular (the pole of three angles) no generalised velocities belong to the state:
+a run in declared variables begins there all the same.  What is given twice has to agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_mat, ctx, fmpq
+
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.point import Balls
+from mbsym.algebra.program import Program
+from mbsym.expressions.tree import Name
+from mbsym.mechanics import quaternions
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import ring_of
+from mbsym.model.speeds import Quaternion
+from mbsym.model.system import Body, System, velocity_name
+from mbsym.numerics.kernels.balls import enclosures
+from mbsym.numerics.kernels.interface import Code
+
+#: How far a norm may be from 1, or two values given for one thing apart.
+AGREEMENT = Fraction(1, 10**9)
+
+BITS = 320
+
+
+@dataclass(frozen=True)
+class DeclaredStart:
+    """``state`` is (s, u); ``positions`` and ``velocities`` of all coordinates, None where angles are ``singular``.
+
+    ``missing`` are names without a value; ``wrong`` (name, sentence) of what cannot be.
+    """
+
+    state: tuple[arb, ...] = ()
+    positions: tuple[arb, ...] = ()
+    velocities: tuple[arb, ...] | None = None
+    missing: tuple[str, ...] = ()
+    wrong: tuple[tuple[str, str], ...] = ()
+
+
+def declared_start(
+    system: System,
+    own: Mapping[str, Fraction],
+    positions: Mapping[str, Fraction | None],
+    velocities: Mapping[str, Fraction | None],
+    numbers: Mapping[str, Fraction],
+) -> DeclaredStart:
+    """The initial state from ``own``, values of declared variables, and what is given of coordinates (None: nothing).
+
+    ``numbers``: of parameters and of what is prescribed.  Raises Failure where the speeds have no closed form.
+    """
+    with ctx.workprec(BITS):
+        return _Start(system, own, positions, velocities, numbers).found()
+
+
+class _Start:
+    def __init__(
+        self,
+        system: System,
+        own: Mapping[str, Fraction],
+        positions: Mapping[str, Fraction | None],
+        velocities: Mapping[str, Fraction | None],
+        numbers: Mapping[str, Fraction],
+    ) -> None:
+        self.system, self.form = system, SpeedForm(system, ring_of(system))
+        self.own = {name: _ball(value) for name, value in own.items()}
+        self.positions = {name: None if x is None else _ball(x) for name, x in positions.items()}
+        self.velocities = {name: None if x is None else _ball(x) for name, x in velocities.items()}
+        self.numbers = {name: _ball(value) for name, value in numbers.items()} | {"pi": arb.pi(), "t": arb(0)}
+        self.missing: list[str] = []
+        self.wrong: list[tuple[str, str]] = []
+        #: The components of quaternions and unit vectors by name.
+        self.oriented: dict[str, arb] = {}
+        #: Coordinates of bodies whose orientation is given otherwise.
+        self.told: set[str] = set()
+
+    def found(self) -> DeclaredStart:
+        for body in self.form.oriented:
+            self._orientation(body)
+        lacking = [name for name, x in self.positions.items() if x is None and name not in self.told]
+        self.missing += [f"{name} (its initial position)" for name in lacking]
+        speeds = {speed.name for speed in self.system.speeds}
+        given = speeds & self.own.keys()
+        if given:
+            self.missing += [f"{name} (its initial value)" for name in sorted(speeds - given)]
+        if self.missing or self.wrong:
+            return DeclaredStart(missing=tuple(self.missing), wrong=tuple(self.wrong))
+        q = {name: x for name, x in self.positions.items() if x is not None}
+        u, rates = self._speeds(q, bool(given))
+        if self.wrong:
+            return DeclaredStart(wrong=tuple(self.wrong))
+        s = [self._position(x.name, q) for x in self.form.positions]
+        return DeclaredStart((*s, *u), tuple(q[name] for name in self.system.coordinates), rates)
+
+    def _position(self, name: str, q: Mapping[str, arb]) -> arb:
+        return self.oriented[name] if name in self.oriented else q[name]
+
+    # --- orientations ------------------------------------------------------------------------------------------------
+
+    def _orientation(self, body: Body) -> None:
+        """Direction cosines of a body told by its own variables, and the angles that make them."""
+        named = [name for one in body.orientation for name in one.components]
+        given = [name for name in named if name in self.own]
+        if not given:
+            self._from_angles(body)
+            return
+        self.told |= {*body.coordinates}
+        lacking = [name for name in named if name not in self.own]
+        if lacking:
+            self.missing += [f"{name} (its initial value)" for name in lacking]
+            return
+        rows = self._matrix(body)
+        if rows is None:
+            return
+        angles = self._angles(body, rows)
+        own = [angle.name for _, angle in body.rotation.turns() if isinstance(angle, Name)]
+        if angles is None or len(own) != 3:
+            self.wrong.append((given[0], f"the angles of {body.name} are not three coordinates: give these"))
+            return
+        stated = [name for name in own if self.positions[name] is not None]
+        if stated:
+            other = _of_angles(body, [self.positions[name] or arb(0) for name in own])
+            gap = max(abs(a - b) for x, y in zip(rows, other, strict=True) for a, b in zip(x, y, strict=True))
+            if len(stated) < 3 or not gap < _ball(AGREEMENT):
+                text = (
+                    f"the orientation of {body.name} is given twice: by {', '.join(stated)} and by {', '.join(given)}"
+                )
+                self.wrong.append((stated[0], f"{text}, and these differ" if len(stated) == 3 else text))
+            return
+        self.positions |= dict(zip(own, angles, strict=True))
+
+    def _from_angles(self, body: Body) -> None:
+        """The components where the angles are given."""
+        names = [name for name in body.coordinates if self.positions[name] is None]
+        if names:
+            return  # said where positions are missing
+        values = self.numbers | {name: x for name, x in self.positions.items() if x is not None}
+        first = body.orientation[0]
+        if isinstance(first, Quaternion):
+            self.oriented |= self.form.quaternion_of_angles(body, Balls(values), values)
+            return
+        program = Program()
+        nodes = self.form.variables_in_coordinates(program)
+        wanted = [name for one in body.orientation for name in one.components]
+        inputs = values | {velocity_name(name): arb(0) for name in self.system.coordinates}
+        code = Code(program, tuple(inputs), tuple(nodes[name] for name in wanted))
+        self.oriented |= dict(zip(wanted, enclosures(code, tuple(inputs.values()), BITS), strict=True))
+
+    def _matrix(self, body: Body) -> list[list[arb]] | None:
+        """R^jk of what is given, exactly orthonormal; None where it is none."""
+        first = body.orientation[0]
+        vectors = [[self.own[name] for name in one.components] for one in body.orientation]
+        for i, vector in enumerate(vectors):
+            for other in vectors[i:]:
+                product = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                wanted = 1 if other is vector else 0
+                if not abs(product - wanted) < _ball(AGREEMENT):
+                    name = body.orientation[i].name
+                    what = "the norm squared" if other is vector else "a product with another unit vector"
+                    text = f"{what} of {name} is {float(product.mid()):.12g} and has to be {wanted}"
+                    self.wrong.append((body.orientation[i].components[0], text))
+                    return None
+        for i, vector in enumerate(vectors):  # Gram and Schmidt: what is left are roundings
+            for other in vectors[:i]:
+                along = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                vector = [a - along * b for a, b in zip(vector, other, strict=True)]
+            length = sum((a * a for a in vector), arb(0)).sqrt()
+            vectors[i] = [a / length for a in vector]
+            self.oriented |= dict(zip(body.orientation[i].components, vectors[i], strict=True))
+        if isinstance(first, Quaternion):
+            return quaternions.cosines(Balls({}), vectors[0])
+        if _determinant(vectors) < 0:
+            self.wrong.append((body.orientation[0].components[0], f"the unit vectors of {body.name} are left-handed"))
+            return None
+        return [[vector[i] for vector in vectors] for i in range(3)]
+
+    def _angles(self, body: Body, rows: Sequence[Sequence[arb]]) -> list[arb] | None:
+        """Three angles with these direction cosines; None where the joint has not three turns by names."""
+        turns = list(body.rotation.turns())
+        if len(turns) != 3 or not all(isinstance(angle, Name) for _, angle in turns):
+            return None
+        i, j, last = (axis - 1 for axis, _ in turns)
+        a = [[rows[c][r] for c in range(3)] for r in range(3)]  # from body axes to those of the frame
+        k = 3 - i - j
+        sign = 1 if (j - i) % 3 == 1 else -1
+        if last == i:
+            middle = arb.acos(_within(a[i][i]))
+            return [arb.atan2(a[j][i], -sign * a[k][i]), middle, arb.atan2(a[i][j], sign * a[i][k])]
+        middle = arb.asin(_within(sign * a[i][k]))
+        return [arb.atan2(-sign * a[j][k], a[k][k]), middle, arb.atan2(-sign * a[i][j], a[i][i])]
+
+    # --- speeds ------------------------------------------------------------------------------------------------------
+
+    def _speeds(self, q: Mapping[str, arb], given: bool) -> tuple[list[arb], tuple[arb, ...] | None]:
+        """u, and q' of all coordinates; None where they do not follow from u."""
+        system, form, program = self.system, self.form, Program()
+        names = [velocity_name(name) for name in system.coordinates]
+        known = self._nodes(program)
+        slopes = jacobian(program, known, [program.input(name) for name in names])
+        stated = {velocity_name(name): x if x is not None else arb(0) for name, x in self.velocities.items()}
+        values = self.numbers | dict(q) | stated
+        code = Code(program, tuple(values), (*known, *(x for row in slopes for x in row)))
+        whole = enclosures(code, tuple(values.values()), BITS)
+        n = len(known)
+        own, matrix = whole[:n], [whole[n + r * n : n + (r + 1) * n] for r in range(n)]
+        if not given:
+            return own, tuple(stated[name] for name in names)
+        wanted = [self.own.get(u.name, stated.get(u.name, arb(0))) for u in form.speeds]
+        still = [
+            x - sum((s * stated[v] for s, v in zip(row, names, strict=True)), arb(0))
+            for x, row in zip(own, matrix, strict=True)
+        ]
+        stretched = [u - x for u, x in zip(wanted, still, strict=True)]
+        named = [name for name, x in self.velocities.items() if x is not None]
+        if named and len(named) == n:
+            gap = max((abs(a - b) for a, b in zip(own, wanted, strict=True)), default=arb(0))
+            if not gap < _ball(AGREEMENT) * (1 + max(abs(x) for x in wanted)):
+                text = "the initial velocities are given twice, by coordinates and by speeds, and these differ"
+                self.wrong.append((velocity_name(named[0]), text))
+            return wanted, tuple(stated[name] for name in names)
+        both = [name for name in named if velocity_name(name) not in {u.name for u in form.speeds}]
+        if both:
+            text = f"the initial velocity of {both[0]} follows from the speeds: give one or the other"
+            self.wrong.append((velocity_name(both[0]), text))
+            return wanted, None
+        try:
+            solved = arb_mat(matrix).solve(arb_mat([[x] for x in stretched]))
+        except ZeroDivisionError:
+            return wanted, None
+        rates = tuple(solved[r, 0] for r in range(n))
+        narrow = all(x.rad() < arb(2) ** -200 * (1 + abs(x.mid())) for x in rates)
+        return wanted, rates if narrow else None
+
+    def _nodes(self, program: Program) -> list[Any]:
+        """u in (q, q', t), in the order of the speeds."""
+        n = len(self.form.positions)
+        return self.form.state_in_coordinates(program)[n:]
+
+
+def _ball(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _within(x: arb) -> arb:
+    """A sine or cosine whose ball may hold a little more than what there is."""
+    return arb(1) if x.mid() > 1 else arb(-1) if x.mid() < -1 else arb(x.mid()) if not abs(x) <= 1 else x
+
+
+def _determinant(rows: Sequence[Sequence[arb]]) -> arb:
+    return arb_mat([list(row) for row in rows]).det()
+
+
+def _of_angles(body: Body, angles: Sequence[arb]) -> list[list[arb]]:
+    """R^jk of the angles of a joint with turns by names."""
+    found = [[arb(int(i == j)) for j in range(3)] for i in range(3)]
+    for (axis, _), angle in zip(body.rotation.turns(), angles, strict=True):
+        i, j = axis % 3, (axis + 1) % 3
+        s, c = angle.sin(), angle.cos()
+        found[i], found[j] = (
+            [c * a + s * b for a, b in zip(found[i], found[j], strict=True)],
+            [c * b - s * a for a, b in zip(found[i], found[j], strict=True)],
+        )
+    return found
