@@ -120,7 +120,10 @@ def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
         values[number] = value
         return value
 
-    inputs = {name: program.input(name) for name in code.inputs}
+    # What is held already stands in cells, and a derivative may have them as factors.
+    live = map(program.instructions.__getitem__, program.live(code.outputs))
+    cells = [str(one.payload) for one in live if one.operation == "input"]
+    inputs = {name: program.input(name) for name in (*code.inputs, *cells)}
     return tuple(program.evaluate(code.outputs, inputs, program, standing))
 
 
