@@ -27,11 +27,12 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     system = analysis.system
     if not system.claims:
         return ()
-    if system.constraints:
-        return tuple(claims.undecided(system, claim, refused(system, "not judged")) for claim in system.claims)
+    if system.constraints and system.speeds:
+        reason = refused(system, "not judged in speeds")
+        return tuple(claims.undecided(system, claim, reason) for claim in system.claims)
     for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
         analysis.stage(number)
-    if any(claim.right is not None for claim in system.claims):
+    if any(claim.right is not None for claim in system.claims) and not system.constraints:
         analysis.optional("trials")
     symbols = claims.Symbols.of(analysis)
     own, there = angle_denominators(system), set(angles_of(system))

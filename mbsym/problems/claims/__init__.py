@@ -92,6 +92,10 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
     """
     about = title(claim, derived.system)
+    if derived.system.constraints:
+        from mbsym.problems.claims import constrained  # most systems have no constraints
+
+        return constrained.examined(derived, claim, about)
     if derived.system.speeds and not claim.is_numerical:
         from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
 

@@ -52,19 +52,19 @@ def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResul
 
 
 def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
-    forms = list(_forms(derived, claim))
-    for region in forms:
-        found = _trivial(region, _wanted(region, claim), result) or _one_of_problem_6(region, claim, result)
+    regions = list(forms(derived, claim))
+    for region in regions:
+        found = trivial(region, wanted_of(region, claim), result) or one_of_problem_6(region, claim, result)
         if found is not None:
             return found
-    for region in forms:
+    for region in regions:
         found = _needed(region, claim, result)
         if found is not None:
             return found
     refuted = _contradicted(derived, claim, result)
     if refuted is not None:
         return refuted
-    for region in forms:
+    for region in regions:
         found = _inside(derived, region, claim, result)
         if found is not None:
             return found
@@ -72,7 +72,7 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
     return replace(result, outcome=UNDECIDED, remark=remark)
 
 
-def _forms(derived: Derived, claim: Claim) -> Iterator[Region]:
+def forms(derived: Derived, claim: Claim) -> Iterator[Region]:
     """What problem 6 requires in the description's own symbols, then in declared parameters."""
     yield Region(derived, claim, own=True)
     try:
@@ -81,7 +81,7 @@ def _forms(derived: Derived, claim: Claim) -> Iterator[Region]:
         return
 
 
-def _wanted(region: Region, claim: Claim) -> Inequality:
+def wanted_of(region: Region, claim: Claim) -> Inequality:
     """The claimed inequality as p > 0, p >= 0 or p != 0.  Raises NoClosedForm."""
     derived = region.derived
     symbols = Symbols.of(derived)
@@ -93,7 +93,7 @@ def _wanted(region: Region, claim: Claim) -> Inequality:
     return Inequality(region.cleared(left - right), {"<": ">", "<=": ">="}.get(claim.relation, claim.relation))
 
 
-def _trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimResult | None:
+def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimResult | None:
     """What the declared signs, assumptions and the inertias of bodies decide by themselves."""
     known = "the declared signs and assumptions"
     for signs, what in (
@@ -107,11 +107,11 @@ def _trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimRe
     return None
 
 
-def _one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
+def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
     """The claim without a role that is a condition of problem 6, perhaps but for the case of equality."""
     if claim.role == NECESSARY:
         return None
-    wanted = _wanted(region, claim)
+    wanted = wanted_of(region, claim)
     what, equality = _found_among(region, wanted, ())
     if not what:
         return None
@@ -132,7 +132,7 @@ def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) ->
 
 def _needed(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
     """Proofs that nothing on the borders can contradict: of necessity for stability, or for asymptotic stability."""
-    wanted = _wanted(region, claim)
+    wanted = wanted_of(region, claim)
     what, _ = _found_among(region, wanted, ("sufficient",))
     for bodies in (False, True):
         note = _BODIES if bodies else ""
@@ -147,7 +147,7 @@ def _needed(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | 
 
 def _inside(derived: Derived, region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
     """Proofs that leave borders open; a border where the motion is stable after all refutes a strict inequality."""
-    wanted = _wanted(region, claim)
+    wanted = wanted_of(region, claim)
     what, _ = _found_among(region, wanted, ("sufficient",))
     singular = region.makes_stiffness_singular(wanted.polynomial)
     for bodies in (False, True):
@@ -187,11 +187,11 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
     together = _of_its_place(derived, claim)
     subject = "it" if len(together) == 1 else "the conditions of this place together"
     remark = f"{subject} {'is' if len(together) == 1 else 'are'} neither proved sufficient nor refuted by parameters"
-    for region in _forms(derived, claim):
-        conditions = [_wanted(region, one) for one in together]
-        trivial = _trivial(region, conditions[together.index(claim)], result)
-        if trivial is not None and trivial.outcome == FAILS:
-            return trivial
+    for region in forms(derived, claim):
+        conditions = [wanted_of(region, one) for one in together]
+        known = trivial(region, conditions[together.index(claim)], result)
+        if known is not None and known.outcome == FAILS:
+            return known
         for bodies in (False, True):
             found = region.verdict_with(conditions, bodies)
             if found is None:
@@ -260,7 +260,7 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
         found = derived.trials.counterexample(claimed, sufficient, (Word.UNSTABLE,) if sufficient else _LINEARLY_STABLE)
         if found is not None or sufficient or claim.relation in ("<=", ">="):
             return found
-        border = _wanted(Region(derived, claim, own=False), claim).polynomial
+        border = wanted_of(Region(derived, claim, own=False), claim).polynomial
         among = derived.trials.where_zero(border)
         return derived.trials.counterexample(claimed, sufficient, _LINEARLY_STABLE, among)
     except NoClosedForm:

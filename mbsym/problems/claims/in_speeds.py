@@ -2,6 +2,7 @@
 
 A claim holds if claimed - derived vanishes wherever unit vectors are orthonormal and quaternions of norm 1; an equation
 also if it is a multiple of the derived one by parameters.  A first integral is decided by its rate along the motion.
+Matrices, characteristic polynomials and conditions are those of the first approximation in coordinates.
 """
 
 from __future__ import annotations
@@ -18,12 +19,17 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
 from mbsym.problems import speeds
+from mbsym.problems.claims.comparison import examined_formula
+from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.forms import in_parameters
-from mbsym.problems.claims.quantities import derived_quantity
+from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import DIFFERS, EXACT, FACTOR, FAILS, RELATIONS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.speed_integrals import Field
 from mbsym.problems.speeds import SpeedEquations
+
+#: What is told in coordinates.
+_LINEAR = ("linear matrix", "subsystem matrix", "characteristic")
 
 #: Quantities that are the same whatever the variables are; those of one body among them.
 _QUANTITIES = (
@@ -36,6 +42,10 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim.  Raises NoClosedForm where it is about something that is not derived in speeds."""
     form = derived.speed_form
     assert form is not None
+    if claim.right is not None:
+        return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
+    if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):
+        return _linear(derived, claim, about)
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
     if claim.kind == "first integral":
         return _integral(derived, form, claim, about, claimed)
@@ -57,6 +67,13 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
             return replace(result, outcome=RELATIONS)
     outcome = UNDECIDED if known is None else DIFFERS
     return replace(result, outcome=outcome, difference=Formula(form.ring, difference))
+
+
+def _linear(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """An entry of the first approximation, which is told in coordinates; a row that bears a speed's name has none."""
+    symbols = Symbols.of(derived)
+    claimed = symbols.polynomial(derived.parameters_scene, claim)
+    return examined_formula(derived, claim, about, symbols, claimed, of_first_approximation(derived, claim))
 
 
 def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:

@@ -211,8 +211,17 @@ def _value(derived: Derived, symbols: Symbols, state: State, expression: Express
     """An expression at the state, its accelerations from the equations of motion."""
     wanted = symbols.occurring([expression])
     if any(acceleration_name(name) in wanted for name in derived.system.coordinates):
-        state = accelerated(derived.system, state, derived.programs)
+        state = _accelerated(derived, state)
     return _number(symbols, state, expression)
+
+
+def _accelerated(derived: Derived, state: State) -> State:
+    tied = derived.equations.constraints if derived.system.constraints else None
+    if tied is None:
+        return accelerated(derived.system, state, derived.programs)
+    from mbsym.problems.claims.constrained import accelerated_at  # most systems have no constraints
+
+    return accelerated_at(derived.system, derived.ring, tied, state)
 
 
 def _printed(number: str) -> tuple[int, fmpq]:

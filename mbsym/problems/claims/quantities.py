@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
@@ -55,6 +57,35 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return body.rotation[rows[0], rows[1]].polynomial
     spin = body.angular_velocity if kind == "angular velocity" else body.relative_angular_velocity
     return spin[rows[0]].polynomial
+
+
+def of_first_approximation(derived: Derived, claim: Claim) -> Polynomial:
+    """A characteristic polynomial, or an entry of a matrix whose rows are only some of the coordinates.
+
+    Raises NoClosedForm for a coordinate that has no row there.
+    """
+    if claim.kind == "characteristic polynomial":
+        there = [name for part in derived.stability.subsystems for name in part.coordinates]
+        _need(there, [claim.of] if claim.of else [])
+        return derived_quantity(derived, claim)
+    names = [derived.system.claimable[k - 1] for k in claim.entry]
+    if claim.kind.startswith("subsystem"):
+        _need([name for part in derived.linearisation.subsystems for name in part.coordinates], names)
+        (part,) = (one for one in derived.linearisation.subsystems if names[0] in one.coordinates)
+        if names[1] not in part.coordinates:
+            return derived.ring.zero
+        matrix, there = getattr(part, claim.kind[-1]), list(part.coordinates)
+    else:
+        matrix, there = getattr(derived.linearisation, claim.kind[-1]), list(derived.linearisation.coordinates)
+        _need(there, names)
+    found: Polynomial = matrix[there.index(names[0]), there.index(names[1])].polynomial
+    return found
+
+
+def _need(there: Sequence[str], names: Sequence[str]) -> None:
+    for name in names:
+        if name not in there:
+            raise NoClosedForm(f"{name} is not among the coordinates of the first approximation ({', '.join(there)})")
 
 
 def _sum(derived: Derived, kind: str) -> Polynomial:

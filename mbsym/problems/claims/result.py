@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -23,6 +24,7 @@ from mbsym.problems.claims.counterexample import (
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
@@ -80,6 +82,8 @@ class Derived(Protocol):
     def routh(self) -> Routh: ...
     @property
     def stability(self) -> Stability: ...
+    @property
+    def integrals(self) -> Sequence[Integral]: ...
     @property
     def trials(self) -> Trials: ...
 

@@ -25,27 +25,18 @@ from typing import Any
 
 from flint import ctx, fmpq_mat
 
-from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.embedding import basis_vector
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
-from mbsym.mechanics.constraints.ranks import is_certain
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
-from mbsym.problems.constraints.checks import accelerated
-from mbsym.problems.constraints.motion import Embedded, dependent_velocities
-from mbsym.problems.constraints.result import Constraints, Solved
+from mbsym.problems.constraints.along import STATES, AlongMotion
+from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import ENERGY, NUMERICAL, PROVED, Integral, residual, total_rate, whole_momenta
-
-#: At so many states a candidate must be kept.
-STATES = 4
-#: Equations longer than this are not tried for a proof.
-MOST_TERMS, MOST_SPEEDS = 600, 4
 
 
 def integrals(
@@ -121,13 +112,8 @@ class _Known:
         return all(self.ring.is_zero(self.ring.dot(row, xi)) is True for row in rows)
 
 
-class _Whole:
+class _Whole(AlongMotion):
     """Momenta of the whole system, through the equations without multipliers."""
-
-    def __init__(self, scene: Scene, tied: Constraints, solved: Solved, embedded: Embedded) -> None:
-        self.scene, self.ring = scene, scene.ring
-        self.tied, self.solved, self.embedded = tied, solved, embedded
-        self.velocities = dependent_velocities(self.ring, tied, solved)
 
     def momenta(self, manifold: Manifold, known: Sequence[Integral]) -> list[Integral]:
         """The components that are kept and say something new."""
@@ -136,8 +122,8 @@ class _Whole:
             with ctx.workprec(PRECISION):
                 states = list(manifold.states(STATES))
                 for kind, axis, formula in whole_momenta(self.scene):
-                    others = [self._restricted(x.formula.polynomial) for x in (*known, *found) if x.kind != ENERGY]
-                    if not _is_new(self.ring, self._restricted(formula), others) or not self._kept(formula, states):
+                    others = [self.restricted(x.formula.polynomial) for x in (*known, *found) if x.kind != ENERGY]
+                    if not _is_new(self.ring, self.restricted(formula), others) or not self._kept(formula, states):
                         continue
                     name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
                     proved = self._is_proved(formula)
@@ -149,47 +135,14 @@ class _Whole:
             pass  # what was found so far is right; the rest is not known
         return found
 
-    def _restricted(self, x: Polynomial) -> Polynomial:
-        """x on the velocities that the constraints allow."""
-        return self.ring.reduce(self.ring.substitute(x, self.velocities))
-
     def _kept(self, formula: Polynomial, states: Sequence[OnManifold]) -> bool:
         """Whether dI/dt, with the accelerations of the equations, is zero at all these states."""
-        rate, passed = total_rate(self.scene, formula), 0
-        for one in states:
-            carry = Carrier(self.ring, one.state.numbers, one.state.values)
-            try:
-                moved = accelerated(one.state, carry, self.tied, self.embedded)
-            except ZeroDivisionError:
-                continue
-            if is_certain(Carrier(self.ring, moved.numbers, moved.values)(rate)):
-                return False
-            passed += 1
-        return passed == STATES
+        return self.vanishes_at(total_rate(self.scene, formula), states)
 
     def _is_proved(self, formula: Polynomial) -> bool:
-        """det(Y^T M Y) dI/dt = 0 in the ring, with  u' = adj(Y^T M Y) (Y^T (f - M a0)) / det."""
-        ring, k = self.ring, len(self.tied.free)
-        if self.embedded.terms > MOST_TERMS or k > MOST_SPEEDS:
-            return False
-        try:
-            mass = [list(row) for row in self.embedded.mass_matrix.polynomials]
-            right = [x.polynomial for x in self.embedded.forcing]
-            slopes = [ring.velocity_derivative(formula, name) for name in self.tied.coordinates]
-            basis = [basis_vector(ring, self.solved.embedding, place) for place in range(k)]
-            along = [self._restricted(ring.dot(slopes, y)) for y in basis]
-            still = {ring.index("acceleration", name): ring.zero for name in self.tied.coordinates}
-            rest = ring.substitute(total_rate(self.scene, formula), still)
-            a0 = [x.polynomial for x in self.solved.acceleration_shift]
-            rest = self._restricted(rest + ring.dot(slopes, a0))
-            left = ring.times(determinant(ring, mass), rest)
-            for j in range(k):  # Cramer's rule: a column replaced by the right-hand sides
-                if not ring.vanishes(along[j]):
-                    replaced = [[right[i] if c == j else mass[i][c] for c in range(k)] for i in range(k)]
-                    left = left + ring.times(along[j], determinant(ring, replaced))
-            return ring.is_zero(ring.reduce(left)) is True
-        except Failure:
-            return False
+        """dI/dt = 0 as an identity."""
+        slopes = [self.ring.velocity_derivative(formula, name) for name in self.tied.coordinates]
+        return self.proves_zero(total_rate(self.scene, formula), slopes)
 
 
 def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bool:

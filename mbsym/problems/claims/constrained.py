@@ -1,0 +1,369 @@
+"""Claims about constrained systems, in their coordinates.
+
+Energies, places and velocities are those of the bodies; a claimed one that differs in general may still be the same
+wherever the constraints hold.  An equation of motion is an expression that vanishes on every motion, so that neither
+multipliers nor a choice of independent velocities matter; a first integral one whose rate does.  Both are tried at
+exact states on the constraints with the accelerations of the equations without multipliers, and proved in the ring
+(``mbsym.problems.constraints.along``).
+
+The first approximation is that of the independent coordinates.  A claimed condition that is one of problem 6, or
+follows from those without which a root lies to the right, is proved.  It is refuted by exact parameters at which it
+fails and the first approximation is stable (to be necessary), or at which it holds and a root lies to the right (to be
+sufficient).  That a condition suffices is not decided here, nor anything refuted where a root is zero for all
+parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
+
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, NoClosedForm, SingularPoint
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import subtract, text
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.constraints.programs import constrained_programs
+from mbsym.mechanics.constraints.ranks import is_certain
+from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
+from mbsym.mechanics.oracle import State
+from mbsym.model.claims import SUFFICIENT, SUMS, Claim
+from mbsym.model.comparison import holds
+from mbsym.model.system import System, acceleration_name
+from mbsym.problems.claims.comparison import examined_formula
+from mbsym.problems.claims.conditions import forms, one_of_problem_6, trivial, wanted_of
+from mbsym.problems.claims.counterexample import Counterexample, completed, parameter_samples, shown
+from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.in_momenta import IN_MOMENTA
+from mbsym.problems.claims.numbers import examined_number
+from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
+from mbsym.problems.claims.regions import is_certain as follows
+from mbsym.problems.claims.result import (
+    BORDERS,
+    EXACT,
+    FAILS,
+    NUMERICAL,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+)
+from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.constraints.along import STATES, AlongMotion
+from mbsym.problems.constraints.result import Constraints
+from mbsym.problems.integrals import PROVED, total_rate
+
+#: Digits of the numbers of a state that refutes a claim.
+DIGITS_SHOWN = 8
+#: A printed state keeps a constraint if it misses it by less than this part of 1 and of the row's size.
+KEPT = 1e-6
+#: Parameters at which a claimed condition is tried.
+TRIALS = 300
+
+ON_CONSTRAINTS = "with the velocities that the constraints allow"
+FROM_CONSTRAINTS = "it follows from the constraints alone"
+
+
+def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """One claim; raises NoClosedForm for what is not judged under constraints."""
+    if claim.is_numerical:
+        return examined_number(derived, claim, about)
+    if claim.right is not None:
+        return _condition(derived, claim, about)
+    if claim.kind in IN_MOMENTA or claim.kind.startswith(("state matrix", "linear matrix B")):
+        raise NoClosedForm(f"a claim about the {claim.kind}: not judged under constraints")
+    if claim.kind == "coefficient" and claim.of not in SUMS:
+        raise NoClosedForm("a coefficient of an equation, which multipliers complete: not judged under constraints")
+    symbols = Symbols.of(derived)
+    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    claimed = symbols.polynomial(scene, claim)
+    if claim.kind == "first integral":
+        return _integral(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
+    if claim.kind == "equation of motion":
+        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
+    if claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")):
+        truth = of_first_approximation(derived, claim)
+        return examined_formula(derived, claim, about, symbols, claimed, truth)
+    truth = derived_quantity(derived, claim)
+    found = examined_formula(derived, claim, about, symbols, claimed, truth)
+    if not found.refuted or claim.kind in ("mass matrix", "coefficient"):
+        return found
+    return _on_constraints(derived, found, in_parameters(derived, claimed) - in_parameters(derived, truth))
+
+
+# --- along the motion ---
+
+
+def _along(derived: Derived) -> AlongMotion:
+    """Raises NoClosedForm where the equations without multipliers are too long."""
+    equations = derived.equations
+    tied, embedded = equations.constraints, equations.embedded
+    if tied is None or embedded is None or tied.solved is None:
+        raise NoClosedForm("the equations without multipliers have no closed form within the budget")
+    return AlongMotion(derived.scene, tied, tied.solved, embedded)
+
+
+def _states(derived: Derived) -> list[OnManifold]:
+    """Exact states on the constraints, or enclosures of some; to be used at ``PRECISION``."""
+    tied = derived.equations.constraints
+    assert tied is not None
+    kept = [(name.constraint, name.component) for name in tied.names]
+    programs = constrained_programs(derived.system, derived.ring, kept)
+    return list(Manifold(derived.system, derived.ring, programs).states(STATES))
+
+
+def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
+    """dI/dt = 0 along every motion, and I not a constant on the constraints."""
+    ring, along = derived.ring, _along(derived)
+    claimed = _polynomial(derived, result)
+    if not ring.dependencies(claimed, derived.system.velocities):
+        return replace(result, outcome=FAILS, remark="it contains no velocity")
+    own = [ring.velocity_derivative(claimed, name) for name in along.tied.coordinates]
+    if all(ring.is_zero(slope) is True for slope in along.along_speeds(own)):
+        remark = "with the velocities that the constraints allow it contains none"
+        return replace(result, outcome=FAILS, remark=remark)
+    known = [item.formula.polynomial for item in _integrals(derived) if item.status == PROVED]
+    if any(ring.is_zero(along.restricted(claimed - one)) is True for one in known):
+        return result
+    return _vanishing(derived, along, result, total_rate(derived.scene, claimed), own, "dI/dt")
+
+
+def _integrals(derived: Derived) -> Any:
+    """Problem 7's, as far as it has a result."""
+    try:
+        return derived.integrals
+    except NOT_THERE:
+        return ()
+
+
+def _equation(derived: Derived, result: ClaimResult) -> ClaimResult:
+    """The claimed expression vanishes along every motion, and is felt by an independent acceleration."""
+    ring, along = derived.ring, _along(derived)
+    claimed = _polynomial(derived, result)
+    if ring.vanishes(claimed):
+        return replace(result, outcome=UNDECIDED, remark="it says 0 = 0")
+    places = [ring.index("acceleration", name) for name in along.tied.coordinates]
+    slopes = [claimed.derivative(place) for place in places]
+    found = _vanishing(derived, along, result, claimed, slopes, "the claimed expression")
+    if found.holds and all(ring.is_zero(slope) is True for slope in along.along_speeds(slopes)):
+        return replace(found, remark=FROM_CONSTRAINTS)
+    return found
+
+
+def _polynomial(derived: Derived, result: ClaimResult) -> Polynomial:
+    assert result.derived is not None
+    return in_parameters(derived, result.derived.polynomial)
+
+
+def _vanishing(
+    derived: Derived, along: AlongMotion, result: ClaimResult, x: Polynomial, slopes: list[Polynomial], what: str
+) -> ClaimResult:
+    """Whether x = 0 along every motion: proved, verified at states, or refuted by one."""
+    ring = derived.ring
+    with ctx.workprec(PRECISION):
+        found = along.values(x, _states(derived))
+        wrong = next(((one, value) for one, value in found if is_certain(value)), None)
+        if wrong is not None and not derived.system.relations:
+            return replace(result, outcome=FAILS, counterexample=_example(derived, *wrong, what))
+    linear = not any(ring.dependencies(slope, _accelerations(derived)) for slope in slopes)
+    if wrong is None and linear and along.proves_zero(x, slopes):
+        return result
+    if wrong is not None:
+        remark = "it does not vanish for all parameters; whether it does on their relations is not decided here"
+        return replace(result, outcome=UNDECIDED, remark=remark)
+    if len(found) < STATES or ring.kinked:
+        return replace(result, outcome=UNDECIDED, remark="there are too few states at which it could be tried")
+    return replace(result, outcome=NUMERICAL, remark="at exact states on the constraints")
+
+
+def _accelerations(derived: Derived) -> list[str]:
+    return [g.name for g in derived.ring.generators if g.kind == "acceleration"]
+
+
+def _example(derived: Derived, one: OnManifold, value: Any, what: str) -> Counterexample:
+    """The state, in decimals, and what does not vanish there."""
+    state, system = one.enclosed.state, derived.system
+    names = [*system.parameter_names, *system.coordinates, *system.velocities]
+    at = [(name, shown(state.values[name], DIGITS_SHOWN)) for name in names if name in state.values]
+    return Counterexample(tuple(at), ((what, shown(arb(value), DIGITS_SHOWN)),))
+
+
+def _on_constraints(derived: Derived, found: ClaimResult, difference: Polynomial) -> ClaimResult:
+    """What differs in general may be equal wherever the constraints hold."""
+    tied = derived.equations.constraints
+    if tied is None or tied.solved is None:
+        return found
+    along, ring = _along(derived), derived.ring
+    left = along.restricted(difference)
+    if ring.is_zero(left) is True:
+        return ClaimResult(found.claim, found.title, EXACT, found.derived, remark=ON_CONSTRAINTS)
+    with ctx.workprec(PRECISION):
+        values = along.values(left, _states(derived))
+    if len(values) == STATES and not any(is_certain(value) for _, value in values) and not ring.kinked:
+        return ClaimResult(found.claim, found.title, NUMERICAL, found.derived, remark="at states on the constraints")
+    return found
+
+
+# --- numbers ---
+
+
+def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) -> State:
+    """The state with the accelerations of M q'' = f + J^T lambda, J q'' = -gamma, in balls.
+
+    Raises SingularPoint where these are not determined, NoClosedForm where the state does not keep the constraints.
+    """
+    names = [tied.names[i] for i in tied.independent]
+    found = constrained_programs(system, ring, [(name.constraint, name.component) for name in names])
+    n, m, program = len(system.coordinates), len(names), found.tree.program
+    nodes = [x for row in found.tree.mass_matrix for x in row] + [*found.tree.forcing]
+    nodes += [x for row in found.jacobian for x in row] + [*found.acceleration, *found.velocity]
+    nodes += [program.zero if x is None else x for x in found.position]
+    values = [arb(x) for x in program.evaluate(nodes, state.values, state.numbers)]
+    parts = iter(values)
+    mass = [list(islice(parts, n)) for _ in range(n)]
+    force, rows = list(islice(parts, n)), [list(islice(parts, n)) for _ in range(m)]
+    needed = list(islice(parts, m))
+    for kind, errors in (("velocity", list(islice(parts, m))), ("position", list(islice(parts, m)))):
+        for name, row, error in zip(names, rows, errors, strict=True):
+            if abs(error) > KEPT * (1 + sum((abs(x) for x in row), arb(0))):
+                raise NoClosedForm(f"the state does not keep {name.label} ({kind}: off by {shown(abs(error), 3)})")
+    whole = [[*mass[i], *(-rows[k][i] for k in range(m))] for i in range(n)]
+    whole += [[*row, *([arb(0)] * m)] for row in rows]
+    right = [*force, *(-x for x in needed)]
+    try:
+        solved = arb_mat(whole).solve(arb_mat(n + m, 1, right))
+    except ZeroDivisionError:
+        raise SingularPoint("the constraints and the masses leave the accelerations open there") from None
+    moved = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
+    return State(state.numbers, {**state.values, **moved})
+
+
+# --- conditions ---
+
+
+def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """An inequality against problem 6."""
+    result = ClaimResult(claim, about, EXACT)
+    for region in forms(derived, claim):
+        wanted = wanted_of(region, claim)
+        found = trivial(region, wanted, result)
+        if claim.role == SUFFICIENT:
+            if found is not None and found.outcome == FAILS:
+                return found
+            continue  # what always holds suffices only where everything is stable
+        found = found or one_of_problem_6(region, claim, result)
+        if found is not None:
+            return found
+        if follows(region.not_unstable(), wanted):
+            return replace(result, remark=f"it follows from {region.labels()}; without it the motion is unstable")
+        if wanted.relation == ">" and follows(region.not_unstable(), replace(wanted, relation=">=")):
+            remark = f"it follows from {region.labels()}; where it is an equality, nothing is proved"
+            return replace(result, outcome=BORDERS, remark=remark)
+    example = _against(derived, claim)
+    if example is not None:
+        remark = "it is not necessary for stability in the first approximation"
+        if claim.role == SUFFICIENT:
+            remark = "it is not sufficient for stability"
+        return replace(result, outcome=FAILS, remark=remark, counterexample=example)
+    remark = "it is not one of the conditions of problem 6 as they stand there"
+    if claim.role == SUFFICIENT:
+        remark = "whether it suffices is not decided under constraints"
+    return replace(result, outcome=UNDECIDED, remark=f"{remark}; no parameters that were tried refute it")
+
+
+def _against(derived: Derived, claim: Claim) -> Counterexample | None:
+    """Exact parameters that refute the condition."""
+    if claim.role == SUFFICIENT and claim.place and _others(derived, claim):
+        return None  # those of one place count together
+    symbols, numbers = Symbols.of(derived), Rationals({}, {})
+    assert claim.right is not None
+    sides = [claim.equals, claim.right]
+    for values in islice(_parameters(derived, numbers), TRIALS):
+        try:
+            lower = symbols.lowering(numbers, values, symbols.occurring(sides))
+            left, right = (lower(symbols.opened(side)) for side in sides)
+            if holds(left - right, claim.relation) is not (claim.role == SUFFICIENT):
+                continue
+            if claim.role != SUFFICIENT and holds(left - right, claim.relation.rstrip("=") + "=") and left == right:
+                continue  # of borders nothing is said
+            word = _roots(derived, numbers, values)
+        except (*NOT_THERE, KeyError):
+            continue
+        derived.ring.spend(500)
+        if word != ("right" if claim.role == SUFFICIENT else "left"):
+            continue
+        at = tuple((name, str(values[name])) for name in derived.system.parameter_names)
+        seen = "unstable (a root lies to the right)" if word == "right" else "stable in the first approximation"
+        return Counterexample(at, ((text(subtract(*sides)), str(left - right)), ("the motion", seen)))
+    return None
+
+
+def _others(derived: Derived, claim: Claim) -> list[Claim]:
+    key = (claim.kind, claim.role, claim.place)
+    return [one for one in derived.system.claims if one is not claim and (one.kind, one.role, one.place) == key]
+
+
+def _parameters(derived: Derived, numbers: Algebra) -> Iterator[Mapping[str, Any]]:
+    """Values of parameters with which there are such bodies, and such a motion."""
+    system, ring = derived.system, derived.ring
+    solved = {name: value.polynomial for name, value in derived.equilibrium.solved}
+
+    def further(known: Mapping[str, Any]) -> Mapping[str, Any]:
+        return {name: Carrier(ring, numbers, known)(x) for name, x in solved.items()}
+
+    for free in parameter_samples(system, tuple(solved)):
+        try:
+            values = completed(system, numbers, free, further)
+            mass = [[Carrier(ring, numbers, values)(x.polynomial) for x in row] for row in derived.linearisation.M]
+        except (*NOT_THERE, KeyError):
+            continue
+        if _positive(mass):
+            yield values
+
+
+def _positive(mass: list[list[fmpq]]) -> bool:
+    """Whether a symmetric matrix is positive definite, rows of zeros apart."""
+    kept = [i for i, row in enumerate(mass) if any(x != 0 for x in row)]
+    block = [[mass[i][j] for j in kept] for i in kept]
+    for k in range(len(block)):
+        if not block[k][k] > 0:
+            return False
+        for i in range(k + 1, len(block)):
+            factor = block[i][k] / block[k][k]
+            block[i] = [x - factor * y for x, y in zip(block[i], block[k], strict=True)]
+    return True
+
+
+def _roots(derived: Derived, numbers: Algebra, values: Mapping[str, Any]) -> str:
+    """``right``: a root lies to the right for certain; ``left``: none does for certain; else "".
+
+    Those of a polynomial in lambda^2 may lie on the axis, if they are simple; others lie to the left.
+    """
+    carry = Carrier(derived.ring, numbers, values)
+    words = [_side([carry(x.polynomial) for x in part.characteristic]) for part in derived.stability.subsystems]
+    if "right" in words:
+        return "right"
+    return "left" if words and all(word == "left" for word in words) else ""
+
+
+def _side(coefficients: list[fmpq]) -> str:
+    """Where the roots of one polynomial, the constant coefficient first, lie; "" where that is not certain."""
+    while coefficients and coefficients[-1] == 0:
+        coefficients = coefficients[:-1]
+    if len(coefficients) < 2:
+        return ""
+    even = len(coefficients) % 2 == 1 and all(x == 0 for x in coefficients[1::2])
+    whole = fmpq_poly(list(coefficients[:: 2 if even else 1]))
+    roots: Any = whole.numer().complex_roots()
+    if even:  # lambda^2 must be real and negative, and simple
+        if any(not root.imag.contains(0) or root.real > 0 for root, _ in roots):
+            return "right"
+        return "left" if all(root.imag == 0 and root.real < 0 and count == 1 for root, count in roots) else ""
+    if any(root.real > 0 for root, _ in roots):
+        return "right"
+    return "left" if all(root.real < 0 for root, _ in roots) else ""
