@@ -134,12 +134,12 @@ class Source:
         if system is None:
             raise Unreadable
         from mbsym.algebra.ring import TERM_BUDGET
-        from mbsym.analysis import ALL_PROBLEMS, Analysis
+        from mbsym.analysis import ALL_PROBLEMS, USUAL_PROBLEMS, Analysis
         from mbsym.report.results_json import render
 
-        problems, terms = (ALL_PROBLEMS, TERM_BUDGET) if like is None else (like.get("problems"), like.get("terms"))
+        problems, terms = (USUAL_PROBLEMS, TERM_BUDGET) if like is None else (like.get("problems"), like.get("terms"))
         listed = isinstance(problems, (list, tuple)) and all(number in ALL_PROBLEMS for number in problems)
-        chosen = tuple(problems) if listed and problems else ALL_PROBLEMS
+        chosen = tuple(problems) if listed and problems else USUAL_PROBLEMS
         budget = terms if isinstance(terms, int) and 0 < terms <= 10**12 else TERM_BUDGET
         found: dict[str, Any] = json.loads(render(Analysis(system, chosen, budget), chosen))
         return found

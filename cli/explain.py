@@ -19,9 +19,9 @@ TOPICS = {
 
 
 @click.command("explain")
-@click.argument("topic", required=False, shell_complete=among(lambda: [*"1234567", *TOPICS]))
+@click.argument("topic", required=False, shell_complete=among(lambda: [*"12345678", *TOPICS]))
 def command(topic: str | None) -> None:
-    """Print what problem TOPIC (1 to 7) does and the formula it uses; without TOPIC, the list of problems and topics.
+    """Print what problem TOPIC (1 to 8) does and the formula it uses; without TOPIC, the list of problems and topics.
 
     The topics description, loads, expressions and claims tell what may stand in a description.
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command("run")
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show; all of them: 1-7]")
+@click.option("--problems", "-p", help="1-5 or 1,3,6.  [default: what the formats show of 1-7]")
 @click.option(
     "--format", "formats", "-f", default="all", show_default=True, help="Some of them; exports only where named."
 )
@@ -64,7 +64,8 @@ def command(
 
     For folders in folders, several at a time and only what changed, there is 'mbsym batch'.
 
-    Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals.
+    Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals,
+    8 stabilisation (where it is named, and of systems that are given by their matrices).
     One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
     failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
@@ -100,6 +101,7 @@ def command(
       mbsym run systems/satellite.yaml
       mbsym run systems/satellite.yaml --animate 20
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
+      mbsym run systems/cart-pole.yaml --problems 5,6,8
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --detail full
       mbsym run systems/spherical-pendulum.yaml --form routh,hamilton

@@ -1,6 +1,16 @@
 """What is derived from a system, on demand: ``pipeline`` is the page to read, ``stages`` the machinery beneath it."""
 
-from mbsym.analysis.pipeline import ALL_PROBLEMS, PROBLEMS, Analysis, Problem
+from mbsym.analysis.pipeline import ALL_PROBLEMS, PROBLEMS, USUAL_PROBLEMS, Analysis, Problem
 from mbsym.analysis.stages import Derived, NoResult, Stage, Unavailable
 
-__all__ = ["ALL_PROBLEMS", "PROBLEMS", "Analysis", "Derived", "NoResult", "Problem", "Stage", "Unavailable"]
+__all__ = [
+    "ALL_PROBLEMS",
+    "PROBLEMS",
+    "USUAL_PROBLEMS",
+    "Analysis",
+    "Derived",
+    "NoResult",
+    "Problem",
+    "Stage",
+    "Unavailable",
+]

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.speeds import SpeedEquations
+    from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 
@@ -53,6 +54,14 @@ def stability_of(analysis: Analysis) -> Stability:
     from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
 
     return open_verdicts.decided(found, scene, analysis.equilibrium)
+
+
+def stabilisation_of(analysis: Analysis) -> Stabilisation:
+    """Problem 8, with numbers where the description gives all of them."""
+    from mbsym.problems.stabilisation import problem  # few ask for it
+
+    values = stability.parameter_values(analysis.parameters_scene, analysis.equilibrium)
+    return problem.stabilisation(analysis.parameters_scene, analysis.judgeable, analysis.signs, values)
 
 
 def equilibrium_of(analysis: Analysis) -> Equilibrium:

@@ -18,20 +18,23 @@ if TYPE_CHECKING:
     from mbsym.problems.linearisation import Linearisation
 
 #: The problems that such a system has.
-PROBLEMS = (5, 6)
+PROBLEMS = (5, 6, 8)
 
 #: The stages that know such systems.
 KNOWN = frozenset(
     (
         *("scene", "parameters_scene", "held_scene", "signs", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "claims", "checks", "trials", "check: linearisation"),
+        *("stabilisation", "check: stabilisation"),
     )
 )
 
 
 def chosen(system: System, problems: tuple[int, ...]) -> tuple[int, ...]:
     """Of problems that nobody has named, those that the system has."""
-    return problems if system.linear is None else tuple(number for number in problems if number in PROBLEMS)
+    if system.linear is None or not problems:
+        return problems
+    return tuple(number for number in PROBLEMS if number in problems or number == 8)
 
 
 def refuse() -> None:
@@ -40,7 +43,7 @@ def refuse() -> None:
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:
-    return given_system.by_matrices(analysis.parameters_scene)
+    return given_system.by_matrices(analysis.parameters_scene, analysis.system.input_names)
 
 
 def at_zero() -> Equilibrium:

@@ -36,6 +36,7 @@ from mbsym.problems import (
     kinematics,
     knowledge,
     linearisation,
+    stabilisation,
     stability,
 )
 from mbsym.problems.checks import Check, oracles
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduced
+    from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
 T = TypeVar("T")
@@ -157,7 +159,7 @@ class Analysis(Stages):
         super().__init__()
         self._checks: dict[str, Check] = {}
         self.system = system
-        self.problems = given.chosen(system, ALL_PROBLEMS) if problems is None else tuple(sorted(set(problems)))
+        self.problems = given.chosen(system, USUAL_PROBLEMS) if problems is None else tuple(sorted(set(problems)))
         self.terms = terms
         self.suggests = suggests
         #: Results that a report cannot show, by their numbers, with the reason; they are not missing elsewhere.
@@ -306,6 +308,10 @@ class Analysis(Stages):
         says=True,
     )
 
+    stabilisation = Problem["Stabilisation"](
+        8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+    )
+
     # --- problem 5 in speeds, of a system that has some ---
 
     first_order: Derived[Analysis, FirstOrder] = Derived(deriving.first_order_of, ("first approximation in speeds",))
@@ -373,3 +379,5 @@ PROBLEMS: dict[int, Problem[Any]] = {
     for item in sorted((x for x in vars(Analysis).values() if isinstance(x, Problem)), key=lambda item: item.number)
 }
 ALL_PROBLEMS = tuple(PROBLEMS)
+#: Those of every run; problem 8 is derived where it is named, and of systems that are given by their matrices.
+USUAL_PROBLEMS = tuple(number for number in PROBLEMS if number != 8)

@@ -178,6 +178,16 @@ def _integrals(analysis: Analysis) -> Check | None:
     return perturbation.check_integrals(analysis.oracles, analysis.programs, found) if found else None
 
 
+def _stabilisation(analysis: Analysis) -> Check | None:
+    """Only where somebody has asked for it."""
+    found = analysis.optional("stabilisation") if "stabilisation" in analysis.derived else None
+    if found is None:
+        return None
+    from mbsym.problems.stabilisation.checks import check_stabilisation
+
+    return check_stabilisation(analysis.parameters_scene, analysis.judgeable, found)
+
+
 #: Every check, by its name, in the order in which they are told.
 SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "kinematics": _kinematics,
@@ -190,6 +200,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "perturbed motion": _perturbed,
     "first approximation in speeds": _first_order,
     "first integrals": _integrals,
+    "stabilisation": _stabilisation,
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,
     constrained.REACTIONS: constrained.reactions_check,

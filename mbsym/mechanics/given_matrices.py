@@ -29,7 +29,8 @@ class Given(NamedTuple, Generic[S]):
 
 def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
     """M, C, S, B as ``scene`` lowers formulas."""
-    size, inputs = len(linear.coordinates), len(scene.system.inputs)
+    size, given = len(linear.coordinates), linear.matrix("B")
+    inputs = 0 if given is None else len(given.rows[0])
 
     def lowered(key: str, columns: int) -> ScalarMatrix[S]:
         found, algebra = linear.matrix(key), scene.algebra

@@ -42,12 +42,12 @@ POINTS = 3
 MOST_MINORS = 4
 
 
-def by_matrices(scene: Scene[Polynomial]) -> Linearisation:
-    """The matrices of the description, relations used.  Raises NoClosedForm or SingularPoint."""
+def by_matrices(scene: Scene[Polynomial], inputs: tuple[str, ...]) -> Linearisation:
+    """The matrices of the description, relations used, with its ``inputs``.  Raises NoClosedForm or SingularPoint."""
     linear = scene.system.linear
     assert linear is not None
     whole = given_matrices(scene, linear)
-    return assemble(scene, None, tuple(whole), ROUTE, scene.system.input_names)
+    return assemble(scene, None, tuple(whole), ROUTE, inputs)
 
 
 class OpenBalance(Balance):

@@ -5,6 +5,8 @@
 _TURNED = "las rotaciones permanentes en torno a otras direcciones del espacio"
 
 EXPLAINED = {
+    "to {} bits at {} random points": "hasta {0} bits en {1} puntos al azar",
+    "equal at {} random rational points": "iguales en {0} puntos racionales al azar",
     "length of {}": "longitud de {0}",
     "norm of {}": "norma de {0}",
     "product of {} and {}": "producto de {0} y {1}",

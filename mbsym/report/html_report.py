@@ -44,7 +44,9 @@ from mbsym.report.inertias import accepted_inertias
 from mbsym.report.latex_description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
+from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
 from mbsym.report.unit_text import labelled, pretty
 from mbsym.source.meaning import meaning
 
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.reduction import Reduction
+    from mbsym.problems.stabilisation import Stabilisation
 
 #: The order of the sections: as a reader wants them, as in report.tex.
 ORDER = (1, 2, 3, 4, 5, 6, 7)
@@ -98,6 +101,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
         "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "constraint": lambda value: constraint_in_words(value, names),
+        "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
+        "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
     motion, no_motion = asked_motion(system)
@@ -125,6 +130,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         decided=_decided,
         **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,
+        FEEDBACK=FEEDBACK,
+        LYAPUNOV=LYAPUNOV,
         forms=forms,
         reactions=analysis.optional("reactions") if system.reactions and 3 in problems else (),
         claims=analysis.claims,
@@ -162,6 +169,24 @@ def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
         nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
     )
     yield from _filled(reduction_sentences(about, write))
+
+
+def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup]:
+    """The sentences of problem 8, names and formulas in MathML."""
+    write = Medium(
+        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
+        formula=lambda x: shown.math(shown.inline(x)),
+        polynomial=lambda factor: escape(polynomial(factor)),
+        square=lambda x: escape("lambda**2 = -(") + shown.math(shown.inline(x)) + ")",
+        word=str,
+    )
+    for text, values in sentences(found, write):  # what stands in gaps is MathML, but for reasons and numbers
+        written = {name: Markup(value) if name != "why" else value for name, value in values.items()}
+        yield from _filled([(text, written)])
+
+
+_SIGNS = {"!=": "≠"}
 
 
 def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Markup]:

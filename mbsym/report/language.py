@@ -25,8 +25,9 @@ class Language:
         self.name = name or "en"
         self.babel = _BABEL[self.name]
         catalogue: Any = None if self.name == "en" else import_module(f"mbsym.report.language_{self.name}")
-        self._sentences: dict[str, str] = getattr(catalogue, "SENTENCES", {})
-        self._words: dict[str, str] = getattr(catalogue, "WORDS", {})
+        further: Any = None if self.name == "en" else import_module(f"mbsym.report.stabilisation_{self.name}")
+        self._sentences: dict[str, str] = getattr(catalogue, "SENTENCES", {}) | getattr(further, "SENTENCES", {})
+        self._words: dict[str, str] = getattr(catalogue, "WORDS", {}) | getattr(further, "WORDS", {})
 
     @cached_property
     def _explained(self) -> list[tuple[re.Pattern[str], str]]:

@@ -57,10 +57,12 @@ from mbsym.report.latex_formulas import (
 )
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_references import keys_of, references, theorems_named
+from mbsym.report.latex_stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex_told import packed, paragraphs
 from mbsym.report.latex_words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.report.unit_text import bracketed
 from mbsym.source.meaning import meaning
 
@@ -135,6 +137,9 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
+        "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
+        "FEEDBACK": FEEDBACK,
+        "LYAPUNOV": LYAPUNOV,
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "forms": forms,
@@ -178,6 +183,8 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
     system, names, printed = analysis.system, latex_names(analysis.ring), claimed_names(analysis)
     return {
         "tex": escaped,
+        "rational_matrix": rational_matrix,
+        "rational_row": rational_row,
         "say": tongue.say,
         "theorem": lambda name: escaped(tongue.say(name)),
         "name": lambda name: str(names[name]),

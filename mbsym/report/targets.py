@@ -102,6 +102,7 @@ _FRAGMENTS = (
     ("linearisation", 5, "linearisation"),
     ("stability", 6, "stability"),
     ("integrals", 7, "first integrals"),
+    ("stabilisation", 8, "stabilisation"),
     ("claims", None, "claims"),
     ("checks", None, "self-check"),
 )
@@ -215,5 +216,8 @@ FORMATS: Mapping[str, Target] = ChainMap(EXPORTS, TARGETS)
 
 
 def shown_by(formats: Iterable[str]) -> tuple[int, ...]:
-    """The problems that the files of some formats can show."""
-    return tuple(sorted({number for name in formats for number in FORMATS[name].shows}))
+    """The problems that the files of some formats can show, without those that are derived only where named."""
+    from mbsym.analysis import USUAL_PROBLEMS
+
+    shown = {number for name in formats for number in FORMATS[name].shows}
+    return tuple(number for number in USUAL_PROBLEMS if number in shown)

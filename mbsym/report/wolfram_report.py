@@ -23,11 +23,14 @@ from mbsym.formulas.wolfram import (
 from mbsym.model.system import System
 from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
+from mbsym.report.constraint_words import filled
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import prescribed_value
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.report.sections.stabilisation import PLAIN
+from mbsym.report.stabilisation_words import sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -61,6 +64,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "report.wl.j2",
         {
             "wl": written,
+            "rationals": lambda rows: listed(listed(str(x) for x in row) for row in rows),
             "expression": lambda value: wolfram_expression(value, names),
             "list": listed,
             "speed": lambda name: names[name] + "[t]" if name in analysis.system.variables else _rate(name, names),
@@ -74,6 +78,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=found,
+        stabilisation_sentences=[filled(said) for said in sentences(found[8], PLAIN)] if 8 in found else [],
         forms=forms,
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],

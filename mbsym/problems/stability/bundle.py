@@ -102,7 +102,7 @@ def definite_combination(gradients: Rows, hessians: Sequence[Rows], field: Numbe
                 for pair in zip(total, rows, strict=True)
             ]
         forms.append([[field.enclose(x % field.modulus) for x in row] for row in total])
-    weights = _definite(forms)
+    weights = definite_combination_of(forms)
     if weights is None:
         return None
     return tuple(
@@ -121,7 +121,7 @@ def _restricted(hessian: Rows, tangent: Rows, field: NumberField) -> list[list[E
     ]
 
 
-def _definite(forms: Sequence[Sequence[Sequence[Any]]]) -> list[fmpq] | None:
+def definite_combination_of(forms: Sequence[Sequence[Sequence[Any]]]) -> list[fmpq] | None:
     """Rational weights w such that sum w_j forms_j is proved to be positive definite."""
     import numpy as np
 

@@ -296,7 +296,7 @@ def _prepared(
         if name in balance.ignorable and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
     turned = [elimination(x) for x in turned]
-    ring, known = _in_parameters(scene.ring, [*rows, [turned]], signs)
+    ring, known = in_parameters(scene.ring, [*rows, [turned]], signs)
     if isinstance(ring, ParameterRing):
         rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
         turned = [ring.project(x) for x in turned]
@@ -367,7 +367,7 @@ def _turned(
     return below, top
 
 
-def _in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], signs: Signs) -> tuple[Ring, Signs]:
+def in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], signs: Signs) -> tuple[Ring, Signs]:
     """The ring of the parameters that matter, with what is known about them; the ring itself if it takes more."""
     used = set(occurring(x for matrix in rows for row in matrix for x in row))
     for assumption, _ in signs.assumptions:

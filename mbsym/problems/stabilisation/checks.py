@@ -1,0 +1,95 @@
+"""The self-check of problem 8: Kalman's rank and eigenvalues at random rational parameters against what is said."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE
+from mbsym.algebra.point import Rationals
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.states import SEED
+from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stabilisation import Locus, Stabilisation, Sure, at_values, feels_everything
+from mbsym.problems.stabilisation import numbers as exact
+from mbsym.problems.stabilisation.numbers import AtValues
+from mbsym.problems.stability.exact import inertia
+
+#: Points at which everything is compared, and how many are tried.
+POINTS, ATTEMPTS = 3, 12
+
+
+def check_stabilisation(scene: Scene[Any], linear: Linearisation, found: Stabilisation) -> Check:
+    """Degrees of instability, pervasiveness and controllability, each at random points off the places told."""
+    wrong: set[str] = set()
+    compared = 0
+    for values in _points(scene):
+        there = at_values(scene, linear, values)
+        if there is None:
+            continue
+        compared += 1
+        wrong |= set(_wrong(scene, linear, found, there, values))
+        if compared == POINTS:
+            break
+    first, second = "minors and resultants in symbols", "Kalman's rank and eigenvalues counted at numbers"
+    if wrong:
+        return Check("stabilisation", first, second, FAILED, f"differs in {', '.join(sorted(wrong))}")
+    if not compared:
+        return Check("stabilisation", first, second, UNDECIDED, "no rational point was found")
+    return Check("stabilisation", first, second, EXACT, f"equal at {compared} random rational points", compared)
+
+
+def _points(scene: Scene[Any]) -> Iterator[dict[str, Fraction]]:
+    source = random.Random(SEED)
+    for _ in range(ATTEMPTS):
+        values = {}
+        for one in scene.system.parameters:
+            value = Fraction(source.randint(1, 400), source.randint(20, 90))
+            values[one.name] = -value if one.sign in ("negative", "nonpositive") else value
+        yield values
+
+
+def _wrong(
+    scene: Scene[Any], linear: Linearisation, found: Stabilisation, there: AtValues, values: dict[str, Fraction]
+) -> Iterator[str]:
+    names = linear.coordinates
+    carry = Carrier(scene.ring, Rationals({}, {}), {k: Rationals({}, {}).number(v) for k, v in values.items()})
+
+    def vanishes(formula: Any) -> bool:
+        try:
+            return bool(carry(formula.polynomial) == 0)
+        except NOT_THERE:
+            return True
+
+    for part in found.gyroscopic:
+        own = there.only([names.index(name) for name in part.coordinates])
+        stiff = (own.places + own.places.transpose()) / 2
+        for region in part.regions:
+            if all((carry(x.polynomial) > 0) == (relation == ">") for x, relation in region.signs):
+                if any(vanishes(x) for x, _ in region.signs):
+                    continue
+                if inertia(stiff)[2] != region.degree:
+                    yield "the degree of instability"
+    for damped in found.dissipation:
+        at = [names.index(name) for name in damped.coordinates]
+        own = there.only(at)
+        if _is_generic(damped.rank.locus, vanishes) and damped.rank.sure is Sure.PROVED:
+            matrix = (own.rates + own.rates.transpose()) / 2
+            if feels_everything(own, matrix) != damped.rank.full:
+                yield "pervasiveness"
+    for control in found.control:
+        own = there.only([names.index(name) for name in control.coordinates])
+        told = _is_generic(control.rank.locus, vanishes) and control.rank.sure is Sure.PROVED
+        if told and exact.is_controllable(own) != control.rank.full:
+            yield "controllability"
+
+
+def _is_generic(locus: Locus | None, vanishes: Any) -> bool:
+    """Whether a point lies off everything at which a rank may be another one."""
+    if locus is None:
+        return False
+    return not any(vanishes(x) for x in (*locus.factors, *locus.provided, *locus.together))

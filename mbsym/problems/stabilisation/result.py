@@ -1,0 +1,166 @@
+"""What problem 8 finds, as values: each statement with how it is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
+from mbsym.problems.stability.verdict import Verdict
+
+
+class Sure(StrEnum):
+    """How a statement is known."""
+
+    PROVED = "proved"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Region:
+    """Where each of the ``signs`` (polynomial, ``>`` or ``<``) holds, K has ``degree`` negative eigenvalues."""
+
+    signs: tuple[tuple[Formula, str], ...]
+    degree: int
+
+
+@dataclass(frozen=True, repr=False)
+class Gyroscopic(Shown):
+    """Of one subsystem with N = 0: Poincare's degree of instability of K, region by region.
+
+    No region where the minors of K outgrew their budget, or vanish for all parameters.  ``free`` coordinates do not
+    occur in K.  ``present``: G is not zero; ``damped``: D is not zero; ``size``: how many coordinates there are.
+    """
+
+    coordinates: tuple[str, ...]
+    regions: tuple[Region, ...]
+    present: bool
+    damped: bool
+    free: int = 0
+
+    @property
+    def size(self) -> int:
+        return len(self.coordinates)
+
+    @property
+    def degree(self) -> int | None:
+        """The degree, where it is the same everywhere."""
+        found = {region.degree for region in self.regions}
+        return found.pop() if len(found) == 1 else None
+
+
+@dataclass(frozen=True)
+class Locus:
+    """Parameter values at which a rank is lost.
+
+    Proved: where one of ``factors`` vanishes it is lost; elsewhere only where all formulas of ``together`` vanish at
+    once (nowhere, where these are none), and then it is.  All of this where no formula of ``provided`` vanishes.
+    """
+
+    factors: tuple[Formula, ...] = ()
+    together: tuple[Formula, ...] = ()
+    provided: tuple[Formula, ...] = ()
+
+
+@dataclass(frozen=True, repr=False)
+class Rank(Shown):
+    """Whether [ lambda^2 M + lambda C + S, B ] has full rank for all lambda (Hautus), for almost all parameters.
+
+    ``full`` and how ``sure`` that is; where it is not, ``factors`` are the coefficients, low to high in lambda, of
+    polynomials at whose roots it is lost for all parameters.  ``locus`` is None where it was not found.
+    """
+
+    full: bool
+    sure: Sure
+    factors: tuple[tuple[Formula, ...], ...] = ()
+    locus: Locus | None = None
+    why_not: str = ""
+
+
+@dataclass(frozen=True, repr=False)
+class Motion(Shown):
+    """A motion exp(lambda t) v that dissipation does not feel: lambda^2 = -``square``, v = ``shape``; exactly."""
+
+    square: Formula
+    shape: tuple[Formula, ...] | None
+
+
+@dataclass(frozen=True, repr=False)
+class Dissipation(Shown):
+    """Of one subsystem with D != 0, N = 0: is D pervasive (does every motion with D x' = 0 rest)?
+
+    ``complete``: D > 0 is proved; ``semidefinite``: D >= 0 is proved, without which D may feed motions instead of
+    damping them.  ``at_values``: whether it is pervasive at the given values, exactly; None without any.
+    """
+
+    coordinates: tuple[str, ...]
+    complete: bool
+    semidefinite: bool
+    rank: Rank
+    motions: tuple[Motion, ...] = ()
+    at_values: bool | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Control(Shown):
+    """Of one subsystem, or of the whole: controllability by the ``inputs``; exactly at the given values, if any."""
+
+    coordinates: tuple[str, ...]
+    inputs: tuple[str, ...]
+    rank: Rank
+    at_values: bool | None = None
+    stabilisable_at_values: bool | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Feedback(Shown):
+    """u = -gains (x, x') at the given values, found as an LQR in floating point, rationalised, and then proved.
+
+    ``characteristic`` is that of the closed loop, exactly, low to high powers; all its roots are to the left
+    (``verdict``: that of problem 6's exact judge on the closed loop).  ``lyapunov`` is a rational P > 0 with
+    P A + A^T P < 0, both proved; None where none was found.
+    """
+
+    gains: tuple[tuple[Fraction, ...], ...]
+    characteristic: tuple[Fraction, ...]
+    verdict: Verdict
+    lyapunov: tuple[tuple[Fraction, ...], ...] | None
+
+
+@dataclass(frozen=True, repr=False)
+class EnergyFunction(Shown):
+    """V = x'.M x'/2 + x.K x/2 of one subsystem with N = 0:  dV/dt = -x'.D x',  V > 0 where K > 0.
+
+    ``minors`` of K that must be positive, known ones left out; ``definite``: True proved, False refuted, None open;
+    ``at_values``: whether K > 0 at the given values, None without any.
+    ``bundle``: rational weights w_k at the given values with which sum w_k E_k, E_k = V of the k-th derivative of the
+    motion, is positive definite (proved); None where it was not looked for, or not found.
+    """
+
+    coordinates: tuple[str, ...]
+    conserved: bool
+    minors: tuple[Formula, ...]
+    definite: bool | None
+    at_values: bool | None = None
+    bundle: tuple[Fraction, ...] | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Stabilisation(Shown):
+    """Problem 8.  ``control`` begins with the whole system; ``least`` are the smallest sets of inputs that suffice for
+    almost all parameters, () where none does or there are none; ``no_feedback`` says why there is no ``feedback``."""
+
+    gyroscopic: tuple[Gyroscopic, ...]
+    dissipation: tuple[Dissipation, ...]
+    control: tuple[Control, ...]
+    least: tuple[tuple[str, ...], ...]
+    feedback: Feedback | None
+    no_feedback: str
+    energy: tuple[EnergyFunction, ...]
+
+    @property
+    def terms(self) -> int:
+        """None are counted: the statements are short."""
+        return 0

@@ -1,0 +1,329 @@
+"""Problem 8: degrees of instability, pervasive damping, controllability and feedback, on systems solved by hand."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from fractions import Fraction as F
+from typing import Any
+
+import pytest
+from conftest import SHIPPED
+from flint import fmpq, fmpq_mat
+from jsonschema import Draft202012Validator
+
+import mbsym
+from mbsym.analysis import Analysis, Unavailable
+from mbsym.problems.checks import EXACT
+from mbsym.problems.stabilisation import Locus, Stabilisation, Sure, numbers
+from mbsym.problems.stabilisation.checks import check_stabilisation
+from mbsym.problems.stabilisation.numbers import AtValues
+from mbsym.report.language import Language
+from mbsym.report.results_json import results
+from mbsym.report.schemas import schema
+from mbsym.report.sections.stabilisation import PLAIN, lines
+from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
+from mbsym.source import read
+
+
+def analysed(matrices: str, parameters: str = "{}", more: str = "") -> Analysis:
+    text = f"mbsym: 1\nname: Given\nparameters: {parameters}\n{more}\nlinear system: {matrices}\n"
+    system, complaints = read(text)
+    assert system is not None, [one.message for one in complaints]
+    return Analysis(system)
+
+
+def found(matrices: str, parameters: str = "{}", more: str = "") -> Stabilisation:
+    analysis = analysed(matrices, parameters, more)
+    result = analysis.stabilisation
+    check = analysis.check("stabilisation")
+    assert check is not None
+    assert check.outcome == EXACT, check.detail
+    return result
+
+
+def texts(formulas: Any) -> set[str]:
+    return {str(x) for x in formulas}
+
+
+TWO = "{k1: positive, k2: positive, m1: positive, m2: positive, c: positive, k: positive}"
+#: Two masses, each on a spring to the wall, with a spring between them.
+PAIR = "coordinates: [x, y], M: [[m1, 0], [0, m2]], K: [[k1 + k, -k], [-k, k2 + k]]"
+
+
+# --- gyroscopic forces ---
+
+
+def test_the_degree_of_instability_by_regions() -> None:
+    """K = diag(a, b): as many negative eigenvalues as a and b are negative."""
+    (part,) = found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[a, 0], [0, b]]}", "{a: real, b: real}").gyroscopic
+    seen = {tuple(sorted((str(x), sign) for x, sign in region.signs)): region.degree for region in part.regions}
+    assert seen == {
+        (("a", ">"), ("b", ">")): 0,
+        (("a", ">"), ("b", "<")): 1,
+        (("a", "<"), ("b", ">")): 1,
+        (("a", "<"), ("b", "<")): 2,
+    }
+
+
+def test_an_odd_degree_is_beyond_gyroscopic_forces() -> None:
+    odd = found("{coordinates: [x, y], G: [[0, 9], [-9, 0]], K: [[-1, 0], [0, 1]]}")
+    assert odd.gyroscopic[0].degree == 1
+    said = [text for text, _ in sentences(odd, PLAIN)]
+    assert "It is odd: no gyroscopic forces make the motion stable (Kelvin-Chetaev)." in said
+
+
+def test_a_free_coordinate_leaves_the_parity_unsaid() -> None:
+    """K = diag(0, -1): the theorem asks for det K != 0."""
+    free = found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[0, 0], [0, -1]]}").gyroscopic[0]
+    assert (free.degree, free.free) == (1, 1)
+    said = " ".join(
+        text for text, _ in sentences(found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[0, 0], [0, -1]]}"), PLAIN)
+    )
+    assert "Kelvin" not in said
+
+
+def test_a_matrix_with_a_vanishing_first_minor_is_told_in_another_order() -> None:
+    """K = [[0, 1], [1, 2]]: det K = -1, one negative eigenvalue."""
+    (part,) = found("{coordinates: [x, y], K: [[0, 1], [1, 2]]}").gyroscopic
+    assert part.degree == 1
+
+
+def test_a_bundle_of_energies_is_definite_where_the_pair_is_stabilised() -> None:
+    """Merkin's pair with k = (1, 4): stable from g = 3 on; a definite integral can exist only there."""
+    text = "{coordinates: [x, y], G: [[0, g], [-g, 0]], K: [[-1, 0], [0, -4]]}"
+    stable = found(text, "{g: {sign: positive, value: 3.01}}").energy[0]
+    assert stable.bundle is not None
+    assert stable.definite is False
+    assert found(text, "{g: {sign: positive, value: 2.99}}").energy[0].bundle is None
+    assert found(text, "{g: {sign: positive, value: 3}}").energy[0].bundle is None
+
+
+# --- dissipation ---
+
+
+def test_a_damper_on_one_mass_is_pervasive_through_the_spring() -> None:
+    """y at rest with D x' = 0: x' = 0 needs k y' = 0.  Without the spring y is on its own."""
+    (part,) = found("{" + PAIR + ", D: [[c, 0], [0, 0]]}", TWO).dissipation
+    assert (part.complete, part.semidefinite, part.rank.full, part.rank.sure) == (False, True, True, Sure.PROVED)
+    assert part.rank.locus == Locus()
+    loose = found("{" + PAIR + ", D: [[c, 0], [0, 0]]}", TWO.replace("k: positive", "k: real")).dissipation[0]
+    assert loose.rank.locus is not None
+    assert texts((*loose.rank.locus.factors, *loose.rank.locus.provided)) == {"k"}
+
+
+def test_a_damper_between_equal_oscillators_leaves_them_moving_together() -> None:
+    """D damps x - y: with equal masses and springs (1, 1) moves undamped at lambda^2 = -k/m, exactly."""
+    text = "{coordinates: [x, y], M: [[m, 0], [0, m]], K: [[k, 0], [0, k]], D: [[c, -c], [-c, c]]}"
+    (part,) = found(text, "{m: positive, k: positive, c: positive}").dissipation
+    assert not part.rank.full
+    (motion,) = part.motions
+    assert str(motion.square) == "k/m"
+    assert motion.shape is not None
+    assert str(motion.shape[0]) == str(motion.shape[1]) != "0"
+
+
+def test_where_a_pervasive_damper_loses_its_grip() -> None:
+    """The same with masses m1, m2 and springs k1, k2: undamped exactly if k1 m2 = k2 m1."""
+    text = "{coordinates: [x, y], M: [[m1, 0], [0, m2]], K: [[k1, 0], [0, k2]], D: [[c, -c], [-c, c]]}"
+    (part,) = found(text, TWO.replace(", k: positive", "")).dissipation
+    assert part.rank.full
+    assert part.rank.locus is not None
+    assert texts(part.rank.locus.factors) in (
+        {"k1*m2 - m1*k2"},
+        {"k1*m2 - k2*m1"},
+        {"k2*m1 - k1*m2"},
+        {"m1*k2 - k1*m2"},
+    )
+    assert part.rank.locus.together == ()
+    values = "{k1: {value: 2}, k2: {value: 6}, m1: {value: 1}, m2: {value: 3}, c: {value: 1}}"
+    assert found(text, values).dissipation[0].at_values is False
+    assert found(text, values.replace("6", "5")).dissipation[0].at_values is True
+
+
+def test_damping_that_may_feed_is_not_called_dissipation() -> None:
+    said = [
+        text
+        for text, _ in sentences(
+            found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[a, 0], [0, 0]]}", "{a: real}"), PLAIN
+        )
+    ]
+    assert "That D is positive semidefinite is not known." in said
+    assert not any(text.startswith("Where it is felt") for text in said)
+
+
+# --- control ---
+
+
+def test_one_force_on_two_masses() -> None:
+    """Force on x: y is reached through k only."""
+    text = "{" + PAIR + ", B: [[1], [0]]}"
+    whole = found(text, TWO.replace("k: positive", "k: real").replace("c: positive, ", ""), "inputs: [u]").control[0]
+    assert whole.rank.full
+    assert whole.rank.locus is not None
+    assert texts((*whole.rank.locus.factors, *whole.rank.locus.provided)) == {"k"}
+
+
+def test_a_force_between_equal_oscillators_does_not_move_their_centre() -> None:
+    text = "{coordinates: [x, y], M: [[m, 0], [0, m]], K: [[k, 0], [0, k]], B: [[1, 0], [-1, 1]]}"
+    whole = found(text, "{m: {value: 1}, k: {value: 2}}", "inputs: [u, v]")
+    assert whole.control[0].rank.full
+    assert whole.least == (("u", "v"),)
+    single = found(text.replace("[[1, 0], [-1, 1]]", "[[1], [-1]]"), "{m: {value: 1}, k: {value: 2}}", "inputs: [u]")
+    (factor,) = single.control[0].rank.factors
+    assert [str(x) for x in factor] in (["k", "0", "m"], ["k/m", "0", "1"])
+    assert single.control[0].at_values is False
+    assert single.control[0].stabilisable_at_values is False
+    assert single.feedback is None
+    assert "out of reach" in single.no_feedback
+
+
+def test_what_is_out_of_reach_may_decay_by_itself() -> None:
+    text = "{coordinates: [x, y], D: [[0, 0], [0, 1]], K: [[-1, 0], [0, 1]], B: [[1], [0]]}"
+    got = found(text, "{}", "inputs: [u]")
+    assert got.control[0].at_values is False
+    assert got.control[0].stabilisable_at_values is True
+    assert got.feedback is not None
+    assert got.feedback.verdict.word == "asymptotically stable"
+
+
+def test_the_cart_pole_is_controllable_everywhere_and_held_by_its_feedback() -> None:
+    """Astrom & Murray, example 7.2: reachable; J, m l^2, M > 0.  The closed loop counted by another route."""
+    analysis = mbsym.load(SHIPPED / "cart-pole.yaml", (8,))
+    got = analysis.stabilisation
+    assert got.control[0].rank.full
+    assert got.control[0].rank.locus == Locus()
+    assert got.least == (("F",),)
+    assert got.feedback is not None
+    assert got.feedback.lyapunov is not None
+    space = analysis.state_space
+    values = {p.name: p.value for p in analysis.system.parameters}
+    import numpy as np
+
+    def at(matrix: Any) -> Any:
+        given = {name: float(x.value) for name, x in values.items()}  # type: ignore[union-attr]
+        return np.array([[float(eval(str(x), {}, given)) for x in row] for row in matrix])
+
+    closed = at(space.A) - at(space.B) @ np.array([[float(x) for x in row] for row in got.feedback.gains])
+    assert np.linalg.eigvals(closed).real.max() < 0
+    p = np.array([[float(x) for x in row] for row in got.feedback.lyapunov])
+    assert np.linalg.eigvalsh(p).min() > 0
+    assert np.linalg.eigvalsh(p @ closed + closed.T @ p).max() < 0
+
+
+def test_parts_that_one_input_cannot_tell_apart() -> None:
+    """Hautus over the whole: two equal oscillators and one force on each at once; each alone is controllable."""
+    text = "{coordinates: [x, y], K: [[k, 0], [0, k]], B: [[1], [1]]}"
+    whole, *parts = found(text, "{k: {sign: positive, value: 1}}", "inputs: [u]").control
+    assert not whole.rank.full
+    assert whole.at_values is False
+    assert [one.rank.full for one in parts] == [True, True]
+
+
+def test_three_masses_and_the_resonances_that_one_force_misses() -> None:
+    """Three oscillators with squared frequencies a, b, c, one force on all: lost exactly where two are equal."""
+    text = "{coordinates: [x, y, z], K: [[a, 0, 0], [0, b, 0], [0, 0, c]], B: [[1], [1], [1]]}"
+    (whole, *_) = found(text, "{a: real, b: real, c: real}", "inputs: [u]").control
+    assert whole.rank.full
+    assert whole.rank.locus is not None
+    assert {x.lstrip("-") for x in texts(whole.rank.locus.factors)} in ({"a - b", "a - c", "b - c"},)
+
+
+# --- numbers: two routes, and planted mistakes ---
+
+
+def chain(n: int, at: int) -> AtValues:
+    """n unit masses in a row between walls, a force on number ``at``."""
+
+    def entry(i: int, j: int) -> int:
+        return 2 if i == j else -1 if abs(i - j) == 1 else 0
+
+    unit = [fmpq(int(i == j)) for i in range(n) for j in range(n)]
+    stiff = fmpq_mat(n, n, [entry(i, j) for i in range(n) for j in range(n)])
+    return AtValues(fmpq_mat(n, n, unit), fmpq_mat(n, n), stiff, fmpq_mat(n, 1, [int(i == at) for i in range(n)]))
+
+
+@pytest.mark.parametrize(("n", "at", "reached"), [(2, 0, 4), (3, 0, 6), (3, 1, 4), (5, 2, 6), (5, 1, 8)])
+def test_kalman_s_rank_counts_the_modes_without_a_node(n: int, at: int, reached: int) -> None:
+    """Mode j has sin(pi j (at + 1)/(n + 1)) at the force: zero where (n + 1) divides j (at + 1)."""
+    there = chain(n, at)
+    nodes = sum((j * (at + 1)) % (n + 1) == 0 for j in range(1, n + 1))
+    assert reached == 2 * (n - nodes)
+    assert numbers.kalman_rank(there.state, there.gain(there.inputs)) == reached
+    assert numbers.unreached(there.state, there.gain(there.inputs)).degree() == 2 * nodes
+
+
+def test_a_lyapunov_function_is_proved_or_refused() -> None:
+    damped = AtValues(*(fmpq_mat(1, 1, [x]) for x in (1, 3, 2)), None).state  # type: ignore[call-arg]
+    assert numbers.lyapunov_function(damped) is not None
+    unit = fmpq_mat(2, 2, [1, 0, 0, 1])
+    assert not numbers.proves_decay(unit, damped)  # its rate is not definite
+    assert not numbers.proves_decay(-unit, damped)
+    grown = AtValues(*(fmpq_mat(1, 1, [x]) for x in (1, -3, 2)), None).state  # type: ignore[call-arg]
+    assert numbers.lyapunov_function(grown) is None
+
+
+def test_planted_mistakes_are_found() -> None:
+    analysis = analysed("{" + PAIR + ", D: [[c, 0], [0, 0]], B: [[1], [0]]}", TWO, "inputs: [u]")
+    right = analysis.stabilisation
+    scene, linear = analysis.parameters_scene, analysis.judgeable
+
+    def told(wrong: Stabilisation) -> str:
+        return check_stabilisation(scene, linear, wrong).detail
+
+    (turn,), (damped,), (control,) = right.gyroscopic, right.dissipation, right.control
+    assert "degree" in told(
+        replace(right, gyroscopic=(replace(turn, regions=tuple(replace(x, degree=1) for x in turn.regions)),))
+    )
+    assert "pervasive" in told(replace(right, dissipation=(replace(damped, rank=replace(damped.rank, full=False)),)))
+    assert "control" in told(replace(right, control=(replace(control, rank=replace(control.rank, full=False)),)))
+
+
+def test_it_is_refused_where_it_is_not_known() -> None:
+    for name in ("rolling-disc", "gyrostat-poisson", "four-bar"):
+        with pytest.raises(Unavailable):
+            _ = mbsym.load(SHIPPED / f"{name}.yaml").stabilisation
+
+
+def test_roots_of_parameters_are_no_mistake() -> None:
+    points = mbsym.load(SHIPPED / "triangular-points.yaml")
+    assert points.stabilisation.gyroscopic[0].regions == ()
+    assert points.stabilisation.gyroscopic[1].degree == 0
+
+
+# --- what is written ---
+
+
+@pytest.fixture(scope="module")
+def pole() -> Analysis:
+    return mbsym.load(SHIPPED / "cart-pole.yaml", (8,))
+
+
+def test_results_follow_the_schema(pole: Analysis) -> None:
+    validator = Draft202012Validator(schema("results"))
+    for analysis in (pole, analysed("{" + PAIR + ", D: [[c, 0], [0, 0]]}", TWO)):
+        written = json.loads(json.dumps(results(analysis, analysis.problems)))
+        assert list(validator.iter_errors(written)) == []
+        assert "stabilisation" in written
+    assert F(written["stabilisation"]["gyroscopic"][0]["zero_eigenvalues"]) == 0
+
+
+def test_every_sentence_has_its_translations(pole: Analysis) -> None:
+    said = {text for text, _ in sentences(pole.stabilisation, PLAIN)} | {FEEDBACK, LYAPUNOV}
+    loose = TWO.replace("k: positive", "k: real").replace("c: positive, ", "")
+    together = "{coordinates: [x, y], M: [[m, 0], [0, m]], K: [[k, 0], [0, k]], D: [[1, -1], [-1, 1]]}"
+    for more in (
+        found("{coordinates: [x, y], G: [[0, 10], [-10, 0]], K: [[-1, 0], [0, -4]]}"),
+        found(together, "{m: positive, k: positive}"),
+        found("{" + PAIR + ", B: [[1], [0]]}", loose, "inputs: [u]"),
+    ):
+        said |= {text for text, _ in sentences(more, PLAIN)}
+    for name in ("ru", "es"):
+        language = Language(name)
+        for english in said:
+            assert language.sentence(english) != english, english
+
+
+def test_the_terminal_tells_the_gains(pole: Analysis) -> None:
+    told = list(lines(pole.stabilisation, pole))
+    assert any(line.startswith("  k of F: (") for line in told)
