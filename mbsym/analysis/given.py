@@ -8,7 +8,6 @@ from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.given_matrices import HINT, WITHOUT_BODIES
 from mbsym.mechanics.given_matrices import refuse_matrices as refuse_matrices
 from mbsym.model.system import System
-from mbsym.problems import given_system
 from mbsym.problems.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
@@ -43,6 +42,8 @@ def refuse() -> None:
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:
+    from mbsym.problems import given_system  # few systems are given so
+
     return given_system.by_matrices(analysis.parameters_scene, analysis.system.input_names)
 
 
@@ -52,10 +53,14 @@ def at_zero() -> Equilibrium:
 
 
 def balance(analysis: Analysis) -> Balance:
+    from mbsym.problems import given_system
+
     return given_system.OpenBalance(analysis.parameters_scene, None, analysis.signs, {})
 
 
 def check(analysis: Analysis) -> Check | None:
     """The matrices, against the formulas of the description at numbers."""
+    from mbsym.problems import given_system
+
     found = analysis.optional("linearisation")
     return None if found is None else given_system.check_matrices(analysis.parameters_scene, found)

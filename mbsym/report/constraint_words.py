@@ -12,9 +12,8 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints import Constraints, Integrability, Sureness
 from mbsym.problems.reduction import Reduction
-
-#: One sentence and what stands in its gaps.
-Said = tuple[str, dict[str, object]]
+from mbsym.report.said import Said as Said
+from mbsym.report.said import filled as filled
 
 
 @dataclass(frozen=True)
@@ -143,11 +142,3 @@ def label(name: RowName, write: Writer) -> str:
     """``rolling 2 (component 3)``."""
     kind = f"{write.word(name.kind)} {name.constraint + 1}"
     return f"{kind}, {write.word('component')} {name.component}" if name.component else kind
-
-
-def filled(said: Said) -> str:
-    """A sentence with its gaps filled, in English."""
-    text, values = said
-    for name, value in values.items():
-        text = text.replace(f"[[{name}]]", str(value))
-    return text

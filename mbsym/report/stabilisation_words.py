@@ -17,7 +17,7 @@ from mbsym.problems.stabilisation import (
     Stabilisation,
     Sure,
 )
-from mbsym.report.constraint_words import Said
+from mbsym.report.said import Said
 
 
 @dataclass(frozen=True)

@@ -23,12 +23,12 @@ from mbsym.formulas.wolfram import (
 from mbsym.model.system import System
 from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
-from mbsym.report.constraint_words import filled
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import prescribed_value
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.programs import programs_of
+from mbsym.report.said import filled
 from mbsym.report.sections.stabilisation import PLAIN
 from mbsym.report.stabilisation_words import sentences
 

@@ -145,7 +145,7 @@ def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
 
 def test_the_description_is_read_even_if_the_options_are_wrong(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED.replace("mass: m", "mass: mm"))
-    for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "8")):
+    for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "9")):
         done = mbsym(words[0], path, *words[1:], "--out", tmp_path / "out")
         assert done.exit_code == 2
         assert "error[unknown-name]: unknown name 'mm'" in done.stderr
@@ -203,16 +203,16 @@ def test_each_mistake_of_tradeoff_is_said_once(tmp_path: Path) -> None:
 
 
 def test_all_options_of_run_at_once(tmp_path: Path) -> None:
-    done = mbsym("run", DOUBLE, "--problems", "8,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
+    done = mbsym("run", DOUBLE, "--problems", "9,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert heads(done) == [
-        "--problems: error[unknown-problem]: there is no problem 8",
+        "--problems: error[unknown-problem]: there is no problem 9",
         "--problems: error[bad-range]: the range 5-3 is empty",
         "--format: error[unknown-format]: there is no format 'pdf'",
         "--terms: error[bad-number]: -1 is out of bounds: at least 1",
     ]
     assert "hint: a range goes upwards: write 3-5" in done.stderr
-    assert "hint: problems are numbered 1 to 7" in done.stderr
+    assert "hint: problems are numbered 1 to 8" in done.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -14,9 +14,10 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.states import SEED
 from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
 from mbsym.problems.linearisation import Linearisation
-from mbsym.problems.stabilisation import Locus, Stabilisation, Sure, at_values, feels_everything
 from mbsym.problems.stabilisation import numbers as exact
 from mbsym.problems.stabilisation.numbers import AtValues
+from mbsym.problems.stabilisation.problem import at_values, feels_everything
+from mbsym.problems.stabilisation.result import Locus, Stabilisation, Sure
 from mbsym.problems.stability.exact import inertia
 
 #: Points at which everything is compared, and how many are tried.

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
-from mbsym.report.constraint_words import filled
 from mbsym.report.plain import LONGEST, Write
+from mbsym.report.said import filled
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
 

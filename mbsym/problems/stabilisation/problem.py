@@ -1,0 +1,320 @@
+"""Problem 8 on a linearised system: everything that is said, subsystem by subsystem."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra.characteristic import determinant
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.signs import Signs
+from mbsym.formulas.formula import Formula, Matrix
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.states import SEED
+from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.stabilisation import gyroscopic, numbers
+from mbsym.problems.stabilisation.clearing import Cleared, Rows, cleared
+from mbsym.problems.stabilisation.hautus import annihilator, rank_of
+from mbsym.problems.stabilisation.numbers import AtValues
+from mbsym.problems.stabilisation.result import (
+    Control,
+    Dissipation,
+    EnergyFunction,
+    Feedback,
+    Gyroscopic,
+    Locus,
+    Motion,
+    Rank,
+    Stabilisation,
+    Sure,
+)
+from mbsym.problems.stability.exact import is_positive
+from mbsym.problems.stability.requirements import Definite, definiteness
+
+#: Sets of inputs are compared of so many; a feedback is looked for in so many coordinates.
+MOST_INPUTS, MOST_COORDINATES = 6, 12
+#: Damped coordinates whose principal minors are looked at.
+MOST_DAMPED = 4
+#: Random points at which a rank is taken where formulas are too large.
+POINTS = 3
+
+Values = Mapping[str, Any] | None
+
+
+def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values: Values) -> Stabilisation:
+    """Everything that is said; ``values`` are numbers of all parameters, or None."""
+    there = None if values is None else at_values(scene, linear, values)
+    parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
+    turning, damping, energies = [], [], []
+    for at in parts:
+        names = tuple(linear.coordinates[i] for i in at)
+        mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
+        if not circulatory.is_zero:
+            continue
+        whole = _cleared(scene, (mass, damped, gyro, stiff), signs)
+        own = None if there is None else there.only(at)
+        turning.append(
+            Gyroscopic(
+                names,
+                () if whole is None else gyroscopic.regions(whole, whole.matrices[3]),
+                not gyro.is_zero,
+                not damped.is_zero,
+                0 if whole is None else gyroscopic.free_in(whole.matrices[3]),
+            )
+        )
+        energies.append(_energy(whole, names, damped, own))
+        if not damped.is_zero:
+            damping.append(_dissipation(whole, names, own, None if there is None else _damping(scene, damped, values)))
+    control, least, found, why = _controlled(scene, linear, signs, parts, there)
+    return Stabilisation(tuple(turning), tuple(damping), control, least, found, why, tuple(energies))
+
+
+def at_values(scene: Scene[Any], linear: Linearisation, values: Mapping[str, Any]) -> AtValues | None:
+    """The matrices at rational values; None where a number is irrational, or M is singular there."""
+    mass, damped, gyro, stiff, circulatory = (_numbers(scene, matrix, values) for matrix in linear.matrices)
+    if mass is None or damped is None or gyro is None or stiff is None or circulatory is None or mass.det() == 0:
+        return None
+    inputs = None if linear.B is None else _numbers(scene, linear.B, values)
+    if linear.B is not None and inputs is None:
+        return None
+    return AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+
+
+def _numbers(scene: Scene[Any], matrix: Matrix, values: Mapping[str, Any]) -> Any | None:
+    algebra = Rationals({}, {})
+    exact = {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
+    carry = Carrier(scene.ring, algebra, exact)
+    height, width = matrix.shape
+    try:
+        return fmpq_mat(height, width, [carry(x) for row in matrix.polynomials for x in row])
+    except NOT_THERE:
+        return None
+
+
+def _damping(scene: Scene[Any], damped: Matrix, values: Values) -> Any | None:
+    return None if values is None else _numbers(scene, damped, values)
+
+
+def _block(matrix: Matrix, at: Sequence[int]) -> Matrix:
+    return Matrix.of(matrix[0, 0].ring, [[matrix.polynomials[i][j] for j in at] for i in at])
+
+
+def _cleared(scene: Scene[Any], matrices: Sequence[Matrix | None], signs: Signs) -> Cleared | None:
+    try:
+        return cleared(scene.ring, matrices, signs)
+    except Failure:
+        return None
+
+
+# --- energy ---
+
+
+def _energy(whole: Cleared | None, names: tuple[str, ...], damped: Matrix, there: AtValues | None) -> EnergyFunction:
+    minors: tuple[Formula, ...] = ()
+    definite: bool | None = None
+    if whole is not None:
+        try:
+            found = definiteness(whole.matrices[3], whole.known, "K")
+            definite = {Definite.POSITIVE: True, Definite.NOT_POSITIVE: False}.get(found.word)
+            wanted = [one.condition for one in found.requirements if one.condition.kind == "inequality"]
+            minors = tuple(whole.formula(one.polynomial) for one in wanted)
+        except TooLargeError:
+            pass
+    bundle, positive = None, None
+    if there is not None:
+        positive = is_positive((there.places + there.places.transpose()) / 2)
+        if damped.is_zero and not positive and there.size <= MOST_COORDINATES:
+            bundle = numbers.energy_bundle(there)
+    return EnergyFunction(names, damped.is_zero, minors, definite, positive, bundle)
+
+
+# --- dissipation ---
+
+
+def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues | None, damped: Any) -> Dissipation:
+    pervasive = None if there is None or damped is None else feels_everything(there, damped)
+    if whole is None:
+        rank = Rank(False, Sure.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
+        return Dissipation(names, False, False, rank, (), pervasive)
+    mass, damping, gyro, stiff = whole.matrices
+    word = definiteness(damping, whole.known, "D").word
+    complete = word is Definite.POSITIVE
+    if complete:
+        return Dissipation(names, True, True, Rank(True, Sure.PROVED, (), Locus()), (), True if there else None)
+    opposite = [[-x for x in row] for row in gyro]  # [P(lambda); D] transposed is [P(-lambda), D] with D instead of B
+    try:
+        rank = rank_of(whole, mass, opposite, stiff, damping, rest=False)
+    except TooLargeError as error:
+        rank = _at_random(whole, mass, opposite, stiff, damping, str(error))
+    motions = tuple(
+        motion
+        for factor in rank.factors
+        if (motion := _undamped(whole, mass, gyro, stiff, damping, factor)) is not None
+    )
+    return Dissipation(names, False, _semidefinite(damping, whole.known), rank, motions, pervasive)
+
+
+def _semidefinite(damping: Rows, known: Signs) -> bool:
+    """Whether all principal minors are known not to be negative."""
+    damped = [i for i, row in enumerate(damping) if any(x != 0 for x in row)]
+    if len(damped) > MOST_DAMPED:
+        return False
+    return all(
+        known.sign(determinant([[damping[i][j] for j in at] for i in at])) in ("positive", "nonnegative", "zero")
+        for size in range(1, len(damped) + 1)
+        for at in combinations(damped, size)
+    )
+
+
+def feels_everything(there: AtValues, damped: Any) -> bool:
+    """Whether D x' = 0 at all times leaves rest only, of M x'' + G x' + K x = 0: exactly."""
+    n = there.size
+    free = AtValues(there.mass, there.rates - damped, there.places, None)
+    a = free.state
+    row = fmpq_mat(n, 2 * n, [x for line in damped.tolist() for x in [fmpq(0)] * n + line])
+    felt: list[Any] = []
+    for _ in range(2 * n):
+        felt += row.tolist()
+        row = row * a
+    unit = [[fmpq(int(j == n + i)) for j in range(2 * n)] for i in range(n)]
+
+    def rank(rows: list[Any]) -> int:
+        return int(fmpq_mat(len(rows), 2 * n, [x for line in rows for x in line]).rank())
+
+    return rank(felt) == rank(felt + unit)
+
+
+def _undamped(
+    whole: Cleared, mass: Rows, gyro: Rows, stiff: Rows, damping: Rows, factor: Sequence[Formula]
+) -> Motion | None:
+    """The motion of a factor  c_0 + c_2 lambda^2,  with its shape where that is free of lambda; None for others."""
+    if len(factor) != 3 or not factor[1].is_zero:
+        return None
+    below, above = (whole.ring.project(x.polynomial) for x in (factor[0], factor[2]))
+    ring = whole.ring.whole
+    square = ring.reduce(ring.times(factor[0].polynomial, ring.reciprocal(factor[2].polynomial)))
+    kernel = annihilator(damping, whole.known, len(mass))[1]
+    shape: Sequence[Any] | None = None
+    if len(kernel) == 1:
+        shape = kernel[0]
+    elif all(x == 0 for row in gyro for x in row):
+        rows = [[k * above - m * below for k, m in zip(*pair, strict=True)] for pair in zip(stiff, mass, strict=True)]
+        reduced = [[sum((x * y for x, y in zip(row, v, strict=True)), below * 0) for v in kernel] for row in rows]
+        weights = _null_vector(reduced)
+        if weights is not None:
+            shape = [sum((w * v[i] for w, v in zip(weights, kernel, strict=True)), below * 0) for i in range(len(mass))]
+    return Motion(Formula(ring, square), None if shape is None else tuple(map(whole.formula, _primitive(shape))))
+
+
+def _primitive(vector: Sequence[Any]) -> list[Any]:
+    common = vector[0]
+    for x in vector[1:]:
+        common = common.gcd(x)
+    return [divmod(x, common)[0] for x in vector] if common != 0 else list(vector)
+
+
+def _null_vector(rows: Rows) -> list[Any] | None:
+    """y != 0 with R y = 0, of a matrix whose rank is one less than its width; None where it is less, or none is."""
+    width = len(rows[0])
+    for at in combinations(range(len(rows)), width - 1):
+        minors = []
+        for column in range(width):
+            block = [[rows[i][j] for j in range(width) if j != column] for i in at]
+            minors.append(determinant(block) * (-1) ** column)
+        if any(x != 0 for x in minors):
+            zero = minors[0] * 0
+            right = all(sum((a * b for a, b in zip(row, minors, strict=True)), zero) == 0 for row in rows)
+            return minors if right else None
+    return None
+
+
+# --- control ---
+
+
+def _controlled(
+    scene: Scene[Any], linear: Linearisation, signs: Signs, parts: Sequence[Sequence[int]], there: AtValues | None
+) -> tuple[tuple[Control, ...], tuple[tuple[str, ...], ...], Feedback | None, str]:
+    if linear.B is None:
+        return (), (), None, "there are no inputs"
+    whole = _cleared(scene, (*linear.matrices, linear.B), signs)
+    every = list(range(len(linear.coordinates)))
+    blocks = [every] if len(parts) == 1 else [every, *map(list, parts)]
+    control = tuple(_control(whole, linear, at, there) for at in blocks)
+    least = () if whole is None else _least(whole, linear)
+    if there is None:
+        return control, least, None, "the description gives no rational values of all parameters"
+    if there.size > MOST_COORDINATES:
+        return control, least, None, f"there are more than {MOST_COORDINATES} coordinates"
+    found = numbers.feedback(there)
+    return (control, least, None, found) if isinstance(found, str) else (control, least, found, "")
+
+
+def _control(whole: Cleared | None, linear: Linearisation, at: Sequence[int], there: AtValues | None) -> Control:
+    names = tuple(linear.coordinates[i] for i in at)
+    if whole is None:
+        rank = Rank(False, Sure.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
+    else:
+        rank = _ranked(whole, at, range(len(linear.inputs)))
+    if there is None:
+        return Control(names, linear.inputs, rank)
+    own = there.only(at)
+    return Control(names, linear.inputs, rank, numbers.is_controllable(own), numbers.is_stabilisable(own))
+
+
+def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
+    """Hautus' test of some coordinates with some inputs."""
+
+    def cut(rows: Rows) -> Rows:
+        return [[rows[i][j] for j in at] for i in at]
+
+    mass, damped, gyro, stiff, circulatory = (cut(rows) for rows in whole.matrices[:5])
+    inputs = [[whole.matrices[5][i][j] for j in columns] for i in at]
+    rates, places = _sum(damped, gyro), _sum(stiff, circulatory)
+    try:
+        return rank_of(whole, mass, rates, places, inputs)
+    except TooLargeError as error:
+        return _at_random(whole, mass, rates, places, inputs, str(error))
+
+
+def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows, why: str) -> Rank:
+    """Full rank at one point proves it for almost all parameters; a lower one proves nothing."""
+    source = random.Random(SEED)
+    for _ in range(POINTS):
+        point = [fmpq(source.randint(1, 997), source.randint(1, 97)) for _ in whole.ring.generators]
+
+        def at(rows: Rows, point: list[Any] = point) -> Any:
+            return fmpq_mat(len(rows), len(rows[0]), [fmpq(x(*point)) for row in rows for x in row])
+
+        there = AtValues(at(mass), at(rates), at(places), at(inputs))
+        if there.mass.det() != 0 and numbers.is_controllable(there):
+            return Rank(True, Sure.PROVED, (), None, why)
+    return Rank(False, Sure.UNDECIDED, why_not=why)
+
+
+def _sum(first: Rows, second: Rows) -> Rows:
+    return [[a + b for a, b in zip(*pair, strict=True)] for pair in zip(first, second, strict=True)]
+
+
+def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]:
+    """The smallest sets of inputs that suffice; none where that of smaller ones is open."""
+    count = len(linear.inputs)
+    if count > MOST_INPUTS:
+        return ()
+    for size in range(1, count + 1):
+        ranks = {
+            chosen: _ranked(whole, range(len(linear.coordinates)), chosen)
+            for chosen in combinations(range(count), size)
+        }
+        enough = [chosen for chosen, rank in ranks.items() if rank.full]
+        if enough:
+            return tuple(tuple(linear.inputs[j] for j in chosen) for chosen in enough)
+        if any(rank.sure is Sure.UNDECIDED for rank in ranks.values()):
+            return ()
+    return ()
