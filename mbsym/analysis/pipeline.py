@@ -308,7 +308,7 @@ class Analysis(Stages):
         says=True,
     )
 
-    stabilisation = Problem["Stabilisation"](
+    stabilisation: Problem[Stabilisation] = Problem(
         8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
     )
 
