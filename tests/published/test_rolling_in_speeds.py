@@ -107,6 +107,31 @@ def test_problems_4_to_6_of_the_disc_are_those_in_coordinates() -> None:
     assert [str(x) for x in found.linearisation.matrices] == [str(x) for x in plain.linearisation.matrices]
 
 
+def test_the_disc_has_the_equations_of_neimark_and_fufaev() -> None:
+    """In the axes of the leaning frame p = lean', q = spin' + yaw' sin(lean), s = yaw' cos(lean), as derived there:
+
+    5/4 p' = 3/2 s q - 1/4 s^2 tan(lean) + g/r sin(lean),   3/2 q' = -s p,   1/4 s' = 1/4 s p tan(lean) - 1/2 p q.
+    """
+    frame = "speeds: {p: lean_dot, q: spin_dot + yaw_dot*sin(lean), s: yaw_dot*cos(lean)}"
+    found = described(text_of("rolling-disc-speeds", ("speeds: {u1: omega1, u2: omega2, u3: omega3}", frame)))
+    source = random.Random(11)
+    for _ in range(3):
+        lean, p, q, s = (source.uniform(-1, 1) for _ in range(4))
+        at = AtState(
+            found, {"yaw": 0.7, "spin": 2.1, "lean": lean, "p": p, "q": q, "s": s, "m": 2, "r": 0.5, "g": 9.81}
+        )
+        embedded = at.equations.embedded
+        assert embedded.free == ("p", "q", "s")
+        unit = 2 * 0.5**2
+        assert at.matrix(embedded.mass_matrix) == pytest.approx(unit * np.diag([5 / 4, 3 / 2, 1 / 4]), abs=1e-13)
+        wanted = [
+            1.5 * s * q - s**2 * np.tan(lean) / 4 + 9.81 / 0.5 * np.sin(lean),
+            -s * p,
+            s * p * np.tan(lean) / 4 - p * q / 2,
+        ]
+        assert at.column(embedded.forcing) == pytest.approx(unit * np.array(wanted), abs=1e-12)
+
+
 @pytest.mark.parametrize("name", ["rolling-disc-speeds", "rolling-sphere-speeds"])
 def test_the_self_check_holds(name: str) -> None:
     outcomes = {check.name: check.outcome for check in shipped(name).checks}
