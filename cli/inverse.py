@@ -22,7 +22,13 @@ if TYPE_CHECKING:
 
 @click.command("inverse")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--motion", "motions", multiple=True, metavar="NAME=FORMULA", help="Of every coordinate, in t.")
+@click.option(
+    "--motion",
+    "motions",
+    multiple=True,
+    metavar="NAME=FORMULA",
+    help="Of a coordinate, in t; constraints may give others.",
+)
 @click.option("--time", "-t", "end", metavar="T", help="From 0 to T.  [required]")
 @click.option("--samples", default="1001", show_default=True, metavar="N", help="Rows.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
@@ -39,7 +45,8 @@ def command(
 ) -> None:
     """Find the inputs of FILE with which its coordinates move as given.
 
-    A motion is a formula in t and the parameters for every coordinate; its derivatives are exact.  The equations are
+    A motion is a formula in t and the parameters for every coordinate; its derivatives are exact.  With constraints it
+    is enough to give that of some from which the others follow, near the initial position.  The equations are
     solved for the inputs, which must enter linearly, at every time: where there are more equations than inputs in the
     sense of least squares, and what is left of the equations is told; where there are fewer, the smallest inputs are
     taken, and that is told.
@@ -68,14 +75,15 @@ def _command(
     from mbsym.numerics.scenario import Incomplete, scenario
     from mbsym.report.inverse_files import inputs_csv, inputs_figure, sentences
 
-    system, asked = read_description(file, "inverse", "inverse"), Options()
+    system, asked = read_description(file, moving="inverse"), Options()
     moved: dict[str, Expression] = {}
     time, count = asked.time(texts[0]), asked.whole("--samples", texts[1], 2, 10**6)
     overrides: dict[str, Expression] = {}
     if system is not None:
         for text in motions:
             read_formula(text, system, MOTIONS, moved, asked)
-        for name in system.coordinates:
+        # With constraints some may follow from the others; whether they do is seen at every time.
+        for name in system.coordinates if not (system.constraints and motions) else ():
             if not any(text.partition("=")[0].strip() == name for text in motions):
                 hint = f'for example --motion "{name}=0"'
                 asked.complain("--motion", "missing-option", f"no motion is given for {name}", hint)

@@ -418,7 +418,8 @@ def inverse_dynamics(
         >>> found.exact, [round(float(x), 12) for x in found["F"]]  # at a constant speed the friction c p' remains
         (True, [0.1, 0.1, 0.1])
 
-    ``motion`` gives every coordinate as a smooth formula in t, parameters and prescribed motions.  The equations are
+    ``motion`` gives every coordinate as a smooth formula in t, parameters and prescribed motions; with constraints some
+    of them, from which they give the others, near the initial position.  The equations are
     solved for the inputs at every time: in the sense of least squares where there are more of them (``exact`` and
     ``left`` say what remains), by the smallest inputs where these are not ``unique``.
 

@@ -89,20 +89,25 @@ class InverseDynamics:
 def inverse_dynamics(
     system: System, motion: Mapping[str, Expression], overrides: Mapping[str, Expression], times: Array
 ) -> InverseDynamics:
-    """The inputs at ``times`` for q(t) = ``motion``: expressions in t, parameters and prescribed motions, of every q.
+    """The inputs at ``times`` for q(t) = ``motion``: expressions in t, parameters and prescribed motions, of every q;
+    with constraints of some from which the others follow.
 
     ``overrides`` replace numbers of parameters.  Raises NotLinear; ValueError where the system has no inputs, or the
     motion or an input is not finite; ``mbsym.numerics.scenario.Incomplete`` where a number is missing.
     """
-    if system.constraints or system.variables:
-        raise ValueError("inverse dynamics knows neither constraints nor speeds yet")
+    if system.variables:
+        raise ValueError("inverse dynamics knows no speeds yet")
     if not system.inputs:
         raise ValueError("the description has no inputs")
+    if system.constraints:
+        from mbsym.numerics.inverse_constrained import inverse_constrained  # it builds on this module
+
+        return inverse_constrained(system, motion, overrides, times)
     given = scenario(system, overrides, state=False)
     program, states, needed = _program(system, given, motion)
     inputs = [program.input(name) for name in system.input_names]
     slopes = jacobian(program, needed, inputs)
-    _check_linear(program, system, slopes)
+    check_linear(program, system, slopes)
     n, k = len(system.coordinates), len(inputs)
     outputs = (*states, *needed, *(x for row in slopes for x in row))
     code = Code(program, ("t", *system.input_names), outputs)
@@ -138,7 +143,7 @@ def _program(
     chains = [[motion[name]] for name in system.coordinates]
     for chain in chains:
         for _ in range(2):
-            chain.append(_rate(chain[-1], rates))
+            chain.append(rate_of(chain[-1], rates))
     lowered = [[lower(x) for x in chain] for chain in chains]
     for name, (place, speed, acceleration) in zip(system.coordinates, lowered, strict=True):
         program.bound[name] = place
@@ -152,7 +157,7 @@ def _program(
     return program, states, [needed[name] for name in system.coordinates]
 
 
-def _rate(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
+def rate_of(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
     """d/dt, prescribed quantities running at their rates."""
     total = differentiate(expression, "t")
     for name, rate in rates.items():
@@ -160,7 +165,7 @@ def _rate(expression: Expression, rates: Mapping[str, Expression]) -> Expression
     return total
 
 
-def _check_linear(program: Program, system: System, slopes: tuple[tuple[Node, ...], ...]) -> None:
+def check_linear(program: Program, system: System, slopes: tuple[tuple[Node, ...], ...]) -> None:
     live = program.live([x for row in slopes for x in row])
     held = {str(x.payload) for x in map(program.instructions.__getitem__, live) if x.operation == "input"}
     bent = [name for name in system.input_names if name in held]

@@ -48,7 +48,8 @@ def inputs_figure(found: InverseDynamics, formats: Sequence[str]) -> dict[str, b
 def sentences(found: InverseDynamics) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     n, k = len(found.system.coordinates), len(found.names)
-    yield "equations", f"{counted(n, 'equation', 'equations')} for {counted(k, 'input', 'inputs')}"
+    tied = " and the forces of constraints" if found.system.constraints else ""
+    yield "equations", f"{counted(n, 'equation', 'equations')} for {counted(k, 'input', 'inputs')}{tied}"
     for name, values in zip(found.names, found.inputs, strict=True):
         yield name, f"from {values.min():.6g} to {values.max():.6g}"
     left = f"{found.left:.1e} of the size of their terms"

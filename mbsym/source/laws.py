@@ -45,9 +45,10 @@ def read_laws(system: System, given: Mapping[str, Expression | Fraction | float 
 def read_motions(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Motions of all coordinates by name as smooth expressions in t, parameters and prescribed motions.
 
-    Raises ValueError with everything that is wrong, coordinates without a motion included.
+    With constraints some of them, one at least.  Raises ValueError with everything that is wrong, coordinates without a
+    motion included.
     """
-    return _read(system, given, system.coordinates, "coordinate", MOTION, True)
+    return _read(system, given, system.coordinates, "coordinate", MOTION, not (system.constraints and given))
 
 
 def _read(

@@ -1,0 +1,129 @@
+"""Inputs of a given motion of systems with constraints: what follows by hand, and what must be refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.numerics.inverse import inverse_dynamics
+from mbsym.source import read
+from mbsym_cli.main import main
+
+#: A pendulum whose bob is tied to its pivot: with q the others follow, and (m l^2 + J) q'' + m g l sin q = u.
+PENDULUM = """
+mbsym: 1
+name: A tied pendulum
+parameters: {m: 2, g: 9.81, J: 1/10}
+inputs: {u: {meaning: a torque}}
+bodies:
+  - {name: bob, attached to: 0, mass: m, connection point: [x, y, 0], coordinates: [x, y, q],
+     rotation: {axes: [3], angles: [q]}, inertia about: mass centre, inertia: [J, J, J]}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, -1, 0]}
+  - generalised force: {q: u}
+constraints:
+  - coincide: [{body: bob, point: [0, 1, 0]}, {body: 0, point: [0, 0, 0]}]
+initial: {q: 0, x: 0, y: -1}
+"""
+
+#: A wheel that rolls: with the torque u on it and a force v on its centre (m + J/r^2) r phi'' = u/r + v.
+WHEEL = """
+mbsym: 1
+name: A wheel
+parameters: {m: 2, J: 3, r: 1/2}
+inputs: {u: {meaning: a torque}, v: {meaning: a force}}
+bodies:
+  - {name: wheel, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x, phi],
+     rotation: {axes: [3], angles: [phi]}, inertia about: mass centre, inertia: [J, J, J]}
+loads:
+  - generalised force: {phi: u, x: v}
+constraints:
+  - KIND: x_dot = r*phi_dot
+initial: {x: 0, phi: 0}
+"""
+
+
+def found_for(text: str, **motion: str) -> Any:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    given = {name: parse_expression(one, Complaints(), lambda a, b: Span(1, 1, 1)) for name, one in motion.items()}
+    return inverse_dynamics(system, given, {}, np.linspace(0.0, 2.0, 41))  # type: ignore[arg-type]
+
+
+def test_the_torque_of_a_pendulum_by_its_angle_alone() -> None:
+    found = found_for(PENDULUM, q="sin(3*t)")
+    q, speed = np.sin(3 * found.times), -9 * np.sin(3 * found.times)
+    assert found["u"] == pytest.approx(2.1 * speed + 2 * 9.81 * np.sin(q), abs=1e-10)
+    assert found["x"] == pytest.approx(np.sin(q), abs=1e-12)
+    assert found.accelerations[1] == pytest.approx(
+        np.cos(q) * (3 * np.cos(3 * found.times)) ** 2 + np.sin(q) * speed, abs=1e-9
+    )
+    assert found.exact
+    assert found.unique
+
+
+def test_all_coordinates_may_be_given_if_they_satisfy_the_constraints() -> None:
+    alone = found_for(PENDULUM, q="t")
+    assert found_for(PENDULUM, q="t", x="sin(t)", y="-cos(t)")["u"] == pytest.approx(alone["u"], abs=1e-10)
+    with pytest.raises(ValueError, match="does not satisfy coincide 1"):
+        found_for(PENDULUM, q="t", x="sin(t)*1.001", y="-cos(t)")
+
+
+def test_a_wheel_with_one_input_more_than_freedoms() -> None:
+    """u and v do the same: each solution has u/r + v = (m + J/r^2) r phi''; the ranks say that there are others."""
+    found = found_for(WHEEL.replace("KIND: x_dot = r*phi_dot", "relation: x = r*phi"), phi="t**2")
+    assert 2 * found["u"] + found["v"] == pytest.approx(np.full(41, (2 + 12) * 0.5 * 2), abs=1e-10)
+    assert found.exact
+    assert not found.unique
+
+
+def test_velocity_constraints_leave_positions_open() -> None:
+    text = WHEEL.replace("KIND", "velocity")
+    with pytest.raises(ValueError, match="the motion of x does not follow"):
+        found_for(text, phi="t**2")
+    both = found_for(text, phi="t**2", x="t**2/2")
+    assert 2 * both["u"] + both["v"] == pytest.approx(np.full(41, 14.0), abs=1e-10)
+
+
+def test_a_motion_that_no_input_gives_is_told() -> None:
+    """The input pulls on the pivot's side only: the constraint takes it all."""
+    found = found_for(PENDULUM.replace("generalised force: {q: u}", PULL), q="t**2")
+    assert not found.exact
+    assert not found.unique
+    assert found["u"] == pytest.approx(np.zeros(41), abs=1e-9)
+    # What is left does the work that is missing along (cos q, sin q, 1), the displacement that the tie allows.
+    q = found.times**2
+    work = found.residual[0] * np.cos(q) + found.residual[1] * np.sin(q) + found.residual[2]
+    assert -work == pytest.approx(4.2 + 19.62 * np.sin(q), abs=1e-9)
+
+
+PULL = "force: {body: bob, point: [0, 1, 0], components: [u, 0, 0], axes: 0}"
+
+
+def test_the_command(tmp_path: Path) -> None:
+    file = tmp_path / "s.yaml"
+    file.write_text(PENDULUM, encoding="utf-8")
+    words = ["inverse", str(file), "--time", "1", "--motion", "q=t**2", "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 0, result.output + result.stderr
+    assert "forces of constraints" in result.stdout
+    assert (tmp_path / "out" / "inputs.csv").read_text().startswith("t,u,x,y,q")
+    wrong = CliRunner().invoke(main, [*words, "--motion", "x=t"])
+    assert wrong.exit_code == 1
+    assert "does not satisfy coincide 1" in wrong.stderr
+
+
+def test_python_takes_the_motion_of_some(tmp_path: Path) -> None:
+    file = tmp_path / "s.yaml"
+    file.write_text(PENDULUM, encoding="utf-8")
+    found = mbsym.inverse_dynamics(str(file), {"q": "t"}, [0.0, 1.0])
+    assert found["u"] == pytest.approx([0.0, 19.62 * np.sin(1.0)], abs=1e-12)
+    with pytest.raises(ValueError, match="no motion is given for x"):
+        mbsym.inverse_dynamics(str(file), {}, [0.0, 1.0])
