@@ -55,6 +55,11 @@ class Table:
         """Whether f itself jumps, at an end."""
         return self.outside == OUTSIDE_ZERO and bool(self.points[0][1] or self.points[-1][1])
 
+    @property
+    def smooth(self) -> bool:
+        """Whether f'' is continuous wherever there is f: a motion may follow it, its acceleration has no jump."""
+        return self.between == CUBIC and self.outside in (EXTRAPOLATE, ENDS)
+
     @cached_property
     def curve(self) -> Curve:
         """f between the points, and outside as far as it does not jump there."""

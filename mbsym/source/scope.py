@@ -167,6 +167,8 @@ class Scope:
         else:
             kind = "jump" if _kinked_as(node) in JUMPS else "kink"
             message = f"{allowed.what} may not hold {node.function}, which has a {kind}"
+            if node.table is not None:
+                hint = "smooth are tables with between: cubic, outside: extrapolate or error"
         self.complaints.error("not-smooth", message, node.span, hint)
 
     def _bound_points(self, node: Call) -> None:
@@ -250,7 +252,7 @@ class Scope:
 def _kinked_as(node: Call) -> str:
     """The function with a kink or a jump that a call is of, for a table one as smooth; "" where it is smooth."""
     if node.table is not None:
-        return "step" if node.table.jumps else "abs"
+        return "" if node.table.smooth else "step" if node.table.jumps else "abs"
     return node.function if node.function in KINKED else ""
 
 
