@@ -61,7 +61,7 @@ class SpeedForm:
         self.by_quaternion = tuple(body for body in self.oriented if isinstance(body.orientation[0], Quaternion))
         self.by_vectors = tuple(body for body in self.oriented if body not in self.by_quaternion)
         #: The angles that these replace.
-        self.replaced = frozenset(name for body in self.oriented for name in body.coordinates)
+        self.replaced = frozenset(name for body in self.oriented for name in body.own_angles)
         self.coordinates = tuple(name for name in system.coordinates if name not in self.replaced)
         self._solve()
 
@@ -187,8 +187,8 @@ class SpeedForm:
     def _position_names(self) -> list[str]:
         found: list[str] = []
         for body in self.system.bodies:
-            vectors = [name for vector in body.orientation for name in vector.components]
-            found += vectors or [name for name in body.coordinates if name not in self.replaced]
+            found += [name for name in body.coordinates if name not in self.replaced]
+            found += [name for vector in body.orientation for name in vector.components]
         return found
 
     def _variable(self, name: str) -> Variable:
@@ -317,6 +317,20 @@ class SpeedForm:
                 total = total + e * e
             found.append(total)
         return found
+
+    def shortened(self, x: Polynomial) -> Polynomial:
+        """x modulo |e|^2 - 1 of quaternions, as far as that makes it shorter: m |e|^4 is m."""
+        ring, again = self.ring, True
+        while again and len(x) > 1:
+            again = False
+            for relation in self._norms:
+                places = [k for k, d in enumerate(relation.degrees()) if d]
+                degrees = x.degrees()
+                if all(degrees[k] for k in places):
+                    rest = ring.reduce(divmod(x, relation)[1])
+                    if len(rest) < len(x):
+                        x, again = rest, True
+        return x
 
     def _hides(self, x: Polynomial) -> bool:
         """Whether a root, reciprocal or function that holds a quaternion is in it."""

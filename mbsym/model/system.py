@@ -28,7 +28,7 @@ from mbsym.expressions.place import Span
 from mbsym.expressions.rates import acceleration_name as acceleration_name
 from mbsym.expressions.rates import velocity_name as velocity_name
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import Expression, names
 from mbsym.model.basics import INERTIAL as INERTIAL
 from mbsym.model.basics import Point as Point
 from mbsym.model.basics import Vector, _span
@@ -152,6 +152,12 @@ class Body:
     speeds: tuple[Speed, ...] = ()
     orientation: tuple[UnitVector | Quaternion, ...] = ()
     span: Span | None = _span()
+
+    @property
+    def own_angles(self) -> tuple[str, ...]:
+        """The coordinates of its joint that turn it."""
+        turning = {name for _, angle in self.rotation.turns() for name in names(angle)}
+        return tuple(name for name in self.coordinates if name in turning)
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,7 +114,7 @@ class _Start:
         if not given:
             self._from_angles(body)
             return
-        self.told |= {*body.coordinates}
+        self.told |= {*body.own_angles}
         lacking = [name for name in named if name not in self.own]
         if lacking:
             self.missing += [f"{name} (its initial value)" for name in lacking]
@@ -141,8 +141,7 @@ class _Start:
 
     def _from_angles(self, body: Body) -> None:
         """The components where the angles are given."""
-        names = [name for name in body.coordinates if self.positions[name] is None]
-        if names:
+        if any(self.positions[name] is None for name in body.own_angles):
             return  # said where positions are missing
         values = self.numbers | {name: x for name, x in self.positions.items() if x is not None}
         first = body.orientation[0]

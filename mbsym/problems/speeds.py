@@ -93,7 +93,7 @@ class SpeedEnergy(Energy):
 def energy(form: SpeedForm, scene: Scene) -> SpeedEnergy:
     """T, split by powers of the speeds, and U."""
     ring = form.ring
-    kinetic, potential = kinetic_energy(scene), force_function(scene)
+    kinetic, potential = form.shortened(kinetic_energy(scene)), form.shortened(force_function(scene))
     at_rest = {u.index: ring.zero for u in form.speeds}
     momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
     return SpeedEnergy(
@@ -114,11 +114,13 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
     """
     ring, loads = form.ring, scene.system.loads
     kane = Kane(form, scene)
-    needed, supplied = kane.inertia(), kane.active(loads)
-    others = kane.active([load for load in loads if not load.conservative])
+    needed, supplied = list(map(form.shortened, kane.inertia())), list(map(form.shortened, kane.active(loads)))
+    others = list(map(form.shortened, kane.active([load for load in loads if not load.conservative])))
     still = {u.rate_index: ring.zero for u in form.speeds}
-    forcing = [ring.reduce(b - ring.substitute(a, still)) for a, b in zip(needed, supplied, strict=True)]
-    mass = [[a.derivative(u.rate_index) for u in form.speeds] for a in needed]
+    forcing = [
+        form.shortened(ring.reduce(b - ring.substitute(a, still))) for a, b in zip(needed, supplied, strict=True)
+    ]
+    mass = [[form.shortened(a.derivative(u.rate_index)) for u in form.speeds] for a in needed]
     names = tuple(s.name for s in form.positions)
     occurring = {s.name for s in form.occurring([*needed, *supplied, *rows])}
     told = [(body.name, one) for body in form.oriented for one in body.orientation if set(one.components) & occurring]

@@ -235,7 +235,7 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
     whole = isinstance(body.orientation[0], Quaternion)
     what = "a quaternion" if whole else "unit vectors"
     turns = f"{what} {'turns' if whole else 'turn'} with the body"
-    own = {name for _, angle in body.rotation.turns() for name in names(angle)} & {*body.coordinates}
+    own = {*body.own_angles}
     if len(own) != 3:
         message = f"this joint has not three angles of its own: {what} would be more than it needs"
         reading.error("orientation", message, span, "leave 'orientation' out")

@@ -180,3 +180,61 @@ def test_what_goes_with_coordinates_only_is_refused(jacobi: Analysis) -> None:
         mbsym.simulate(jacobi, 1.0, certify=1e-9)
     with pytest.raises(ValueError, match="no variables angles"):
         mbsym.simulate(jacobi, 1.0, variables="angles")
+
+
+CHAIN = """
+mbsym: 1
+name: A body on a turning table, an arm on the body
+parameters: {m: positive, g: positive, k: positive, c: positive}
+values: {m: 2, g: 9.81, k: 3, c: 1/5}
+prescribed: {chi: {rate: 2, initial: 3/10}}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - name: base
+    attached to: table
+    rotation: {axes: [3, 1, 3], angles: [a, b, d]}
+    connection point: [x, 0, z]
+    coordinates: [x, z, a, b, d]
+    mass: m
+    mass centre: [1/10, 0, 1/5]
+    inertia about: mass centre
+    inertia: [3/10, 2/5, 1/2]
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: {e: quaternion}
+  - name: arm
+    attached to: base
+    connection point: [7/10, 0, 1/10]
+    rotation: {axes: [1, 2, 3], angles: [u, v, w]}
+    mass: m/3
+    mass centre: [0, 3/10, 0]
+    inertia about: mass centre
+    inertia: [1/10, 2/15, 1/6]
+    speeds: {p2: omega1, q2: omega2, r2: omega3}
+    orientation: {h: 2}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+  - spring: {coordinate: x, stiffness: k}
+  - generalized force: {z: -c*sign(z_dot)}
+initial:
+  x: {position: 0.1, velocity: 0.2}
+  z: {position: 0, velocity: 1}
+  a: {position: 0.3, velocity: 1}
+  b: {position: 1, velocity: 0.5}
+  d: {position: 0.2, velocity: 2}
+  u: {position: 0.1, velocity: 1}
+  v: {position: 0.4, velocity: -1}
+  w: {position: 0.3, velocity: 0.3}
+"""
+
+
+def test_a_tree_of_such_bodies_with_dry_friction_on_a_base_that_turns() -> None:
+    """Quaternion and unit vectors, translations besides, a force that jumps, something prescribed: as in angles."""
+    analysis = mbsym.loads(CHAIN, (3,))
+    runs = [
+        mbsym.simulate(analysis, 1.0, tolerance=1e-11, samples=11, estimate=False, variables=variables)
+        for variables in ("declared", "coordinates")
+    ]
+    for name in analysis.system.variables:
+        assert np.allclose(runs[0][name], runs[1][name], rtol=0, atol=1e-9)
+    assert runs[0].conservation.standing is Standing.CHANGING
+    assert max(float(np.max(x)) for x in norm_drifts(runs[0].dynamics, runs[0].trajectory.states).values()) < 1e-14  # type: ignore[arg-type]

@@ -123,3 +123,33 @@ def test_relations_hold_body_by_body() -> None:
 def test_it_is_written_as_it_was_read(top: Analysis) -> None:
     for spelled in (to_yaml(top.system), to_text(top.system)):
         assert mbsym.loads(spelled).system.bodies[0].orientation == top.system.bodies[0].orientation
+
+
+def test_a_body_that_moves_and_turns_keeps_its_places_beside_its_quaternion() -> None:
+    """Newton's equations of the mass centre, which is the origin of the joint, beside Euler's."""
+    analysis = mbsym.loads("""
+mbsym: 1
+name: Free body in space
+parameters: {A: positive, B: positive, C: positive, m: positive, g: positive}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}
+    connection point: [x, y, z]
+    coordinates: [x, y, z, psi, theta, phi]
+    mass: m
+    inertia about: mass centre
+    inertia: [A, B, C]
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: quaternion
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+claims:
+  - {claim: equation of motion, of: p, equals: A*p_dot + (C - B)*q*r}
+  - {claim: equation of motion, of: z, equals: m*(z_ddot + g)}
+""")
+    assert analysis.equations.positions == ("x", "y", "z", "e0", "e1", "e2", "e3")
+    assert analysis.equations.speeds == ("p", "q", "r", "x_dot", "y_dot", "z_dot")
+    assert set(analysis.equations.aside) >= {"e0", "e1", "e2", "e3"}
+    assert {check.outcome for check in analysis.checks} == {EXACT}
+    assert all(claim.holds for claim in analysis.claims)
