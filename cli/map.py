@@ -20,7 +20,7 @@ FORMATS = ("svg", "pdf", "png", "json", "tex")
 @click.command("map")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--x", "across", metavar="NAME=LOW:HIGH", help="The parameter or symbol to the right, and its interval.")
-@click.option("--y", "up", metavar="NAME=LOW:HIGH", help="The one upwards.")
+@click.option("--y", "up", metavar="NAME=LOW:HIGH", help="The one upwards; without it: a line.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Another's number; repeatable.")
 @click.option(
     "--of", "of", default="stability", show_default=True, metavar="WHAT", help="stability, or signature: of K."
@@ -44,12 +44,13 @@ def command(
     out: Path | None,
     quiet: bool,
 ) -> None:
-    """Divide a plane of two parameters of FILE into regions of one verdict of problem 6, exactly.
+    """Divide a plane of two parameters of FILE, or a line of one, into regions of one verdict of problem 6, exactly.
 
     The boundaries are the polynomials on which the verdict depends (constant terms, Hurwitz minors, discriminants,
     det K, assumptions, triangle inequalities of inertias).  Their arrangement is exact: every region is judged at a
-    rational point, every arc and corner at an algebraic one, each with its theorem.  Numbers are taken exactly, from
-    the description (values:) or --set; axes and settings are parameters, or symbols of the notation.
+    rational point, every arc and corner at an algebraic one, each with its theorem.  With --x alone a line is divided
+    into intervals.  Numbers are taken exactly, from the description (values:) or --set; axes and settings are
+    parameters, or symbols of the notation.
 
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
@@ -59,6 +60,7 @@ def command(
     Examples:
       mbsym map systems/satellite.yaml --x alpha=-1:1 --y gamma=0:1 --set p1=2/5 --set p2=1/5
       mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --locate points.csv
+      mbsym map systems/triangular-points.yaml --x mu=0:1/2
     """
     leave(
         file,
@@ -81,7 +83,7 @@ def _command(
     from mbsym.report.language import LANGUAGES
     from mbsym_cli.map_run import Request, read_located, run
 
-    system = read_held(file, "map", constrained=True)
+    system = read_held(file, "map", constrained=True, moving=False)
     asked = Options()
     what = asked.word("--of", of, KINDS, "map")
     wanted = asked.words("--format", formats, FORMATS, "format")
@@ -89,11 +91,13 @@ def _command(
     if system is None:
         asked.refused()
         return BAD_INPUT
-    axes = [read_axis(text, name, system, asked) for name, text in zip(("--x", "--y"), texts, strict=True)]
+    named = (("--x", texts[0]), *([("--y", texts[1])] if texts[1] is not None else []))
+    axes = [read_axis(text, name, system, asked) for name, text in named]
     found = [axis for axis in axes if axis is not None]
     values = read_settings(settings, system, asked)
     distinct(found, values, asked)
-    points = None if locate is None else read_located(locate, [axis.name for axis in found], asked)
+    whole = len(found) == len(axes)
+    points = None if locate is None or not whole else read_located(locate, [axis.name for axis in found], asked)
     code = prevented(file, folder, True, asked)
     if code:
         return code

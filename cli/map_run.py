@@ -17,7 +17,7 @@ from mbsym_cli.options import Options
 from mbsym_cli.section_options import complain_unfit
 
 if TYPE_CHECKING:
-    from mbsym.maps.result import PlaneMap
+    from mbsym.maps.result import LineMap, PlaneMap
     from mbsym.maps.section import Axis
     from mbsym.model.system import System
     from mbsym.report.map_located import Points
@@ -59,7 +59,7 @@ def read_located(path: Path, axes: Sequence[str], asked: Options) -> Points | No
     except UnicodeDecodeError:
         asked.complain("--locate", "unreadable", f"{printable(path)} is no text in UTF-8")
         return None
-    if len(axes) < 2:
+    if not axes:
         return None  # that is complained about already
     found, wrong = read_points(text, axes)
     hint = f"the columns {' and '.join(axes)} hold rational or decimal numbers"
@@ -74,6 +74,7 @@ def run(request: Request) -> int:
     """The exit code."""
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
+    from mbsym.maps.line_map import line_map
     from mbsym.maps.mapping import plane_map
     from mbsym.maps.result import Of
     from mbsym.maps.section import Unfit
@@ -82,7 +83,12 @@ def run(request: Request) -> int:
     try:
         with watched(request.quiet, request.file.name) as watch:
             analysis = Analysis(request.system)
-            found = plane_map(analysis, request.axes, request.settings, Of(request.of), watch)
+            of = Of(request.of)
+            found: PlaneMap | LineMap
+            if len(request.axes) == 1:
+                found = line_map(analysis, request.axes[0], request.settings, of, watch)
+            else:
+                found = plane_map(analysis, request.axes, request.settings, of, watch)
             watch("drawing", 0, 1)
             files = _files(request, found)
         deliver(request.folder, files, "map")
@@ -103,7 +109,7 @@ def run(request: Request) -> int:
         show_map(request.file, request.system, found, request.folder, list(files), time.perf_counter() - started)
     if found.check is not None and not found.check.holds:
         for one in found.check.findings[:MOST_TOLD]:
-            what = "the plane" if one.region is None and one.arc is None else ""
+            what = "the whole" if one.region is None and one.arc is None else ""
             what = what or (f"region {one.region}" if one.region is not None else f"arc {one.arc}")
             complain(request.file, f"withdrawn, as the map's own check fails in {what}: {one.mistake}")
         return FAILED
@@ -113,7 +119,8 @@ def run(request: Request) -> int:
     return OK
 
 
-def _files(request: Request, found: PlaneMap) -> dict[str, str | bytes]:
+def _files(request: Request, found: PlaneMap | LineMap) -> dict[str, str | bytes]:
+    from mbsym.maps.result import LineMap, PlaneMap
     from mbsym.report.language import Language
     from mbsym.report.map_json import map_json
     from mbsym.report.map_tex import map_tex
@@ -121,7 +128,11 @@ def _files(request: Request, found: PlaneMap) -> dict[str, str | bytes]:
     language = Language(request.language)
     files: dict[str, str | bytes] = {}
     pictures = [kind for kind in request.formats if kind in ("svg", "pdf", "png")]
-    if pictures:
+    if pictures and isinstance(found, LineMap):
+        from mbsym.report.line_figure import line_figure
+
+        files |= line_figure(request.system, found, language, pictures)
+    elif pictures and isinstance(found, PlaneMap):
         from mbsym.report.map_figure import map_figure
 
         files |= map_figure(request.system, found, language, pictures)

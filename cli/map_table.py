@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
+from flint import fmpq
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from mbsym.expressions.counting import counted
-from mbsym.maps.result import Of, PlaneMap, Standing, Stratum
+from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.model.system import System
-from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words
+from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words, telling
 from mbsym_cli.console import console, printable
 
 
-def show_map(file: Path, system: System, found: PlaneMap, folder: Path, names: Sequence[str], seconds: float) -> None:
+def show_map(
+    file: Path, system: System, found: PlaneMap | LineMap, folder: Path, names: Sequence[str], seconds: float
+) -> None:
     """Prints a row for each verdict, then what there is to know besides."""
     out = console()
     out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
@@ -26,26 +30,27 @@ def show_map(file: Path, system: System, found: PlaneMap, folder: Path, names: S
     out.print(Text.assemble("  files in ", (printable(folder), "bold"), ": ", ", ".join(names)))
 
 
-def _table(found: PlaneMap) -> Table:
+def _table(found: PlaneMap | LineMap) -> Table:
     rows: dict[tuple[str, str], tuple[int, float]] = {}
     for stratum, (area, _) in zip(found.regions, found.areas, strict=True):
         key = _row(found, stratum)
         count, total = rows.get(key, (0, 0.0))
         rows[key] = count + 1, total + area
-    whole = float(found.arrangement.box.area)
+    whole = found.whole
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
     table.add_column("verdict" if found.of is Of.STABILITY else "signature of K", overflow="fold")
     table.add_column("theorem", style="dim", overflow="fold")
-    table.add_column("regions", justify="right")
-    table.add_column("area", justify="right")
-    table.add_column("of the plane", justify="right")
+    line = isinstance(found, LineMap)
+    table.add_column("intervals" if line else "regions", justify="right")
+    table.add_column("length" if line else "area", justify="right")
+    table.add_column("of the whole", justify="right")
     for (verdict, theorem), (count, area) in sorted(rows.items(), key=lambda item: -item[1][1]):
         share = 100 * area / whole
         table.add_row(escape(verdict), escape(theorem), str(count), f"{area:.4g}", f"{share:.2f} %")
     return table
 
 
-def _row(found: PlaneMap, stratum: Stratum) -> tuple[str, str]:
+def _row(found: PlaneMap | LineMap, stratum: Stratum) -> tuple[str, str]:
     judged = stratum.judged
     if judged is None:
         return STANDINGS[stratum.standing], ""
@@ -54,23 +59,31 @@ def _row(found: PlaneMap, stratum: Stratum) -> tuple[str, str]:
     return row_words(judged), judged.verdict.theorem
 
 
-def remarks(found: PlaneMap) -> list[str]:
+def remarks(found: PlaneMap | LineMap) -> list[str]:
     """Sentences on what the table does not show."""
-    made = found.arrangement
-    told = [
-        f"{counted(len(made.regions), 'region')}, {counted(len(made.arcs), 'arc')} and "
-        f"{counted(len(made.corners), 'corner')} in map.json, each with an exact point"
-    ]
+    if isinstance(found, LineMap):
+        told = [
+            f"at {_exactly(there.number)}: {_why(found, one)}"
+            for one, there in zip(found.corners, found.line.zeros, strict=True)
+            if found.changes(one)
+        ]
+    else:
+        told = [
+            f"{counted(len(found.regions), 'region')}, {counted(len(found.arcs), 'arc')} and "
+            f"{counted(len(found.corners), 'corner')} in map.json, each with an exact point"
+        ]
     if not any(factor for factor in found.boundaries.factors if max(factor.degrees(), default=0) > 0):
-        told.append("no condition depends on the axes: one verdict holds in the whole plane")
+        told.append("no condition depends on the axes: one verdict holds everywhere")
     vanishing = dict.fromkeys(condition_words(one, found.section) for one in found.boundaries.vanishing)
-    told += [f"an equality in the whole plane: {words}" for words in vanishing]
+    told += [f"an equality everywhere: {words}" for words in vanishing]
     if found.admissibility.left_out:
         listed = ", ".join(found.admissibility.left_out)
         told.append(f"not expressible in the axes, so not looked at: {listed}")
     large = sum(one.standing is Standing.TOO_LARGE for one in found.strata)
     if large:
-        told.append(f"{counted(large, 'exact point')} of arcs and corners too large to be decided")
+        told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
+    if found.section.constant is not None:
+        told.append(f"not checked by another route: {found.section.constant.text} stands among the coefficients")
     if found.check is not None and found.check.holds:
         arcs = f" and {counted(found.check.arcs, 'arc')}" if found.check.arcs else ""
         told.append(
@@ -78,3 +91,20 @@ def remarks(found: PlaneMap) -> list[str]:
             "them eigenvalues in balls confirm the counts"
         )
     return told
+
+
+def _exactly(x: Any) -> str:
+    """A rational number, or the first digits of an algebraic one."""
+    return str(x) if isinstance(x, fmpq) else f"{float(x):.10g} ({_degree(x)})"
+
+
+def _degree(x: Any) -> str:
+    return f"exactly: a root of a polynomial of degree {int(x.polynomial.degree())}, in map.json"
+
+
+def _why(found: LineMap, one: Stratum) -> str:
+    """The condition that is an equality there, and what is said of the point."""
+    of = [found.boundaries.conditions[k] for k in found.line.zeros[one.number].factors]
+    words = "; ".join(dict.fromkeys(condition_words(telling(x), found.section) for x in of))
+    border = one.judged.border if one.judged is not None else None
+    return words + (f": {border}" if border is not None else "")

@@ -50,15 +50,16 @@ input_options = group(
 )
 
 
-def read_held(file: Path, command: str, constrained: bool = False) -> System | None:
+def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
     """The system of a file with its inputs at the values of the unperturbed motion, which is said.
 
-    A command that is ``constrained`` knows constraints, others refuse them.
+    A command that is ``constrained`` knows constraints, others refuse them; one that is not about ``moving`` bodies
+    takes systems that are given by their matrices, too.
     """
     from mbsym.expressions.tree import text
     from mbsym.model.driven import held
 
-    system = read_description(file, "" if constrained else command, command)
+    system = read_description(file, "" if constrained else command, command if moving else "")
     if system is None or not system.inputs:
         return system
     values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)

@@ -21,7 +21,7 @@ whether they coincide or not, and discriminants and resultants are left out.  Su
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from mbsym.algebra.characteristic import (
@@ -36,6 +36,8 @@ from mbsym.algebra.characteristic import (
     resultant,
 )
 from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import TooLargeError
+from mbsym.maps.constant import Constant
 from mbsym.maps.section import Section
 from mbsym.problems.stability.linear_form import LinearSystem, add, is_potential, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant
@@ -99,7 +101,9 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     found = list(further)
     found += [Condition(Origin.UNDEFINED, x) for x in section.undefined]
     for number, part in enumerate(section.parts):
-        found += conditions_of(part, number)
+        found += conditions_of(part, number, section=section)
+    if section.constant is not None:
+        found = [replace(x, polynomial=section.norm(section.reduced(x.polynomial))) for x in found]
     factors: list[Polynomial] = []
     places: dict[str, int] = {}
     conditions: list[list[Condition]] = []
@@ -120,22 +124,25 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     return Boundaries(tuple(factors), tuple(map(tuple, conditions)), tuple(vanishing))
 
 
-def conditions_of(system: LinearSystem, part: int, reduced: bool = False) -> Iterator[Condition]:
-    """The boundary polynomials of one subsystem."""
+def conditions_of(
+    system: LinearSystem, part: int, reduced: bool = False, section: Section | None = None
+) -> Iterator[Condition]:
+    """The boundary polynomials of one subsystem; ``section`` is asked only where it has a constant."""
+    constant = None if section is None else section.constant
 
     def told(origin: Origin, polynomial: Polynomial, about: str = "") -> Condition:
         return Condition(origin, polynomial, part, about, reduced)
 
     yield told(Origin.MASS, determinant(system.kinetic))
     if not is_zero(system.K):
-        yield told(Origin.STIFFNESS, _lowest_coefficient(system.K))
+        yield told(Origin.STIFFNESS, _lowest_coefficient(system.K, constant))
     if not is_zero(system.D):
-        yield told(Origin.DAMPING, _lowest_coefficient(system.D))
+        yield told(Origin.DAMPING, _lowest_coefficient(system.D, constant))
     origins = (Origin.UNDAMPED, Origin.NOT_GYROSCOPIC, Origin.POTENTIAL)
     for origin, matrix in zip(origins, (system.D, system.G, system.N), strict=True):
         if not is_zero(matrix):
             yield told(origin, _common([x for row in matrix for x in row]))
-    yield from _of_roots(system, part, reduced)
+    yield from _of_roots(system, part, reduced) if constant is None else _of_roots_over(system, part, reduced, constant)
     if not system.cyclic or reduced:
         return
     acting = [x for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i]]
@@ -143,7 +150,7 @@ def conditions_of(system: LinearSystem, part: int, reduced: bool = False) -> Ite
     if any(x != 0 for x in acting):
         yield told(Origin.CYCLIC, _common(acting))
     if momenta_are_constant(system):
-        yield from conditions_of(ignoring_cyclic(system), part, reduced=True)
+        yield from conditions_of(ignoring_cyclic(system), part, True, section)
 
 
 def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condition]:
@@ -181,12 +188,44 @@ def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condit
             yield told(Origin.RESULTANT, resultant(left, right), "")
 
 
-def _lowest_coefficient(matrix: Matrix) -> Polynomial:
+def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Constant) -> Iterator[Condition]:
+    """The same over a field of algebraic numbers, without factors.
+
+    Raises TooLargeError where the polynomial has a multiple factor, or one with roots lambda and -lambda beside others:
+    its minor or discriminant vanishes identically, and bounds nothing.
+    """
+
+    def told(origin: Origin, polynomial: Polynomial) -> Condition:
+        found = constant.reduced(polynomial)
+        if found == 0:
+            raise TooLargeError(f"a {origin.value} that vanishes identically, with irrational numbers")
+        return Condition(origin, found, part, "", reduced)
+
+    raw = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    p = tuple(map(constant.reduced, raw))
+    zeros = next((i for i, c in enumerate(p) if c != 0), len(p))
+    p = p[zeros:]
+    while p and p[-1] == 0:
+        p = p[:-1]
+    if len(p) < 2:
+        return
+    yield told(Origin.CONSTANT, p[0])
+    yield told(Origin.LEADING, p[-1])
+    if any(c != 0 for c in p[1::2]):
+        if len(p) > 2:
+            yield told(Origin.HURWITZ, hurwitz_minors(p)[len(p) - 3])
+            yield told(Origin.MEETING, discriminant(p))
+    elif len(p) > 3 and not is_potential(system):
+        yield told(Origin.DISCRIMINANT, discriminant(p[::2]))
+
+
+def _lowest_coefficient(matrix: Matrix, constant: Constant | None = None) -> Polynomial:
     """The lowest coefficient of det(s + matrix) that is not identically zero: a sum of principal minors."""
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + (1 if i == j else 0) for j in range(n)] for i in range(n)]
     nothing = [[zero] * n for _ in range(n)]
-    return next(c for c in characteristic_polynomial(nothing, unit, matrix) if c != 0)
+    found = characteristic_polynomial(nothing, unit, matrix)
+    return next(c for c in (found if constant is None else map(constant.reduced, found)) if c != 0)
 
 
 def _common(entries: Sequence[Polynomial]) -> Polynomial:

@@ -14,6 +14,7 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.maps.constant import Constant
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 
@@ -42,6 +43,7 @@ class Images:
         context: Any,
         given: Mapping[str, Fraction],
         solved: Mapping[str, Polynomial],
+        constant: Constant | None = None,
     ) -> None:
         self.scene, self.ring, self.context = scene, scene.ring, context
         self._one = context.constant(1)
@@ -55,6 +57,9 @@ class Images:
         for name, value in given.items():
             number = context.constant(fmpq(value.numerator, value.denominator))
             self._found.setdefault(self.ring.index("parameter", name), (number, self._one))
+        self._constant = constant
+        #: Generators that stand for irrational numbers.
+        self.irrational: list[int] = []
         self._solved = {self.ring.index("parameter", name): value for name, value in solved.items()}
         self._related = relations(scene)
         self._symbols = {item.name: item.value for item in scene.system.notation}
@@ -94,6 +99,18 @@ class Images:
         return self._found[k]
 
     def _image_of(self, k: int) -> Image:
+        if self._constant is not None and k in self._constant.images:
+            c = self.context.gen(self.context.nvars() - 1)
+            powers = enumerate(self._constant.images[k].coeffs())
+            return sum((c**i * x for i, x in powers), self.context.constant(0)), self._one
+        try:
+            return self._plain_image_of(k)
+        except Irrational:
+            if k not in self.irrational and self.ring.generators[k].kind in ("root", "sine", "cosine"):
+                self.irrational.append(k)
+            raise
+
+    def _plain_image_of(self, k: int) -> Image:
         g = self.ring.generators[k]
         if k in self._related:
             return self(self._related[k])

@@ -52,7 +52,7 @@ def plane_map(
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
     found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
-    x, y = (_ends(axis) for axis in axes)
+    x, y = (ends(axis) for axis in axes)
     made = decompose(found.factors, Box(*x, *y), progress=watch)
     judge = Judge(there, kept)
     places = _places(made)
@@ -106,7 +106,8 @@ def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Str
     )
 
 
-def _ends(axis: Axis) -> tuple[Any, Any]:
+def ends(axis: Axis) -> tuple[Any, Any]:
+    """As numbers of flint."""
     return fmpq(axis.low.numerator, axis.low.denominator), fmpq(axis.high.numerator, axis.high.denominator)
 
 

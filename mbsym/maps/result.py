@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mbsym.algebra.plane import Arrangement, Point
+from mbsym.algebra.plane.line import Line
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.check import Check
@@ -28,6 +29,9 @@ class Shape(StrEnum):
     REGION = "region"
     ARC = "arc"
     CORNER = "corner"
+    #: Of a line.
+    INTERVAL = "interval"
+    ZERO = "point"
 
 
 class Standing(StrEnum):
@@ -68,8 +72,57 @@ class Stratum:
         return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
 
 
+class Shown:
+    """What maps of planes and of lines have in common."""
+
+    of: Of
+
+    def look(self, stratum: Stratum) -> tuple[object, ...]:
+        """What a picture tells apart."""
+        found = stratum.judged
+        if found is None:
+            return (stratum.standing,)
+        if self.of is Of.SIGNATURE:
+            return (found.degree, found.null)
+        return (found.verdict.word, found.right, found.real_right)
+
+
 @dataclass(frozen=True)
-class PlaneMap:
+class LineMap(Shown):
+    """A map over one axis: ``regions`` are the intervals of ``line``, ``corners`` its zeros, ``areas`` lengths."""
+
+    of: Of
+    section: Section
+    admissibility: Admissibility
+    boundaries: Boundaries
+    line: Line
+    regions: tuple[Stratum, ...]
+    corners: tuple[Stratum, ...]
+    areas: tuple[tuple[float, float], ...]
+    interrupted: bool = False
+    check: Check | None = None
+    arcs: tuple[Stratum, ...] = ()
+
+    @property
+    def strata(self) -> Iterator[Stratum]:
+        yield from self.regions
+        yield from self.corners
+
+    @property
+    def whole(self) -> float:
+        """The length of the interval."""
+        return float(self.line.high - self.line.low)
+
+    def changes(self, corner: Stratum) -> bool:
+        """Whether what is shown differs at a zero from one of its sides."""
+        beside = [x for x in self.line.intervals if corner.number in x.ends]
+        looks = {self.look(self.regions[x.id]) for x in beside}
+        undecided = corner.standing in (Standing.TOO_LARGE, Standing.WITHDRAWN, Standing.NOT_REACHED)
+        return len(looks) > 1 or (not undecided and len(beside) > 1 and self.look(corner) not in looks)
+
+
+@dataclass(frozen=True)
+class PlaneMap(Shown):
     """``regions``, ``arcs`` and ``corners`` in the order of ``arrangement``; ``interrupted``: some were not reached.
 
     ``areas``: of the regions, with estimates of their errors.  ``check``: more points in every cell and on every arc,
@@ -110,14 +163,10 @@ class PlaneMap:
         undecided = arc.standing in (Standing.TOO_LARGE, Standing.WITHDRAWN, Standing.NOT_REACHED)
         return not undecided and not self.separates(arc) and bool(sides) and self.look(arc) not in sides
 
-    def look(self, stratum: Stratum) -> tuple[object, ...]:
-        """What a picture tells apart."""
-        found = stratum.judged
-        if found is None:
-            return (stratum.standing,)
-        if self.of is Of.SIGNATURE:
-            return (found.degree, found.null)
-        return (found.verdict.word, found.right, found.real_right)
+    @property
+    def whole(self) -> float:
+        """The area of the plane."""
+        return float(self.arrangement.box.area)
 
     def point_of(self, stratum: Stratum) -> Point:
         """The exact point at which a stratum was judged."""

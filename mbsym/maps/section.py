@@ -19,13 +19,14 @@ from fractions import Fraction
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
 from mbsym.expressions.tree import names
+from mbsym.maps.constant import Constant, constant_of, context_of
 from mbsym.maps.images import Image, Images, Irrational, common_denominator
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
@@ -89,8 +90,9 @@ class Section:
     ``law`` tells by the signs of the axes whether the energy of the nonlinear system is proved not to grow, ``judged``
     gives the parts with that; ``parts`` and ``one_energy`` (as in ``verdict.combine``) hold what is proved for all
     points alike.  ``undefined``: where one of these vanishes the formulas divide by zero, or the equations have another
-    form; nothing is said there.  ``numbers``: what may be put in, by name, also from the description; ``told``: those
-    that were asked for or stand in the matrices.  ``images`` does that with further formulas in parameters.
+    form; nothing is said there.  ``constant``: an irrational number, the last generator.  ``numbers``: what may be put
+    in, by name, also from the description; ``told``: those that were asked for or stand in the matrices.  ``images``
+    does that with further formulas in parameters.
     """
 
     axes: tuple[Axis, ...]
@@ -103,15 +105,24 @@ class Section:
     numbers: Mapping[str, Fraction]
     told: Mapping[str, Fraction]
     images: Images
+    constant: Constant | None = None
 
     @property
     def asked(self) -> tuple[Polynomial, ...]:
         """The axes themselves, where signs other than the declared ones may tell more about the energy."""
-        return () if self.one_energy else tuple(self.context.gens())
+        return () if self.one_energy else tuple(self.context.gens()[: len(self.axes)])
+
+    def reduced(self, p: Polynomial) -> Polynomial:
+        """p in normal form: 0 exactly where it vanishes in the whole section."""
+        return p if self.constant is None else self.constant.reduced(p)
+
+    def norm(self, p: Polynomial) -> Polynomial:
+        """A polynomial in the axes alone that vanishes wherever p does."""
+        return p if self.constant is None else self.constant.norm(p)
 
     def judged(self, signs: Sequence[int]) -> tuple[tuple[LinearSystem, ...], bool]:
         """(parts, one energy) where the coordinates of a point have these signs."""
-        bounded = self.law(tuple(signs))
+        bounded = self.law(tuple(signs[: len(self.axes)]))
         if bounded == self.one_energy:
             return self.parts, self.one_energy
         return tuple(replace(part, conservative=bounded) for part in self.parts), bounded
@@ -160,8 +171,29 @@ def usable(system: System) -> tuple[str, ...]:
 def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction]) -> Section:
     """The section of an analysis with one to three ``axes`` at the values of ``settings``, names as in ``usable``.
 
+    With one axis, the other numbers may hold one root, or the sine and cosine of a fraction of pi (``constant``).
     Raises Unfit with all complaints, Unavailable where there is no first approximation to judge.
     """
+    found: list[int] = []
+    try:
+        return _section(analysis, axes, settings, None, found)
+    except Unfit as unfit:
+        constant = None
+        if len(axes) == 1 and {one.fault for one in unfit.complaints} == {Fault.IRRATIONAL}:
+            constant = constant_of(analysis.system, analysis.ring, found)
+        if constant is None:
+            raise
+        return _section(analysis, axes, settings, constant, found)
+
+
+def _section(
+    analysis: Analysis,
+    axes: Sequence[Axis],
+    settings: Mapping[str, Fraction],
+    constant: Constant | None,
+    irrational: list[int],
+) -> Section:
+    """The section with a constant; what else is irrational joins ``irrational`` (generators of the ring)."""
     with analysis.strictly():
         linear, motion = analysis.judgeable, analysis.equilibrium
     scene = analysis.parameters_scene
@@ -172,9 +204,9 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
     if complaints:
         raise Unfit(complaints)
     given = _remaining(analysis.system, chosen, given, motion) | given
-    context = fmpq_mpoly_ctx.get(tuple(chosen), Ordering.lex)
+    context = context_of(chosen, constant)
     solved = {name: value.polynomial for name, value in motion.solved}
-    images = Images(scene, chosen, context, given, solved)
+    images = Images(scene, chosen, context, given, solved, constant)
     parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
     known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
     balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
@@ -185,6 +217,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         if made is not None:
             found.append(made)
             undefined += below
+    irrational += images.irrational
     if complaints:
         raise Unfit(list(dict.fromkeys(complaints)))
     used = frozenset(images.used)
@@ -202,6 +235,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         given,
         {name: value for name, value in given.items() if name in used or name in settings},
         images,
+        constant,
     )
 
 

@@ -21,7 +21,7 @@ from matplotlib.ticker import MaxNLocator
 from mbsym.algebra.plane import polyline
 from mbsym.algebra.plane.drawing import Branches
 from mbsym.formulas.latex import LatexNames
-from mbsym.maps.result import Of, PlaneMap, Standing, Stratum
+from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.drawing import pictures
@@ -57,7 +57,7 @@ def map_figure(system: System, found: PlaneMap, language: Language, formats: Seq
     return pictures({"map": lambda: _drawn(system, found, language)}, ordered)
 
 
-def look(found: PlaneMap, stratum: Stratum) -> Look:
+def look(found: PlaneMap | LineMap, stratum: Stratum) -> Look:
     """Colour and hatch of a region."""
     judged = stratum.judged
     if judged is None:
@@ -85,7 +85,7 @@ def _drawn(system: System, found: PlaneMap, language: Language) -> Figure:
         handleheight=1.0,
         labelspacing=0.35,
         borderaxespad=0.2,
-        handler_map={str: _Letter()},
+        handler_map={str: Letter()},
     )
     return figure
 
@@ -103,7 +103,7 @@ def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str])
     for spine in axes.spines.values():
         spine.set_linewidth(0.6)
     names = LatexNames([axis.name for axis in found.section.axes])
-    across, up = (labelled(_name(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
+    across, up = (labelled(named(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
     axes.set_xlabel(across, fontsize=TEXT)
     axes.set_ylabel(up, fontsize=TEXT)
     branches = Branches(found.arrangement)
@@ -120,7 +120,8 @@ def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str])
     _letters(axes, found, told, lines)
 
 
-def _name(names: LatexNames, name: str) -> str:
+def named(names: LatexNames, name: str) -> str:
+    """A name on an axis, as a formula where it is one."""
     symbol = names[name]
     return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
 
@@ -150,11 +151,14 @@ def _fill(axes: Axes, found: PlaneMap, branches: Branches, stratum: Stratum) -> 
     # an edge of the same colour: no seams between strips
     axes.add_patch(PathPatch(path, facecolor=shown.colour, edgecolor=shown.colour, linewidth=0.4, zorder=0.5))
     if shown.hatch:
-        hatched = PathPatch(path, facecolor="none", edgecolor=_hatch(shown), linewidth=0, hatch=shown.hatch, zorder=0.6)
+        hatched = PathPatch(
+            path, facecolor="none", edgecolor=hatch_of(shown), linewidth=0, hatch=shown.hatch, zorder=0.6
+        )
         axes.add_patch(hatched)
 
 
-def _hatch(shown: Look) -> str:
+def hatch_of(shown: Look) -> str:
+    """The colour of a hatch."""
     return "#9a9a9a" if shown == NONE else "#5e1830" if shown.hatch == "xxxx" else "#ffffff"
 
 
@@ -265,7 +269,7 @@ def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> li
         by_words[words] = (by_words.get(words, (0.0, NONE))[0] + area, look(found, one))
     entries: list[tuple[Any, str]] = []
     for words, (_, shown) in sorted(by_words.items(), key=lambda item: -item[1][0]):
-        patch = Patch(facecolor=shown.colour, edgecolor=_hatch(shown), linewidth=0.3, hatch=shown.hatch or None)
+        patch = Patch(facecolor=shown.colour, edgecolor=hatch_of(shown), linewidth=0.3, hatch=shown.hatch or None)
         entries.append((patch, words))
     if found.of is Of.STABILITY and any(one.judged is not None and one.judged.right for one in found.regions):
         entries.append(("2", say(language, "number of roots with positive real part")))
@@ -286,7 +290,7 @@ def _borders_open(found: PlaneMap, curve: int) -> bool:
     return any(side is not None and side.judged is None for arc in drawn for side in found.beside(arc))
 
 
-class _Letter:
+class Letter:
     """A letter in a circle, as in the plane, for a legend's handle."""
 
     def legend_artist(self, legend: Any, handle: str, fontsize: float, box: Any) -> Any:

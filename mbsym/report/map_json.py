@@ -8,10 +8,11 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra.plane import AlgebraicNumber, Point
+from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.admissible import Demand
 from mbsym.maps.boundaries import Condition
 from mbsym.maps.check import Check
-from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.maps.result import LineMap, PlaneMap, Stratum
 from mbsym.model.system import System
 from mbsym.report.schemas import version
 from mbsym.report.sections.stability import verdict_data
@@ -24,9 +25,8 @@ FORMAT = 1
 DIGITS = 15
 
 
-def map_json(system: System, found: PlaneMap) -> str:
+def map_json(system: System, found: PlaneMap | LineMap) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    arrangement = found.arrangement
     data = {
         "format": FORMAT,
         "version": version(),
@@ -35,6 +35,7 @@ def map_json(system: System, found: PlaneMap) -> str:
         "of": found.of.value,
         "axes": [{"name": x.name, "low": str(x.low), "high": str(x.high)} for x in found.section.axes],
         "values": {name: str(value) for name, value in sorted(found.section.told.items())},
+        "constant": None if found.section.constant is None else found.section.constant.text,
         "subsystems": [list(names) for names in found.section.coordinates],
         "demands": [_demand(one) for one in found.admissibility.demands],
         "left_out": list(found.admissibility.left_out),
@@ -45,13 +46,21 @@ def map_json(system: System, found: PlaneMap) -> str:
         "vanishing": [_condition(one) for one in found.boundaries.vanishing],
         "interrupted": found.interrupted,
         "check": check_data(found.check),
+        **(_of_line(found) if isinstance(found, LineMap) else _of_plane(found)),
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _of_plane(found: PlaneMap) -> dict[str, Any]:
+    arrangement = found.arrangement
+    return {
         "regions": [
-            _stratum(found, one)
+            _stratum(one, _point(found.point_of(one)))
             | {"signs": list(there.signs), "arcs": list(there.arcs), "area": area, "area_error": error}
             for one, there, (area, error) in zip(found.regions, arrangement.regions, found.areas, strict=True)
         ],
         "arcs": [
-            _stratum(found, one)
+            _stratum(one, _point(found.point_of(one)))
             | {
                 "curves": list(there.factors),
                 "regions": list(there.regions),
@@ -61,11 +70,27 @@ def map_json(system: System, found: PlaneMap) -> str:
             for one, there in zip(found.arcs, arrangement.arcs, strict=True)
         ],
         "corners": [
-            _stratum(found, one) | {"curves": list(there.factors), "arcs": list(there.arcs), "kind": str(there.kind)}
+            _stratum(one, _point(found.point_of(one)))
+            | {"curves": list(there.factors), "arcs": list(there.arcs), "kind": str(there.kind)}
             for one, there in zip(found.corners, arrangement.corners, strict=True)
         ],
     }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _of_line(found: LineMap) -> dict[str, Any]:
+    """Intervals are the regions, with their ends; zeros the corners."""
+    return {
+        "regions": [
+            _stratum(one, [_coordinate(there.sample)])
+            | {"signs": list(there.signs), "arcs": [], "ends": list(there.ends), "area": area, "area_error": error}
+            for one, there, (area, error) in zip(found.regions, found.line.intervals, found.areas, strict=True)
+        ],
+        "arcs": [],
+        "corners": [
+            _stratum(one, [_coordinate(there.number)]) | {"curves": list(there.factors), "arcs": [], "kind": "zero"}
+            for one, there in zip(found.corners, found.line.zeros, strict=True)
+        ],
+    }
 
 
 def check_data(found: Check | None) -> dict[str, Any] | None:
@@ -79,11 +104,11 @@ def check_data(found: Check | None) -> dict[str, Any] | None:
     return {"points": found.points, "arcs": found.arcs, "enclosed": found.enclosed, "findings": findings}
 
 
-def _stratum(found: PlaneMap, one: Stratum) -> dict[str, Any]:
+def _stratum(one: Stratum, point: list[dict[str, Any]]) -> dict[str, Any]:
     judged = one.judged
     return {
         "number": one.number,
-        "point": _point(found.point_of(one)),
+        "point": point,
         "standing": one.standing.value,
         "broken": [x.condition.about or str(x.condition.polynomial) for x in one.broken],
         "stability": None if judged is None else verdict_data(judged.verdict),
@@ -104,13 +129,14 @@ def _demand(one: Demand) -> dict[str, Any]:
 
 
 def _point(point: Point) -> list[dict[str, Any]]:
-    return [_coordinate(x, ball) for x, ball in zip((point.x, point.y), point.enclosures(64), strict=True)]
+    return [_coordinate(x) for x in (point.x, point.y)]
 
 
-def _coordinate(x: Any, ball: Any) -> dict[str, Any]:
+def _coordinate(x: Any) -> dict[str, Any]:
     """A rational number as text, an algebraic one by its minimal polynomial and an interval with no other root."""
     if isinstance(x, fmpq):
-        return {"exact": str(x), "polynomial": None, "between": None, "number": float(ball.mid())}
+        return {"exact": str(x), "polynomial": None, "between": None, "number": float(enclosure(x).mid())}
+    ball = x.enclosure(64)
     between = [str(x.low), str(x.high)]
     polynomial = [str(c) for c in x.polynomial.coeffs()] if isinstance(x, AlgebraicNumber) else None
     return {"exact": None, "polynomial": polynomial, "between": between, "number": float(ball.mid())}

@@ -12,7 +12,8 @@ from fractions import Fraction
 from flint import fmpq
 
 from mbsym.algebra.plane import Arc, Corner
-from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.algebra.plane.line import Zero
+from mbsym.maps.result import LineMap, PlaneMap, Stratum
 
 #: Rows beyond this number are refused.
 MOST_POINTS = 1_000_000
@@ -30,7 +31,7 @@ class Points:
 
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
-    values: tuple[tuple[Fraction, Fraction], ...]
+    values: tuple[tuple[Fraction, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -73,10 +74,10 @@ def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wro
             for name, value in zip(axes, found, strict=True)
             if value is None
         ]
-        x, y = found
-        if x is not None and y is not None:
+        known = tuple(value for value in found if value is not None)
+        if len(known) == len(found):
             rows.append(tuple(line))
-            values.append((x, y))
+            values.append(known)
     return (None, wrong) if wrong else (Points(tuple(header), tuple(rows), tuple(values)), [])
 
 
@@ -87,31 +88,37 @@ def _number(text: str) -> Fraction | None:
     return Fraction(match[1]) / Fraction(match[2] or 1)
 
 
-def located_csv(points: Points, found: PlaneMap) -> str:
+def located_csv(points: Points, found: PlaneMap | LineMap) -> str:
     """The same rows with the columns ``where`` and ``verdict``."""
     out = io.StringIO(newline="")
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow((*points.header, WHERE, VERDICT))
-    for row, (x, y) in zip(points.rows, points.values, strict=True):
-        writer.writerow((*row, *located(found, x, y)))
+    for row, values in zip(points.rows, points.values, strict=True):
+        writer.writerow((*row, *located(found, *values)))
     return out.getvalue()
 
 
-def located(found: PlaneMap, x: Fraction, y: Fraction) -> tuple[str, str]:
+def located(found: PlaneMap | LineMap, *values: Fraction) -> tuple[str, str]:
     """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there."""
-    stratum = stratum_at(found, x, y)
+    stratum = stratum_at(found, *values)
     if stratum is None:
-        return "outside of the box", ""
+        return "outside of the interval" if isinstance(found, LineMap) else "outside of the box", ""
     word = stratum.word
     return f"{stratum.shape} {stratum.number}", stratum.standing.value if word is None else word.value
 
 
-def stratum_at(found: PlaneMap, x: Fraction, y: Fraction) -> Stratum | None:
-    """The region, arc or corner of a rational point, exactly; None outside of the box."""
-    at = fmpq(x.numerator, x.denominator), fmpq(y.numerator, y.denominator)
-    if at not in found.arrangement.box:
+def stratum_at(found: PlaneMap | LineMap, *values: Fraction) -> Stratum | None:
+    """The region, arc or corner of a rational point, exactly (interval or zero of a line); None outside."""
+    at = tuple(fmpq(x.numerator, x.denominator) for x in values)
+    if isinstance(found, LineMap):
+        if not found.line.low <= at[0] <= found.line.high:
+            return None
+        there = found.line.locate(at[0])
+        return found.corners[there.id] if isinstance(there, Zero) else found.regions[there.id]
+    x, y = at
+    if (x, y) not in found.arrangement.box:
         return None
-    place = found.arrangement.locate(*at)
+    place = found.arrangement.locate(x, y)
     if isinstance(place, Arc):
         return found.arcs[place.id]
     if isinstance(place, Corner):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.formulas.latex import LatexNames
-from mbsym.maps.result import Of, PlaneMap
+from mbsym.maps.result import LineMap, Of, PlaneMap
 from mbsym.model.system import System
 from mbsym.report.language import Language
+from mbsym.report.line_figure import changes
 from mbsym.report.map_figure import lettered
 from mbsym.report.map_language import say
 from mbsym.report.map_words import condition_words, telling
@@ -28,14 +29,15 @@ _ESCAPED = {
 _ESCAPED |= {"<": r"\textless{}", ">": r"\textgreater{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
 
-def map_tex(system: System, found: PlaneMap, language: Language) -> str:
+def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> str:
     """Needs graphicx; the picture is map.pdf in the same folder."""
     names = LatexNames([axis.name for axis in found.section.axes])
-    x, y = (f"${names[axis.name]}$" for axis in found.section.axes)
+    axes = ", ".join(f"${names[axis.name]}$" for axis in found.section.axes)
     fixed = LatexNames(list(found.section.told))
     values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
     what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
-    caption = f"{say(language, what)} {_text(system.name)}: ({x}, {y})" + (f"; {values}" if values else "") + "."
+    plane = f"({axes})" if len(found.section.axes) > 1 else axes
+    caption = f"{say(language, what)} {_text(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
     lines = [
         "% needs \\usepackage{graphicx}; written by mbsym map",
         r"\begin{figure}",
@@ -44,15 +46,28 @@ def map_tex(system: System, found: PlaneMap, language: Language) -> str:
         rf"\caption{{{caption}}}",
         r"\end{figure}",
     ]
-    told = lettered(found)
-    if told:
-        lines += ["", r"\noindent " + say(language, "The curves of the map:"), r"\begin{itemize}"]
-        for k, letter in told.items():
-            condition = condition_words(telling(found.boundaries.conditions[k]), found.section, language)
-            polynomial = _polynomial(found.boundaries.factors[k], names, language)
-            lines.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({_text(condition)})")
-        lines.append(r"\end{itemize}")
+    items = _zeros(found, names, language) if isinstance(found, LineMap) else _curves(found, names, language)
+    if items:
+        head = "The points of the map:" if isinstance(found, LineMap) else "The curves of the map:"
+        lines += ["", r"\noindent " + say(language, head), r"\begin{itemize}", *items, r"\end{itemize}"]
     return "\n".join(lines) + "\n"
+
+
+def _curves(found: PlaneMap, names: LatexNames, language: Language) -> list[str]:
+    items = []
+    for k, letter in lettered(found).items():
+        condition = condition_words(telling(found.boundaries.conditions[k]), found.section, language)
+        polynomial = _polynomial(found.boundaries.factors[k], names, language)
+        items.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({_text(condition)})")
+    return items
+
+
+def _zeros(found: LineMap, names: LatexNames, language: Language) -> list[str]:
+    name = names[found.section.axes[0].name]
+    return [
+        rf"\item[\textit{{{letter}}}] ${name} = {x:.10g}$ \quad ({_text(words)})"
+        for letter, x, words in changes(found, language)
+    ]
 
 
 def _polynomial(p: Any, names: LatexNames, language: Language) -> str:

@@ -1,0 +1,130 @@
+"""One algebraic number among the coefficients of a section: sqrt(3), or the sine and cosine of pi/10.
+
+It is carried as one more generator c of the context, with c's minimal polynomial m.  Whether p(x, c) vanishes
+identically is decided by its remainder modulo m; where it vanishes, its norm  res_c(p, m)  does, a polynomial with
+rational coefficients.  So norms take the place of boundary polynomials: they have more zeros, at which nothing changes,
+but none of theirs is lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
+
+from mbsym.algebra.factors import Polynomial
+from mbsym.algebra.plane.fields import Extension, Over
+from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between
+from mbsym.algebra.plane.points import Point
+from mbsym.algebra.ring import Ring
+from mbsym.expressions.angles import linear_form
+from mbsym.model.system import System
+
+#: Of cos(pi/D), D is at most this.
+MOST_PARTS = 60
+#: Roots of larger numbers are not taken.
+MOST_DIGITS = 40
+
+
+@dataclass(frozen=True)
+class Constant:
+    """``images``: generators of a ring as polynomials in the ``number``; ``text`` says what it is."""
+
+    number: AlgebraicNumber
+    images: Mapping[int, Any]
+    text: str
+
+    def reduced(self, p: Polynomial) -> Polynomial:
+        """p modulo the minimal polynomial of its last generator: 0 exactly where p vanishes at the number."""
+        return divmod(p, self._modulus(p.context()))[1] if p != 0 else p
+
+    def norm(self, p: Polynomial) -> Polynomial:
+        """The product of p over all conjugates of the number: rational coefficients, zero wherever p is."""
+        context = p.context()
+        name = context.names()[-1]
+        return self._modulus(context).resultant(p, name) if p.degrees()[-1] > 0 else p
+
+    def _modulus(self, context: Any) -> Polynomial:
+        c = context.gen(context.nvars() - 1)
+        total = context.constant(0)
+        for power, coefficient in enumerate(self.number.polynomial.coeffs()):
+            total += c**power * fmpq(coefficient)
+        return total
+
+    def beside(self, x: Any) -> Point:
+        """The point (x, number), x rational or algebraic."""
+        if isinstance(x, fmpq):
+            return Point(x, AlgebraicNumber(self.number.polynomial, self.number.low, self.number.high))
+        over = [fmpq_poly([fmpq(c)]) for c in self.number.modulus.coeffs()]
+        lead = fmpq_poly([1 / over[-1][0]])
+        monic = [entry * lead for entry in over]
+        return Point(x, Over(Extension(x), monic, self.number.low, self.number.high))
+
+
+def constant_of(system: System, ring: Ring, indices: Sequence[int]) -> Constant | None:
+    """The number through which all these generators are rational; None where there is none of the kinds above."""
+    generators = {k: ring.generators[k] for k in indices}
+    if all(g.kind == "root" for g in generators.values()):
+        return _root({k: g.argument for k, g in generators.items()})
+    if all(g.kind in ("sine", "cosine") and g.argument is None for g in generators.values()):
+        values = {item.name: item.value for item in system.parameters if item.value is not None}
+        turns: dict[int, Fraction] = {}
+        for k, g in generators.items():
+            form = linear_form(values[g.name]) if g.name in values else None
+            if form is None or form.coefficients or form.constant:
+                return None
+            turns[k] = form.turns / g.denominator
+        return _angles(turns, {k: g.kind for k, g in generators.items()})
+    return None
+
+
+def _root(arguments: Mapping[int, Polynomial]) -> Constant | None:
+    """sqrt(n) where all arguments are rational multiples of n by squares."""
+    found: dict[int, Any] = {}
+    base = 0
+    for k, argument in arguments.items():
+        if not argument.is_constant() or argument == 0:
+            return None
+        value = fmpq(argument.leading_coefficient())
+        whole = int(value.p) * int(value.q)
+        if whole <= 0 or len(str(whole)) > MOST_DIGITS:
+            return None
+        base = base or whole
+        ratio = fmpq(whole * base)  # sqrt(whole) = sqrt(whole base)/base sqrt(base)
+        root = int(ratio.p.isqrt())
+        if root * root != ratio.p:
+            return None
+        found[k] = fmpq_poly([0, fmpq(root, base) / value.q])
+    p = fmpz_poly([-base, 0, 1])
+    roots = roots_between(p, fmpq(0), fmpq(base + 1))
+    made = number(roots[0])
+    return Constant(made, found, f"sqrt({base})") if isinstance(made, AlgebraicNumber) else None
+
+
+def _angles(turns: Mapping[int, Fraction], kinds: Mapping[int, str]) -> Constant | None:
+    """Through 2 cos(pi/D): cos(pi k/D) = T_k(cos(pi/D)), sin(pi t) = cos(pi (1/2 - t))."""
+    parts = lcm(*(x.denominator for value in turns.values() for x in (value, Fraction(1, 2) - value)))
+    if parts > MOST_PARTS:
+        return None
+    p = fmpz_poly.cos_minpoly(2 * parts)
+    roots = roots_between(p, fmpq(-3), fmpq(3))
+    made = number(roots[-1])  # the largest of 2 cos(pi k/D) is that of k = 1
+    if not isinstance(made, AlgebraicNumber):
+        return None
+    found = {}
+    for k, value in turns.items():
+        angle = value if kinds[k] == "cosine" else Fraction(1, 2) - value
+        found[k] = fmpq_poly(fmpz_poly.chebyshev_t(abs(int(angle * parts))))(fmpq_poly([0, fmpq(1, 2)]))
+    return Constant(made, found, f"2*cos(pi/{parts})")
+
+
+def context_of(names: Sequence[str], constant: Constant | None) -> Any:
+    """The context of the axes, with a last generator for the constant if there is one."""
+    extra = "constant"
+    while extra in names:
+        extra += "_"
+    return fmpq_mpoly_ctx.get((*names, *((extra,) if constant is not None else ())), Ordering.lex)
