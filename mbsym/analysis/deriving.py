@@ -101,9 +101,13 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
     if analysis.speed_form is None:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
-    return first_order.first_order(
-        analysis.speed_form, cast("SpeedEquations", analysis.equations), analysis.equilibrium
-    )
+    equations = cast("SpeedEquations", analysis.equations)
+    if analysis.system.constraints:
+        from mbsym.problems.constraints import first_order as tied
+
+        reduced = analysis.in_coordinates.reduced
+        return tied.first_order(analysis.speed_form, equations, reduced, analysis.equilibrium)
+    return first_order.first_order(analysis.speed_form, equations, analysis.equilibrium)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:

@@ -74,7 +74,7 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
-        "tied_in_coordinates",
+        *("tied_in_coordinates", "first_order"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),

@@ -163,6 +163,10 @@ def _first_order(analysis: Analysis) -> Check | None:
     found, linear = analysis.optional("first_order"), analysis.optional("linearisation")
     if found is None or linear is None:
         return None
+    if analysis.system.constraints:
+        from mbsym.problems.constraints import first_order as tied
+
+        return tied.check(analysis.speed_form, found, analysis.in_coordinates.reduced, analysis.equilibrium)
     from mbsym.problems import first_order
     from mbsym.problems.speeds import SpeedEquations
 

@@ -75,7 +75,7 @@ def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilib
     slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in (*kinematic, *forcing)]
     mass = [[ring.substitute(x, on) for x in row] for row in equations.mass_matrix.polynomials]
     m = len(kinematic)
-    lower = _solved(ring, mass, slopes[m:])
+    lower = solved(ring, mass, slopes[m:])
     if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
         raise NoClosedForm("the coefficients of the first approximation vary with time")
     count = len(equations.relations)
@@ -111,8 +111,8 @@ def check(
         [-stiffness[i][j] - circulatory[i][j] for j in n] + [-damping[i][j] - gyroscopic[i][j] for j in n] for i in n
     ]
     upper = [[ring.one if j == len(names) + i else ring.zero for j in range(2 * len(names))] for i in n]
-    whole = [*upper, *_solved(ring, mass, below)]
-    left, right = _product(ring, found.A.polynomials, rows), _product(ring, rows, whole)
+    whole = [*upper, *solved(ring, mass, below)]
+    left, right = product(ring, found.A.polynomials, rows), product(ring, rows, whole)
     known = [
         ring.is_zero(ring.reduce(a - b - rate))
         for one, other, moved in zip(left, right, moving, strict=True)
@@ -184,14 +184,12 @@ def _value(form: SpeedForm, variable: Variable, at: Mapping[int, Polynomial]) ->
     return form.ring.substitute(_inner(form, variable), at)
 
 
-def _product(
-    ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]]
-) -> list[list[Polynomial]]:
+def product(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
     columns = list(zip(*b, strict=True))
     return [[ring.dot(row, column_) for column_ in columns] for row in a]
 
 
-def _solved(
+def solved(
     ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Sequence[Polynomial]]
 ) -> list[list[Polynomial]]:
     """matrix^-1 right, by Cramer's rule column by column."""

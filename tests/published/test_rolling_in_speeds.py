@@ -107,13 +107,59 @@ def test_problems_4_to_6_of_the_disc_are_those_in_coordinates() -> None:
     assert [str(x) for x in found.linearisation.matrices] == [str(x) for x in plain.linearisation.matrices]
 
 
+FRAME = "speeds: {p: lean_dot, q: spin_dot + yaw_dot*sin(lean), s: yaw_dot*cos(lean)}"
+
+
+def in_a_circle() -> Analysis:
+    inertia = "    inertia: [m*r**2/4, m*r**2/2, m*r**2/4]\n"
+    return described(text_of("rolling-disc-in-a-circle", (inertia, f"{inertia}    {FRAME}\n")))
+
+
+def test_first_approximation_of_the_disc_in_a_circle() -> None:
+    """The equations below differentiated at lean L, s = W cos(L), q = W sin(L) + w, p = 0:
+
+    delta p' = (4 g cos(L)/r - W^2)/5 delta lean + 6/5 s delta q + (6/5 q - 2/5 s tan(L)) delta s,
+    delta q' = -2/3 s p,   delta s' = (s tan(L) - 2 q) p.
+    """
+    found = in_a_circle()
+    state = found.first_order
+    assert state.names == ("lean", "p", "q", "s")
+    lean, rate, g, r = 0.4, 3.0, 9.81, 0.5
+    numbers = dict.fromkeys(found.ring.names(), arb(0))
+    numbers |= {"m": arb(1), "r": arb(r), "g": arb(g), "L": arb(lean), "W": arb(rate)}
+    spin = -5 * rate * np.sin(lean) / 6 - 2 * g * np.sin(lean) / (3 * r * rate * np.cos(lean))
+    q, s = spin + rate * np.sin(lean), rate * np.cos(lean)
+    wanted = [
+        [0, 1, 0, 0],
+        [(4 * g * np.cos(lean) / r - rate**2) / 5, 0, 6 / 5 * s, 6 / 5 * q - 2 / 5 * s * np.tan(lean)],
+        [0, -2 / 3 * s, 0, 0],
+        [0, s * np.tan(lean) - 2 * q, 0, 0],
+    ]
+    a = [[float(found.ring.evaluate(x, numbers).mid()) for x in row] for row in state.A.polynomials]
+    assert np.array(a) == pytest.approx(np.array(wanted), abs=1e-12)
+    values = [float(found.ring.evaluate(x.polynomial, numbers).mid()) for x in state.values]
+    assert values == pytest.approx([lean, 0, q, s], abs=1e-12)
+    outcomes = {check.name: check.outcome for check in found.checks}
+    assert outcomes["first approximation in speeds"] == EXACT
+    assert set(outcomes.values()) <= {EXACT, NUMERICAL}
+
+
+def test_a_dependent_speed_that_is_not_expressed_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A gamma without J' u: the embedded forces are wrong, and with them A."""
+    monkeypatch.setattr(in_speeds, "speed_rows", _without_rates(in_speeds.speed_rows))
+    found = in_a_circle()
+    assert found.optional("first_order") is not None
+    check = found.check("first approximation in speeds")
+    assert check is not None
+    assert check.outcome == FAILED
+
+
 def test_the_disc_has_the_equations_of_neimark_and_fufaev() -> None:
     """In the axes of the leaning frame p = lean', q = spin' + yaw' sin(lean), s = yaw' cos(lean), as derived there:
 
     5/4 p' = 3/2 s q - 1/4 s^2 tan(lean) + g/r sin(lean),   3/2 q' = -s p,   1/4 s' = 1/4 s p tan(lean) - 1/2 p q.
     """
-    frame = "speeds: {p: lean_dot, q: spin_dot + yaw_dot*sin(lean), s: yaw_dot*cos(lean)}"
-    found = described(text_of("rolling-disc-speeds", ("speeds: {u1: omega1, u2: omega2, u3: omega3}", frame)))
+    found = described(text_of("rolling-disc-speeds", ("speeds: {u1: omega1, u2: omega2, u3: omega3}", FRAME)))
     source = random.Random(11)
     for _ in range(3):
         lean, p, q, s = (source.uniform(-1, 1) for _ in range(4))
@@ -307,10 +353,18 @@ def test_a_mistake_is_found(
 
 def test_what_does_not_know_both_refuses_by_name() -> None:
     found = shipped("rolling-disc-speeds")
-    for name in ("programs", "first_order", "hamilton", "routh", "equilibria"):
+    for name in ("programs", "hamilton", "routh", "equilibria"):
         with pytest.raises(Unavailable) as reason:
             getattr(found, name)
         assert "constraints are not taken into account here yet (rolling 1)" in str(reason.value), name
+
+
+def test_there_is_no_first_approximation_where_speeds_turn_with_the_body() -> None:
+    with pytest.raises(Unavailable, match="not steady in speeds and positions: they vary with spin"):
+        _ = shipped("rolling-disc-speeds").first_order
+    top = TOP.replace("ORIENTATION", "angles").replace("[3, 1, 3]", "[1, 2, 3]") + "motion: {z: l}\n"
+    with pytest.raises(Unavailable, match="constraints tie positions: their deviations are not free"):
+        _ = described(top).first_order
 
 
 def complaints_of(text: str) -> list[tuple[str, str]]:

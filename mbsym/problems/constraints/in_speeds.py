@@ -13,13 +13,14 @@ Source: Kane & Levinson, Dynamics: Theory and Applications (1985), sections 2.13
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from flint import ctx
 
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Constrained, NoClosedForm
+from mbsym.algebra.failures import NOT_THERE, Constrained, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded, projected
@@ -126,13 +127,16 @@ def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, progra
 
 
 def _at_points(form: SpeedForm, rows: Sequence[SpeedRow], programs: ConstrainedPrograms) -> list[list[list[Any]]]:
-    """J in numbers at points of the manifold."""
-    found = []
-    for one in Manifold(form.system.without_speeds, form.ring, programs).states(POINTS):
+    """J in numbers at points of the manifold, those left out at which speeds do not determine velocities."""
+    found: list[list[list[Any]]] = []
+    for one in Manifold(form.system.without_speeds, form.ring, programs).states(4 * POINTS):
         place = one.enclosed if form.by_quaternion else one
-        state = completed(Oracle(form.system, place.state))
-        carry = Carrier(form.ring, state.numbers, state.values)
-        found.append([[carry(x) for x in row.partials] for row in rows])
+        with suppress(*NOT_THERE):
+            state = completed(Oracle(form.system, place.state))
+            carry = Carrier(form.ring, state.numbers, state.values)
+            found.append([[carry(x) for x in row.partials] for row in rows])
+        if len(found) == POINTS:
+            break
     return found
 
 
