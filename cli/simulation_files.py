@@ -47,6 +47,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     does, stops it only when the rest is delivered.
     """
     from mbsym.model.quantities import unit_of
+    from mbsym.numerics.input_columns import input_columns
     from mbsym.report.bodies_csv import bodies_parts
     from mbsym.report.certificate import enclosure_csv
     from mbsym.report.constrained_run_words import drift_columns
@@ -62,6 +63,8 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         further = shown | {kept.column: kept.values for kept in run.invariants}
         units: dict[str, str | None] = {name: unit_of(run.system, name) for name in shown}
         units |= {kept.column: kept.unit for kept in run.invariants}
+        if run.trajectory.table is None and not run.dynamics.in_states:
+            further |= input_columns(run.scenario, run.times, run.coordinates, run.velocities)
         drifts = {**drift_columns(run), **norm_columns(run)}
         further, units = further | dict(drifts), units | dict.fromkeys(drifts, "")
         table = Hashed(trajectory_parts(run.trajectory, further, units))
