@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mbsym.expressions.counting import counted
+from mbsym.maps.boundaries import Origin
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.model.system import System
 from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words, telling
@@ -72,8 +73,11 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
             f"{counted(len(found.regions), 'region')}, {counted(len(found.arcs), 'arc')} and "
             f"{counted(len(found.corners), 'corner')} in map.json, each with an exact point"
         ]
-    if not any(factor for factor in found.boundaries.factors if max(factor.degrees(), default=0) > 0):
-        told.append("no condition depends on the axes: one verdict holds everywhere")
+    kept = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
+    if all(one.origin in kept for conditions in found.boundaries.conditions for one in conditions):
+        told.append("no condition of stability depends on the axes")
+    if not any(one.judged is not None for one in found.regions):
+        told.append("no verdict anywhere: map.json says at every point what is not kept there")
     vanishing = dict.fromkeys(condition_words(one, found.section) for one in found.boundaries.vanishing)
     told += [f"an equality everywhere: {words}" for words in vanishing]
     if found.admissibility.left_out:

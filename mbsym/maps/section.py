@@ -16,6 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
+from itertools import product
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,10 @@ from mbsym.problems.stability.problem import Prepared, prepared_parts
 if TYPE_CHECKING:
     from mbsym.problems.dissipation import Balance
     from mbsym.problems.equilibrium import Equilibrium
+
+
+#: Of so many axes all signs are tried.
+MOST_TRIED = 3
 
 
 @dataclass(frozen=True)
@@ -109,8 +114,19 @@ class Section:
 
     @property
     def asked(self) -> tuple[Polynomial, ...]:
-        """The axes themselves, where signs other than the declared ones may tell more about the energy."""
-        return () if self.one_energy else tuple(self.context.gens()[: len(self.axes)])
+        """The axes themselves, where what is known of the energy is different for their signs."""
+        count = len(self.axes)
+        gens = tuple(self.context.gens()[:count])
+        if self.one_energy:
+            return ()
+        if count > MOST_TRIED:
+            return gens
+        laws = {signs: self.law(signs) for signs in product((-1, 0, 1), repeat=count)}
+        return tuple(
+            gens[k]
+            for k in range(count)
+            if any(laws[signs] != laws[(*signs[:k], 0, *signs[k + 1 :])] for signs in laws)
+        )
 
     def reduced(self, p: Polynomial) -> Polynomial:
         """p in normal form: 0 exactly where it vanishes in the whole section."""

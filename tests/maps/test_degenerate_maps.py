@@ -1,0 +1,86 @@
+"""Maps of what is degenerate: by hand, x'' + K x = 0 and x'' + D x' + K x = 0 with few entries."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+from click.testing import CliRunner, Result
+
+import mbsym
+from mbsym.maps.mapping import plane_map
+from mbsym.maps.result import PlaneMap, Shape
+from mbsym.maps.section import Axis
+from mbsym.maps.verdicts import Border
+from mbsym.report.map_located import stratum_at
+from mbsym_cli.main import main
+
+HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"
+
+
+def described(folder: Path, stiffness: str, damping: str = "") -> Path:
+    path = folder / "system.yaml"
+    damped = f"  D: [[{damping}]]\n" if damping else ""
+    path.write_text(HEAD.format(folder.name) + damped + f"  K: [[{stiffness}]]\n")
+    return path
+
+
+def mapped(path: Path) -> PlaneMap:
+    return plane_map(mbsym.load(path), [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"], {})
+
+
+def called(path: Path) -> Result:
+    words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--format", "json,png", "--out", str(path.parent)]
+    return CliRunner().invoke(main, words)
+
+
+def test_an_isolated_point(tmp_path: Path) -> None:
+    """K = a^2 + b^2 vanishes at one point, a zero root there and imaginary ones everywhere else."""
+    found = mapped(described(tmp_path, "a**2 + b**2"))
+    assert len(found.regions) == 1
+    assert found.regions[0].judged is not None
+    assert found.regions[0].judged.right == 0
+    point = stratum_at(found, Fraction(0), Fraction(0))
+    assert point is not None
+    assert point.shape is Shape.CORNER
+    assert point.judged is not None
+    assert point.judged.border is Border.ZERO
+
+
+def test_a_double_line(tmp_path: Path) -> None:
+    """K = (a - b)^2: the same on both sides of a = b, a zero root on it."""
+    found = mapped(described(tmp_path, "(a - b)**2"))
+    assert len(found.regions) == 2
+    assert len({found.look(one) for one in found.regions}) == 1
+    on = stratum_at(found, Fraction(1, 3), Fraction(1, 3))
+    assert on is not None
+    assert on.shape is Shape.ARC
+    assert on.judged is not None
+    assert on.judged.border is Border.ZERO
+    assert found.singles_out(on)
+    assert not found.separates(on)
+
+
+def test_a_condition_that_is_an_equality_everywhere(tmp_path: Path) -> None:
+    """x'' + x' = 0 has a zero root for all a and b: nothing is claimed anywhere, and nothing depends on the axes."""
+    path = described(tmp_path, "0", "1")
+    found = mapped(path)
+    assert [one.word and one.word.stable for one in found.regions] == [False]
+    done = called(path)
+    assert done.exit_code == 0, done.output
+    assert "no condition of stability depends on the axes" in done.stdout
+
+
+def test_no_point_is_admissible(tmp_path: Path) -> None:
+    path = described(tmp_path, "a + b + 10")
+    path.write_text(path.read_text() + "assumptions: [a + b > 5]\n")
+    done = called(path)
+    assert done.exit_code == 0, done.output
+    assert "no verdict anywhere" in done.stdout
+
+
+def test_curves_that_do_not_meet_the_plane_leave_one_region(tmp_path: Path) -> None:
+    """K = a + b + 10 > 0 there."""
+    found = mapped(described(tmp_path, "a + b + 10"))
+    assert len(found.regions) == 1
+    assert abs(found.areas[0][0] - 4) < 1e-9
