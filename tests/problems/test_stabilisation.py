@@ -269,7 +269,9 @@ def test_planted_mistakes_are_found() -> None:
     scene, linear = analysis.parameters_scene, analysis.judgeable
 
     def told(wrong: Stabilisation) -> str:
-        return check_stabilisation(scene, linear, wrong).detail
+        check = check_stabilisation(scene, linear, wrong)
+        assert check is not None
+        return check.detail
 
     (turn,), (damped,), (control,) = right.gyroscopic, right.dissipation, right.control
     assert "degree" in told(
@@ -289,6 +291,7 @@ def test_roots_of_parameters_are_no_mistake() -> None:
     points = mbsym.load(SHIPPED / "triangular-points.yaml")
     assert points.stabilisation.gyroscopic[0].regions == ()
     assert points.stabilisation.gyroscopic[1].degree == 0
+    assert points.check("stabilisation") is None
 
 
 # --- what is written ---

@@ -14,7 +14,7 @@ from mbsym.problems.stabilisation.clearing import Cleared, Rows
 from mbsym.problems.stabilisation.result import Region
 
 #: Regions are told for so many factors whose signs are open; longer factors are not told.
-MOST_FACTORS, MOST_TERMS = 4, 60
+MOST_FACTORS, MOST_TERMS = 3, 60
 #: So many orders of the coordinates are tried.
 MOST_ORDERS = 24
 
