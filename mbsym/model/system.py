@@ -287,6 +287,14 @@ class System(GuessesNames):
         return (*vectors, *(speed.name for speed in self.speeds))
 
     @property
+    def begun(self) -> tuple[InitialValue, ...]:
+        """The initial values of coordinates as generated code takes them, velocities that are left out being zero.
+
+        None where values of declared variables are given: coordinates and velocities would follow from these.
+        """
+        return () if self.start else self.initial
+
+    @property
     def without_speeds(self) -> System:
         """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)

@@ -21,6 +21,7 @@ from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect
 from mbsym.mechanics.programs import generalized_energy
 from mbsym.model.quantities import marked, told_units
+from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
 from mbsym.report.environment import rendered
@@ -165,6 +166,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         },
         tied=tied,
         speeds=_speeds(analysis, writer) if functions["accelerations"] or (forward and not tied) else None,
+        quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         functions=functions,
         upper=upper,
         entries=entries,

@@ -85,7 +85,7 @@ def ordered(parameters: Sequence[Value]) -> tuple[Value, ...]:
 
 def initial_values(system: System, writer: Functions) -> list[tuple[str, str]]:
     """(name, value) of q and q'; velocities that are not given are zero, as in simulations."""
-    given = {item.coordinate: item for item in system.initial}
+    given = {item.coordinate: item for item in system.begun}
     placed: list[tuple[str, str]] = []
     moving: list[tuple[str, str]] = []
     for name, rate in zip(system.coordinates, system.velocities, strict=True):
@@ -103,6 +103,6 @@ def _value(writer: Functions, value: Expression) -> str:
 
 def starting(system: System, parameters: Sequence[Value]) -> list[tuple[int, str]]:
     """The parameters of which initial values are made: place, and name in the language."""
-    values = [x for item in system.initial for x in (item.position, item.velocity) if x is not None]
+    values = [x for item in system.begun for x in (item.position, item.velocity) if x is not None]
     used = {name for value in values for name in names(value)}
     return [(place, item.local) for place, item in enumerate(parameters) if item.name in used]

@@ -122,6 +122,7 @@ def _state_space(found: StateSpace, write: Callable[[Formula], Written]) -> dict
 def _initial(system: System) -> dict[str, dict[str, str]]:
     """What the description says of the state at t = 0, and of where prescribed motions begin, by name."""
     given = [(one.coordinate, one.position, one.velocity) for one in system.initial]
+    given += [(one.coordinate, one.position, None) for one in system.start]
     given += [(one.name, one.initial, None) for one in system.prescribed]
     found = {
         name: {key: text(x) for key, x in (("position", position), ("velocity", velocity)) if x is not None}

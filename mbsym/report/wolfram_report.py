@@ -104,7 +104,7 @@ def _rate(velocity: str, names: WolframNames) -> str:
 
 def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Expression]]:
     """The state at t = 0 as simulations take it: velocities that are left out are zero, positions are not made up."""
-    for item in system.initial:
+    for item in system.begun:
         if item.position is not None:
             yield f"{names[item.coordinate]}[0]", item.position
         yield f"{names[item.coordinate]}'[0]", ZERO if item.velocity is None else item.velocity
@@ -112,7 +112,7 @@ def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Express
 
 def _in_order(system: System, names: WolframNames) -> list[str]:
     """q(0) and q'(0) in the order of the coordinates, zero for what is not given."""
-    given = {item.coordinate: item for item in system.initial}
+    given = {item.coordinate: item for item in system.begun}
     places = [given[name].position if name in given else None for name in system.coordinates]
     rates = [given[name].velocity if name in given else None for name in system.coordinates]
     return [wolfram_expression(ZERO if value is None else value, names) for value in places + rates]
@@ -122,7 +122,7 @@ def _numberless(system: System) -> Iterator[str]:
     """Parameters and coordinates without a number, which NDSolve would need."""
     related = {relation.name for relation in system.relations}
     yield from (item.name for item in system.parameters if item.value is None and item.name not in related)
-    placed = {item.coordinate for item in system.initial if item.position is not None}
+    placed = {item.coordinate for item in system.begun if item.position is not None}
     yield from (name for name in system.coordinates if name not in placed)
 
 

@@ -116,6 +116,21 @@ def test_model_py_integrates_them_through_the_pole(satellite: Analysis, expected
     assert np.max(np.abs(np.sum(found[:4] ** 2, axis=0) - 1)) < 1e-15
 
 
+def test_velocities_that_follow_from_speeds_are_not_taken_for_zero() -> None:
+    """Angles and p, q, r are given: no b' = 0 is printed, and generated code asks for what it would have to compute."""
+    start = "initial: {a: 1, b: 1/2, c: 0, p: 1, q: 2, r: 3}"
+    text = "\n".join(start if line.startswith("initial:") else line for line in POLE.splitlines())
+    analysis = mbsym.loads(text, (3,))
+    shown = str(FORMATS["latex"].render(analysis, (3,)))
+    assert "$p(0) = 1$" in shown
+    assert "dot{b}(0)" not in shown
+    module: dict[str, Any] = {}
+    exec(str(FORMATS["python"].render(analysis, (3,))), module)
+    with pytest.raises(ValueError, match="a, b, c"):
+        module["initial_state"](module["complete"]())
+    assert "b'[0]" not in str(FORMATS["wolfram"].render(analysis, (3,)))
+
+
 @pytest.mark.parametrize("kind", ["casadi", "jax", "julia", "octave", "modelica", "fmu2"])
 def test_exports_say_that_their_states_are_coordinates(satellite: Analysis, kind: str) -> None:
     made = FORMATS[kind].render(satellite, (3, 7))

@@ -254,7 +254,7 @@ def _numbers(model: Export) -> dict[str, Fraction]:
 
 def _starts(model: Export, numbers: Mapping[str, Fraction]) -> Iterator[tuple[str, str]]:
     """(name, number) of q(0) and q'(0); NaN for what the description does not give."""
-    given = {item.coordinate: item for item in model.system.initial}
+    given = {item.coordinate: item for item in model.system.begun}
     for name in model.system.coordinates:
         yield name, _start(given[name].position if name in given else None, numbers, "NaN")
     for name, rate in zip(model.system.coordinates, model.system.velocities, strict=True):
