@@ -84,7 +84,8 @@ def main() -> None:
     started = time.process_time()
     counts = loop(found, some)
     peer = (time.process_time() - started) * points.count / asked.peer
-    differ = int(np.sum(counts != right[chosen]))
+    judged = right[chosen] >= 0  # elsewhere the kinetic energy is not positive definite, and nothing is claimed
+    differ = int(np.sum((counts != right[chosen])[judged]))
     roots = RootsMeasure(found, "omega0")
     started = time.process_time()
     for c in chunks(asked.peer, CHUNK):
@@ -102,7 +103,7 @@ def main() -> None:
     print(f"  mbsym sweep, all files      {whole:8.2f} s   (wanted: under 10)")
     print(f"  NumPy loop over eigvals     {peer:8.2f} s   {peer / own:6.1f} times as long (wanted: 50)")
     print(f"  NumPy, all points stacked   {stacked:8.2f} s   {stacked / own:6.1f} times as long")
-    print(f"  points where the loop counts other roots than the exact judge: {differ} of {asked.peer}")
+    print(f"  points where the loop counts other roots than the exact judge: {differ} of {np.sum(judged)}")
 
 
 if __name__ == "__main__":
