@@ -46,7 +46,8 @@ class Wanted:
 
 def swept(file: Path, folder: Path, options: Mapping[str, Any], processors: int) -> int:
     """Everything is read and complained about, then measured; the exit code."""
-    system = read_held(file, "sweep")
+    moving = str(options["measure"]).strip().startswith("simulate:")
+    system = read_held(file, "sweep", constrained=not moving, moving=moving)
     complaints = Options()
     wanted = _wanted(options, processors, complaints)
     asked = None if system is None else _asked(options, system, complaints)

@@ -76,6 +76,8 @@ def measure_of(system: System, asked: Asked) -> Measure:
         from mbsym.sweeps.judged import StabilityMeasure
 
         return StabilityMeasure(analysis, found)
+    if any(part.following for part in found.parts):
+        raise Unsuitable("some equations are of first order, and their eigenvalues are not swept; 'stability' is")
     from mbsym.sweeps import roots
 
     kinds: dict[str, Callable[[Section, str], Measure]] = {

@@ -144,3 +144,22 @@ def test_what_a_relation_gives_does_not_vary(tmp_path: Path) -> None:
     done = sweep("satellite", tmp_path / "none", "-v", "nu=1:2:3", "-v", "alpha=0:1:3")
     assert done.exit_code == 2
     assert "nu = omega0**2*R**3" in done.stderr
+
+
+def test_systems_given_by_matrices_and_constrained_ones(tmp_path: Path) -> None:
+    """Routh: the triangular points are stable in the first approximation below mu = 1/2 - sqrt(69)/18 = 0.0385209."""
+    done = sweep("triangular-points", tmp_path / "points", "-v", "mu=0.01:0.06:51", "--format", "csv")
+    assert done.exit_code == 0, done.output
+    for row in rows(tmp_path / "points"):
+        assert (row["verdict"] == "unstable") == (float(row["mu"]) > 0.5 - sqrt(69) / 18)
+    done = sweep("bicycle", tmp_path / "bicycle", "-v", "v=4:6.5:26", "--format", "csv")
+    assert done.exit_code == 0, done.output
+    there = {float(row["v"]): row["unstable_roots"] for row in rows(tmp_path / "bicycle")}
+    # Meijaard et al. 2007: weave at 4.292 m/s, capsize at 6.024 m/s
+    assert all((count == "0") == (4.292 < v < 6.024) for v, count in there.items())
+
+
+def test_motions_of_matrices_are_refused_by_name(tmp_path: Path) -> None:
+    done = sweep("triangular-points", tmp_path / "x", "-v", "mu=0.01:0.06:5", "-m", "simulate:x", "--time", "1")
+    assert done.exit_code == 2
+    assert "given by its matrices" in done.stderr
