@@ -88,6 +88,11 @@ class RunningErrors(Algebra[Approximate]):
             raise NoClosedForm("a number beyond the range of floating point") from None
         return Approximate(self.program, node, self.program.number(abs(exact) * UNIT) if lost else None)
 
+    def irrational(self, value: float) -> Approximate:
+        """A number of which the nearest float is known."""
+        exact = Fraction(value)
+        return Approximate(self.program, self.program.number(exact), self.program.number(2 * abs(exact) * UNIT))
+
     def vanishes(self, x: Approximate) -> bool:
         return x.error is None and self.program.vanishes(x.value)
 

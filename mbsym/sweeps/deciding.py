@@ -29,6 +29,7 @@ from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.root_signs import changes, real_roots, routh_column, sturm_ends
 from mbsym.algebra.running_error import Approximate, RunningErrors, certain_sign
+from mbsym.maps.constant import Constant
 from mbsym.numerics.kernels.interface import Code
 from mbsym.problems.stability.linear_form import LinearSystem, add, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
@@ -108,13 +109,19 @@ class Deciding:
         return np.array(words), certain
 
 
-def deciding(parts: Sequence[LinearSystem], further: Sequence[Polynomial], names: Sequence[str]) -> Deciding:
+def deciding(
+    parts: Sequence[LinearSystem],
+    further: Sequence[Polynomial],
+    names: Sequence[str],
+    constant: Constant | None = None,
+) -> Deciding:
     """The quantities of all subsystems, whose matrices hold polynomials in the generators ``names`` (in their order).
 
-    ``further``: other polynomials whose signs the verdict depends on.  Raises TooLargeError where a characteristic
+    ``further``: other polynomials whose signs the verdict depends on.  ``constant``: an irrational number, the last
+    generator then.  Raises TooLargeError where a characteristic
     polynomial is too long.
     """
-    made = _Made(names)
+    made = _Made(names, constant)
     for part in parts:
         made.part(part)
     for polynomial in further:
@@ -125,11 +132,14 @@ def deciding(parts: Sequence[LinearSystem], further: Sequence[Polynomial], names
 class _Made:
     """Quantities, each once."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self.names = tuple(names)
+    def __init__(self, names: Sequence[str], constant: Constant | None) -> None:
+        self.names, self.constant = tuple(names), constant
         self.program = Program()
         self.algebra = RunningErrors(self.program)
-        self.value = Horner(self.algebra, [self.algebra.input(name) for name in self.names])
+        inputs = [self.algebra.input(name) for name in self.names]
+        if constant is not None:
+            inputs.append(self.algebra.irrational(float(constant.number)))
+        self.value = Horner(self.algebra, inputs)
         self.outputs: list[Approximate] = []
         self.counts: list[Count] = []
 
@@ -174,10 +184,9 @@ class _Made:
             self._count("sign", [total])
 
     def _inertia(self, matrix: Matrix) -> None:
-        found = [x for x in _of_matrix(matrix) if not x.is_zero()]
+        whole = tuple(x if self.constant is None else self.constant.reduced(x) for x in _of_matrix(matrix))
+        found = [x for x in whole if not x.is_zero()]
         if not all(x.is_constant() for x in found):
-            # Coefficients that vanish for all parameters are left out with their parity: a change of sign stays one.
-            whole = _of_matrix(matrix)
             lowest = next(k for k, x in enumerate(whole) if not x.is_zero())
             if all(not x.is_zero() for x in whole[lowest:]):
                 self._count("inertia", [self.value(x) for x in whole[lowest:]])
@@ -187,6 +196,8 @@ class _Made:
 
     def _roots(self, system: LinearSystem) -> None:
         polynomial = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+        if self.constant is not None:
+            polynomial = tuple(map(self.constant.reduced, polynomial))
         even, plain = split(polynomial)
         if len(even) > 1:
             shift = _generic(lambda xs, algebra, shift: sturm_ends(xs, algebra, shift)[0], even)

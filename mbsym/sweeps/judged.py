@@ -18,13 +18,15 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import admissibility
+from mbsym.maps.line_map import LineJudge
+from mbsym.maps.result import Shape, Standing, Stratum
 from mbsym.maps.section import Complaint, Fault, Section, Unfit
 from mbsym.maps.verdicts import matrix_at, verdict_at
 from mbsym.numerics.kernels import llvm
 from mbsym.problems.stability.exact import inertia
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.measure import Column, Unsuitable
 
 #: What may stand in place of a verdict, before the words of verdicts.
 OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"
@@ -57,7 +59,13 @@ class StabilityMeasure:
             *section.asked,
             *(demand.condition.polynomial for demand in self.admissibility.demands),
         ]
-        self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes])
+        self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes], section.constant)
+        self._line: LineJudge | None = None
+        if section.constant is not None:
+            if len(section.axes) > 1:
+                told = f"{section.constant.text} stands among the coefficients: only one name can be varied then"
+                raise Unsuitable(told)
+            self._line = LineJudge(section, self.admissibility)
         self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
         self._known: dict[tuple[int, ...], tuple[int, int]] = {}
         self._lock = Lock()
@@ -87,6 +95,8 @@ class StabilityMeasure:
         """(place of the word in ``WORDS``, roots with Re > 0) at one point, exactly."""
         if not np.all(np.isfinite(point)):
             return WORDS.index(UNDEFINED), -1
+        if self._line is not None:
+            return self._irrationally(self._line(Shape.INTERVAL, 0, fmpq(*float(point[0]).as_integer_ratio())))
         numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
         demands = self.admissibility.demands
         if any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
@@ -100,3 +110,11 @@ class StabilityMeasure:
         except (Failure, ValueError, ZeroDivisionError):
             return WORDS.index(UNDEFINED), -1
         return WORDS.index(found.verdict.word.value), -1 if found.right is None else found.right
+
+    def _irrationally(self, found: Stratum) -> tuple[int, int]:
+        """The same of a point that was judged in a field of algebraic numbers."""
+        if found.judged is None:
+            word = {Standing.OUTSIDE: OUTSIDE, Standing.MASSLESS: MASSLESS}.get(found.standing, UNDEFINED)
+            return WORDS.index(word), -1
+        right = found.judged.right
+        return WORDS.index(found.judged.verdict.word.value), -1 if right is None else right

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from mbsym.algebra.failures import Failure
+
 
 @dataclass(frozen=True)
 class Column:
@@ -19,6 +21,12 @@ class Column:
     meaning: str
     words: tuple[str, ...] = ()
     whole: bool = False
+
+
+class Unsuitable(Failure):
+    """What is asked for does not fit the system."""
+
+    code = "unsuitable-sweep"
 
 
 class Measure(Protocol):

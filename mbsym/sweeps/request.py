@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, section
 from mbsym.model.system import System
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.measure import Measure
+from mbsym.sweeps.measure import Measure, Unsuitable
 from mbsym.sweeps.points import Points
 
 STABILITY, EIGENVALUES, DAMPING, FREQUENCY = "stability", "eigenvalues", "damping", "frequency"
@@ -49,12 +48,6 @@ class Asked:
         return hashlib.sha256((told + self.name + repr(self.time)).encode()).hexdigest()
 
 
-class Unsuitable(Failure):
-    """What is asked for does not fit the system."""
-
-    code = "unsuitable-sweep"
-
-
 def measure_of(system: System, asked: Asked) -> Measure:
     """The measure, derived and compiled.
 
@@ -76,6 +69,8 @@ def measure_of(system: System, asked: Asked) -> Measure:
         from mbsym.sweeps.judged import StabilityMeasure
 
         return StabilityMeasure(analysis, found)
+    if found.constant is not None:
+        raise Unsuitable(f"{found.constant.text} stands among the coefficients, with which eigenvalues are not swept")
     if any(part.following for part in found.parts):
         raise Unsuitable("some equations are of first order, and their eigenvalues are not swept; 'stability' is")
     from mbsym.sweeps import roots
