@@ -230,3 +230,16 @@ def test_planted_mistakes_break_laws(name: str) -> None:
         turned = replace(found.regions[0], signs=tuple(-s for s in found.regions[0].signs))
         assert Law.SIDES in laws(regions=(turned, *found.regions[1:]))
     assert Law.ZEROS in laws(arcs=(replace(found.arcs[0], factors=()), *found.arcs[1:]))
+
+
+def test_dense_curves_of_high_degree() -> None:
+    """Abscissas of degree 42 and 56: simple zeros of discriminants need no arithmetic over fields."""
+    source = Random(11)
+    for degree in (7, 8):
+        dense = sum(
+            (fmpq(source.randint(-9, 9)) * X**i * Y**j for i in range(degree + 1) for j in range(degree + 1 - i)),
+            start=X * 0,
+        )
+        found = decompose([dense, X**2 + Y**2 - 2], BOX)
+        assert not breaches(found)
+        assert agrees(found, points(source, 30))

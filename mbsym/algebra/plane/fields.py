@@ -125,6 +125,10 @@ class Extension:
                 balls = self.balls(p, bits).complex_roots()
             except ValueError:
                 return None
+        return self._real(p, balls)
+
+    def _real(self, p: OverField, balls: Sequence[Any]) -> list[Over] | None:
+        """The real ones among isolated simple roots of p, ascending; None where the balls are too wide for that."""
         found = []
         for ball in balls:
             if not ball.imag.contains(0):
@@ -134,11 +138,48 @@ class Extension:
                 return None
             low, high = ends(ball.real)
             signs = [self.sign(self.at(p, end)) for end in (low, high)]
-            if signs[0] * signs[1] >= 0:  # its own mirror image, so real, and simple: the ends are too far in
+            if 0 in signs:  # it is one end
+                low = high = low if signs[0] == 0 else high
+            elif signs[0] == signs[1]:  # its own mirror image, so real, and simple: the ends are too far in
                 return None
             found.append(Over(self, p, low, high))
         found.sort(key=lambda root: root.low + root.high)
         return found if all(a.high < b.low for a, b in pairwise(found)) else None
+
+    def double_root(self, p: OverField) -> tuple[Over, list[Over]] | None:
+        """(the double root, the other real roots) of a monic polynomial with one double root and else simple ones.
+
+        The double one is the root of p' that is one of p, and real, as it is its own conjugate.  None where balls of
+        4096 bits do not isolate the roots.
+        """
+        slope, bits = self.monic(self.derivative(p)), 64
+        while bits <= 4096:
+            found = self._double_root(p, slope, bits)
+            if found is not None:
+                return found
+            bits *= 2
+        return None
+
+    def _double_root(self, p: OverField, slope: OverField, bits: int) -> tuple[Over, list[Over]] | None:
+        with ctx.workprec(bits):
+            try:
+                whole = self.balls(p, bits)
+                common = [ball for ball in self.balls(slope, bits).complex_roots() if whole(ball).contains(0)]
+                if len(common) != 1:
+                    return None
+                twice = common[0].real
+                rest = _deflated(_deflated(whole.coeffs(), twice), twice)
+                balls = arb_poly(rest).complex_roots() if len(rest) > 1 else []
+            except ValueError:
+                return None
+        doubles = [Over(self, slope, *self._around(slope, bits))] if len(slope) == 2 else self._real(slope, common)
+        simple = self._real(p, balls)
+        if doubles is None or simple is None or len(doubles) != 1:
+            return None
+        double = doubles[0]
+        if any(a.low <= double.high and double.low <= a.high for a in simple):
+            return None
+        return double, simple
 
     def _around(self, p: OverField, bits: int) -> tuple[Rational, Rational]:
         """An interval around the root of y + c."""
@@ -246,3 +287,13 @@ def ends(ball: Ball) -> tuple[Rational, Rational]:
         return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
 
     return rational(arb(ball).lower()), rational(arb(ball).upper())
+
+
+def _deflated(coefficients: Sequence[Ball], root: Ball) -> list[Ball]:
+    """The quotient by (y - root), in balls; coefficients from low to high powers."""
+    quotient: list[Ball] = []
+    carried = arb(0)
+    for c in reversed(coefficients[1:]):
+        carried = carried * root + c
+        quotient.append(carried)
+    return quotient[::-1]

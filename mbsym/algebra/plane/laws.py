@@ -12,12 +12,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from flint import fmpq
+from flint import arb, arb_poly, ctx, fmpq
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.plane.arrangement import Arc, Arrangement
+from mbsym.algebra.plane.numbers import Ball
 from mbsym.algebra.plane.points import Point
-from mbsym.algebra.plane.projection import Box
+from mbsym.algebra.plane.projection import Box, Polynomial, coefficients
+
+#: Accuracy of the balls in which polynomials are seen to vanish.
+BITS = 250
 
 
 class Law(StrEnum):
@@ -62,7 +66,17 @@ def breaches(found: Arrangement) -> tuple[Breach, ...]:
 
 
 def _zeros(found: Arrangement, point: Point) -> tuple[int, ...]:
-    return tuple(k for k, sign in enumerate(found.signs_at(point)) if sign == 0)
+    """The polynomials that vanish at a point, as far as balls of some 250 bits tell: no exact arithmetic takes part."""
+    x, y = point.enclosures(BITS)
+    with ctx.workprec(2 * BITS):
+        return tuple(k for k, p in enumerate(found.factors) if _ball(p, x, y).contains(0))
+
+
+def _ball(p: Polynomial, x: Ball, y: Ball) -> Ball:
+    total = arb(0)
+    for c in reversed(coefficients(p, 1)):
+        total = total * y + arb_poly(c)(x)
+    return total
 
 
 def _odd(found: Arrangement, k: int) -> list[object]:

@@ -87,8 +87,7 @@ class TowerField:
         if self.sign(a) == 0:
             raise ZeroDivisionError("division by zero in a number field")
         a = self.reduced(a)
-        common = self.over.gcd(self.root.polynomial, a)
-        if len(common) > 1:
+        while len(common := self.over.gcd(self.root.polynomial, a)) > 1:
             self.root.restrict(self.over.monic(self.over.divided(self.root.polynomial, common)[0]))
             a = self.reduced(a)
         over = self.over

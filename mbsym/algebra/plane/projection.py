@@ -11,7 +11,7 @@ Collins 1975).  These polynomials in x are factored in turn; their roots are rea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -115,17 +115,22 @@ class Vertical:
     of: tuple[int, ...]
 
 
+#: In place of the order of a zero: that of a leading coefficient.
+LEADING = 1 << 20
+
+
 @dataclass(frozen=True)
 class Abscissa:
     """A critical value of x and what makes it one.
 
-    ``degenerate``: curves whose discriminant or leading coefficient vanishes there; ``meeting``: pairs whose resultant
-    does, an edge of the box being -1 (y0) or -2 (y1); ``vertical``: given factors that vanish on the whole line.
+    ``degenerate``: curves whose discriminant vanishes there, with the order of that zero, or whose leading coefficient
+    does (``LEADING``); ``meeting``: pairs of curves with the order of the zero of their resultant; ``vertical``: given
+    factors that vanish on the whole line.
     """
 
     x: Number
-    degenerate: frozenset[int]
-    meeting: frozenset[frozenset[int]]
+    degenerate: Mapping[int, int]
+    meeting: Mapping[frozenset[int], int]
     vertical: tuple[int, ...]
 
     @property
@@ -184,14 +189,13 @@ def abscissas(
     whole = len(curves) + len(pairs)
     for k, curve in enumerate(curves):
         progress("projection", k, whole)
-        table.add(curve.in_y[-1], degenerate=k)
+        table.add(curve.in_y[-1], degenerate=k, order=LEADING)
         if curve.degree > 1:
             table.add(_in_x(curve.polynomial.discriminant(1)), degenerate=k)
-        for edge, y in ((-1, box.y0), (-2, box.y1)):
+        for y in (box.y0, box.y1):
             along = curve.along(y)
-            if along == 0:  # the edge itself
-                continue
-            table.add(along, meeting=(k, edge))
+            if along != 0:  # else the edge itself
+                table.add(along)
     for at, (j, k) in enumerate(pairs):
         progress("projection", len(curves) + at, whole)
         table.add(_in_x(curves[j].polynomial.resultant(curves[k].polynomial, 1)), meeting=(j, k))
@@ -223,7 +227,7 @@ class _Table:
 
     def __init__(self, box: Box) -> None:
         self.box = box
-        self.rows: dict[str, tuple[Integer, set[int], set[frozenset[int]], set[int]]] = {}
+        self.rows: dict[str, tuple[Integer, dict[int, int], dict[frozenset[int], int], set[int]]] = {}
 
     def add(
         self,
@@ -231,16 +235,17 @@ class _Table:
         degenerate: int | None = None,
         meeting: tuple[int, int] | None = None,
         vertical: Sequence[int] = (),
+        order: int = 1,
     ) -> None:
-        """The irreducible factors of p, which is not zero."""
-        for factor, _ in primitive(p).factor()[1]:
+        """The irreducible factors of p, which is not zero; an exponent counts ``order`` times."""
+        for factor, exponent in primitive(p).factor()[1]:
             if factor.degree() < 1:
                 continue
-            row = self.rows.setdefault(str(factor), (factor, set(), set(), set()))
+            row = self.rows.setdefault(str(factor), (factor, {}, {}, set()))
             if degenerate is not None:
-                row[1].add(degenerate)
+                row[1][degenerate] = row[1].get(degenerate, 0) + int(exponent) * order
             if meeting is not None:
-                row[2].add(frozenset(meeting))
+                row[2][frozenset(meeting)] = int(exponent)
             row[3].update(vertical)
 
     def abscissas(self) -> list[Abscissa]:
@@ -249,7 +254,7 @@ class _Table:
         found: list[tuple[Number, Abscissa]] = []
         edges = [box.x0, box.x1]
         for factor, degenerate, meeting, vertical in self.rows.values():
-            about = (frozenset(degenerate), frozenset(meeting), tuple(sorted(vertical)))
+            about = (degenerate, meeting, tuple(sorted(vertical)))
             if factor.degree() == 1:
                 value = fmpq(-factor[0], factor[1])
                 if value in edges:
@@ -260,6 +265,6 @@ class _Table:
             for root in roots_between(factor, box.x0, box.x1):
                 x = number(root)
                 found.append((x, Abscissa(x, *about)))
-        found += [(x, Abscissa(x, frozenset(), frozenset(), ())) for x in edges]
+        found += [(x, Abscissa(x, {}, {}, ())) for x in edges]
         by = {id(x): abscissa for x, abscissa in found}
         return [by[id(x)] for x in ascending([x for x, _ in found])]

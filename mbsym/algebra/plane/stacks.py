@@ -9,7 +9,7 @@ at r, are those that end in the point between them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -17,7 +17,7 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra.failures import Defect
-from mbsym.algebra.plane.fields import Extension, OverField
+from mbsym.algebra.plane.fields import Extension, Over, OverField
 from mbsym.algebra.plane.numbers import (
     Integer,
     Number,
@@ -140,36 +140,91 @@ def _over_rational(curves: Sequence[Curve], box: Box, x: Rational) -> list[Fibre
     return found
 
 
-def _over_algebraic(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
-    """The polynomials f(alpha, .) are split into pairwise coprime square-free ones over QQ(alpha).
+@dataclass(eq=False)
+class _Node:
+    """A root over a critical abscissa with the curves through it, and how often each meets the vertical line there."""
 
-    Which of them can have common or multiple roots is known beforehand: those whose resultant or discriminant has
-    alpha's minimal polynomial for a factor.
+    root: Over
+    through: dict[int, int]
+
+
+def _over_algebraic(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
+    """The points over an algebraic abscissa, by what is known of it.
+
+    Where curves have simple zeros of their discriminant or resultant only, balls find the roots and which of them is
+    the double or the common one; all others are split into pairwise coprime square-free polynomials over QQ(alpha).
     """
     field = Extension(at.x)
-    basis: list[tuple[OverField, dict[int, int]]] = []
-    for k, curve in enumerate(curves):
-        whole = field.trimmed(curve.in_y)
-        if len(whole) < 2:
+    wholes = {k: p for k, curve in enumerate(curves) if len(p := field.trimmed(curve.in_y)) > 1}
+    hard = _hard(at, wholes)
+    nodes: list[_Node] = []
+    for k, whole in wholes.items():
+        if k in hard:
             continue
+        if k not in at.degenerate:
+            nodes += [_Node(root, {k: 1}) for root in field.roots(field.monic(whole))]
+            continue
+        found = field.double_root(field.monic(whole))
+        if found is None:
+            hard.add(k)
+            continue
+        nodes += [_Node(found[0], {k: 2}), *(_Node(root, {k: 1}) for root in found[1])]
+    for pair in at.meeting:
+        if not pair & hard and pair <= {*wholes}:
+            _join(nodes, *pair)
+    nodes += _by_basis(field, at, {k: whole for k, whole in wholes.items() if k in hard})
+    points = []
+    for node in nodes:
+        on, root = tuple(sorted(node.through.items())), node.root
+        inside = root.compare(box.y0), root.compare(box.y1)
+        if inside[0] >= 0 >= inside[1]:
+            points.append(FibrePoint(root if root.exact is None else root.exact, on))
+    return points
+
+
+def _hard(at: Abscissa, wholes: Mapping[int, OverField]) -> set[int]:
+    """Curves that take part in more than simple zeros.
+
+    A simple zero of the discriminant is one double root.  A simple zero of the resultant of two curves without double
+    roots, whose leading coefficients do not vanish, is one common root.
+    """
+    found = {k for k in wholes if at.degenerate.get(k, 0) > 1}
+    for pair, order in at.meeting.items():
+        if order > 1 or any(k in at.degenerate for k in pair):
+            found |= {k for k in pair if k in wholes}
+    while more := {k for pair in at.meeting if pair & found for k in pair if k in wholes} - found:
+        found |= more
+    return found
+
+
+def _join(nodes: list[_Node], j: int, k: int) -> None:
+    """Makes one of the nodes of two curves that have one root in common."""
+    while True:
+        ours, theirs = ([node for node in nodes if one in node.through] for one in (j, k))
+        hits = [
+            (a, b) for a in ours for b in theirs if a is b or (a.root.low <= b.root.high and b.root.low <= a.root.high)
+        ]
+        if not hits:
+            raise Defect("curves that meet have no root in common")
+        if len(hits) == 1:
+            break
+        for node in {id(x): x for hit in hits for x in hit}.values():
+            node.root.halve()
+    a, b = hits[0]
+    if a is not b:
+        keep, drop = (a, b) if len(a.root.polynomial) <= len(b.root.polynomial) else (b, a)
+        keep.through.update(drop.through)
+        nodes.remove(drop)
+
+
+def _by_basis(field: Extension, at: Abscissa, wholes: Mapping[int, OverField]) -> list[_Node]:
+    """The roots of pairwise coprime square-free polynomials that the curves' ones are products of."""
+    basis: list[tuple[OverField, dict[int, int]]] = []
+    for k, whole in wholes.items():
         pieces = _with_multiplicity(field, whole) if k in at.degenerate else [(field.monic(whole), 1)]
         for piece, multiplicity in pieces:
             basis = _refined(field, basis, piece, k, multiplicity, at)
-    for edge, y in ((BOTTOM, box.y0), (TOP, box.y1)):
-        if any(edge in pair for pair in at.meeting):
-            line = field.trimmed([fmpq(-1) * y * _one(field), _one(field)])
-            basis = _refined(field, basis, line, edge, 1, at)
-    found = []
-    for piece, through in basis:
-        on = tuple(sorted((k, m) for k, m in through.items() if k >= 0))
-        for root in field.roots(piece):
-            if BOTTOM in through or TOP in through:
-                found.append(FibrePoint(box.y0 if BOTTOM in through else box.y1, on))
-            elif root.compare(box.y0) > 0 and root.compare(box.y1) < 0:
-                found.append(FibrePoint(root if root.exact is None else root.exact, on))
-            elif root.compare(box.y0) == 0 or root.compare(box.y1) == 0:  # the edge itself is a curve
-                found.append(FibrePoint(root.exact, on))
-    return found
+    return [_Node(root, dict(through)) for piece, through in basis for root in field.roots(piece)]
 
 
 def _one(field: Extension) -> Any:
