@@ -49,7 +49,7 @@ initial: {q: {position: 1.2, velocity: 0}, x: 1, y: -1/2}
 def run(text: str, pivot: str, force: str, **how: Any) -> Simulation:
     system, complaints = read(text.replace("PIVOT", pivot).replace("FORCE", force))
     assert system is not None, list(complaints)
-    return simulate(scenario(system), Request(time=3.0, samples=31, estimate=False, **how))
+    return simulate(scenario(system), Request(time=1.5, samples=16, estimate=False, **how))
 
 
 @pytest.mark.parametrize(
