@@ -17,12 +17,15 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from flint import arb, ctx
 
 from mbsym.analysis import approximation
 from mbsym.analysis.pipeline import Analysis
 from mbsym.maps.mapping import plane_map
 from mbsym.maps.section import Axis
 from mbsym.problems.checks import EXACT, FAILED
+from mbsym.problems.stability.linear_form import NonholonomicForm
+from mbsym.problems.stability.nonholonomic import enclosed
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.map_located import stratum_at
@@ -126,3 +129,22 @@ def test_a_map_has_the_region_of_hurwitz(sleigh: Analysis) -> None:
         word = stratum_at(found, b, a).judged.verdict.word
         assert word is (Word.ASYMPTOTIC_BUT_STEADY if stable else Word.UNSTABLE)
     assert seen == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "even", "word"),
+    [
+        (("2", "3"), True, Word.CRITICAL),
+        (("2", "3"), False, Word.UNDECIDED),  # nobody knows that the odd coefficients are zero
+        (("2", "2"), True, Word.UNDECIDED),  # a double pair may have a block
+        (("2", "-3"), True, Word.UNSTABLE),
+    ],
+)
+def test_imaginary_pairs_at_irrational_values(stiffness: tuple[str, str], even: bool, word: Word) -> None:
+    """x'' + sqrt(a) x = 0, y'' + sqrt(b) y = 0, or - sqrt(-b): enclosed, and even in lambda where that is known."""
+    with ctx.workprec(128):
+        a, b = (arb(x).sqrt() if not x.startswith("-") else -arb(x[1:]).sqrt() for x in stiffness)
+        zero, one = arb(0), arb(1)
+        nothing = [[zero, zero], [zero, zero]]
+        matrices = [[[one, zero], [zero, one]], nothing, nothing, [[a, zero], [zero, b]], nothing]
+        assert enclosed(NonholonomicForm(), matrices, 0, 128, even).word is word

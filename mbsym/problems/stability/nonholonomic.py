@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import acb_poly, arb, arb_mat, ctx
 
 from mbsym.algebra.roots import counted
 from mbsym.problems.stability.linear_form import NonholonomicForm
@@ -59,8 +59,14 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
     return concluded({Fact.BOUNDED}, *OPEN)
 
 
-def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int) -> Verdict:
-    """The verdict with entries in balls, M, D, G, K, N; ``zero_power`` of the determinant is known in symbols."""
+def enclosed(
+    form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int, even: bool = False
+) -> Verdict:
+    """The verdict with entries in balls, M, D, G, K, N.
+
+    Known in symbols are ``zero_power`` of the determinant, and whether the rest is ``even`` in lambda: then simple
+    negative roots in lambda^2 are imaginary pairs, and zero roots, if they are those of the family, have no blocks.
+    """
     with ctx.workprec(bits):
         size = len(matrices[0])
         m, d, g, k, n = (arb_mat(size, size, [x for row in rows for x in row]) for rows in matrices)
@@ -70,6 +76,8 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
             return undecided(Because.MASS_SINGULAR)
         coefficients = [arb(x) for x in first.charpoly().coeffs()[zero_power:]]
         right = to_the_right(coefficients)
+        if even and form.zeros(zero_power) in (0, form.family) and _negative(coefficients[::2]):
+            return concluded({Fact.BOUNDED}, *OPEN)
     if right is None and any(x < 0 for x in coefficients):  # the leading one is 1: not all roots are on this side
         return concluded({Fact.ROOT_RIGHT})
     if right is None:
@@ -77,6 +85,16 @@ def enclosed(form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, b
     if right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (right,)))
     return all_left(form, form.zeros(zero_power))
+
+
+def _negative(coefficients: Sequence[arb]) -> bool:
+    """Whether all roots of a real polynomial are shown to be real, simple and negative."""
+    try:
+        roots = acb_poly(coefficients).roots()
+    except ValueError:  # not isolated
+        return False
+    real = all(not any(x.conjugate().overlaps(y) for y in roots if y is not x) for x in roots)
+    return real and all(x.real < 0 for x in roots)
 
 
 def to_the_right(coefficients: Sequence[arb]) -> int | None:

@@ -153,7 +153,7 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = (
-            _enclosed(scene, linear, part, values, balance, found.theory.zero_power)
+            _enclosed(scene, linear, part, values, balance, found.theory)
             if found.theory.at_point is None
             else found.theory.at_point.verdict
             for part, found in zip(prepared, judged, strict=True)
@@ -199,7 +199,7 @@ def _enclosed(
     part: Prepared,
     values: Mapping[str, Fraction],
     balance: Balance,
-    zero_power: int,
+    theory: Theory,
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
     there = balance.at(values)
@@ -207,7 +207,8 @@ def _enclosed(
     cyclic = part.system.cyclic if constant else ()
     matrices = _matrices_at(scene, linear, part.coordinates, values)
     if part.system.nonholonomic is not None:
-        return nonholonomic.enclosed(part.system.nonholonomic, matrices, zero_power, PRECISION)
+        even = theory.variable == "lambda^2"
+        return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
     found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
     return off_the_leaf(found) if part.system.leaf else found
 
@@ -232,9 +233,9 @@ class Prepared:
     system: LinearSystem
 
     @cached_property
-    def zero_power(self) -> int:
-        """The power of lambda that the determinant has for a factor."""
-        return analyse(self.system, self.known).zero_power
+    def theory(self) -> Theory:
+        """What is known in symbols: the power of lambda that the determinant has for a factor, and its parity."""
+        return analyse(self.system, self.known)
 
     def at(self, there: Balance) -> LinearSystem:
         """The system with what is known of energy and momenta at parameter values."""
@@ -342,7 +343,7 @@ class ExactVerdicts:
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                found.append(_enclosed(self.scene, self.linear, part, values, self.balance, part.zero_power))
+                found.append(_enclosed(self.scene, self.linear, part, values, self.balance, part.theory))
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)

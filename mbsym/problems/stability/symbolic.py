@@ -398,7 +398,7 @@ def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tupl
     unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
     if found.variable == "lambda^2" and found.factors:
         best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
-        if zeros == 0:
+        if zeros in (0, form.family):  # the family's are in the kernel: no blocks
             best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
         return Case(found.requirements, (), best), *unstable
     wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
