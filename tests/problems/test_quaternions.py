@@ -153,3 +153,18 @@ claims:
     assert set(analysis.equations.aside) >= {"e0", "e1", "e2", "e3"}
     assert {check.outcome for check in analysis.checks} == {EXACT}
     assert all(claim.holds for claim in analysis.claims)
+
+
+def test_what_is_known_beforehand_and_what_cannot_be_decided() -> None:
+    """The norm is no integral of the motion's own; three squares are none at all; behind a root of e nothing is said
+    to differ that may vanish where |e| = 1.
+    """
+    more = "claims:\n  - {claim: first integral, equals: e0**2 + e1**2 + e2**2 + e3**2, place: norm}"
+    more += "\n  - {claim: first integral, equals: e0**2 + e1**2 + e2**2, place: part}"
+    claims = {claim.claim.place: claim for claim in mbsym.loads(ORBIT.replace("claims:", more), (3,)).claims}
+    assert claims["norm"].remark == "of the quaternion alone: it is known beforehand"
+    assert claims["part"].holds is False
+    far = mbsym.loads(ORBIT.replace("order: 2", "order: exact"), (3,))
+    outcomes = {claim.claim.place: claim.outcome for claim in far.claims}
+    assert "differs" not in " ".join(outcomes.values())
+    assert {check.outcome for check in far.checks} == {EXACT}
