@@ -42,13 +42,16 @@ from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
-from mbsym.model.momenta import momentum_names
+from mbsym.model.momenta import denominator_names, momentum_names
 from mbsym.model.system import System
 from mbsym.problems import energy as energies
 from mbsym.problems.equations import convective_rate
 
 #: A matrix is inverted in closed form up to this size.
 MOST = 6
+
+#: Names that the rings keep for long denominators, where somebody wants to write these once.
+DENOMINATORS = 6
 
 
 @dataclass(frozen=True, repr=False)
@@ -103,7 +106,8 @@ class NothingIgnored(Failure):
 def hamilton(system: System, terms: int) -> Hamilton:
     """The canonical equations.  Raises NoClosedForm where they outgrow the budget, SingularPoint where det M = 0."""
     names, momenta = system.coordinates, momentum_names(system)
-    ring = ring_of(system, terms, moving=tuple(momenta.values()))
+    spare = denominator_names(system, DENOMINATORS)
+    ring = ring_of(system, terms, moving=tuple(momenta.values()), fixed=spare)
     scene = Scene(system, ring, ring_environment(system, ring), ring)
     found = energies.energy(scene)
     values = [ring.generator("prescribed", momenta[name]) for name in names]
@@ -133,7 +137,7 @@ def routh(system: System, terms: int) -> Routh:
     NoClosedForm where formulas outgrow the budget.
     """
     all_momenta = momentum_names(system)
-    ring = ring_of(system, terms, fixed=tuple(all_momenta.values()))
+    ring = ring_of(system, terms, fixed=(*all_momenta.values(), *denominator_names(system, DENOMINATORS)))
     scene = Scene(system, ring, ring_environment(system, ring), ring)
     found = energies.energy(scene)
     applied = generalized_forces(scene)

@@ -60,7 +60,7 @@ from mbsym.report.latex_references import keys_of, references, theorems_named
 from mbsym.report.latex_stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex_told import packed, paragraphs
 from mbsym.report.latex_words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
-from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.programs import programs_of
 from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.report.unit_text import bracketed
@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.reduction import Reduction
+    from mbsym.report.canonical_denominators import Denominators
 
 T = TypeVar("T")
 Filters = dict[str, Callable[..., Any]]
@@ -105,8 +106,9 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     labels = Labels(prefix_of(system.name))
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
-    forms = forms_of(analysis, problems)
-    long = withheld([*(found[number] for number in COUNTED if number in found), *forms.results], PAPER)
+    forms, denominators = _forms(analysis, problems)
+    long = withheld([found[number] for number in COUNTED if number in found], PAPER)
+    long |= withheld(forms.results, PAPER_FORMS)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
     verdicts = found.get(6)
@@ -143,6 +145,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "forms": forms,
+        "denominators": denominators,
         "statements": statements,
         "cases": cases,
         "Shown": Shown,
@@ -166,6 +169,17 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     }
     filters = _filters(analysis, tongue, long, form.widest, lambda value: once(measured_matrix, value))
     return filters | _momenta(forms), values
+
+
+def _forms(analysis: Analysis, problems: Sequence[int]) -> tuple[Forms, Denominators | None]:
+    """Routh's and Hamilton's forms as they are printed: long denominators have names."""
+    forms = forms_of(analysis, problems)
+    if not forms.results:
+        return forms, None
+    from mbsym.report.canonical_denominators import with_names
+
+    denominators = with_names(forms, analysis.system)
+    return denominators.forms, denominators
 
 
 def _momenta(forms: Forms) -> Filters:

@@ -28,6 +28,8 @@ COUNTED = (1, 2, 3, 5, 7)
 PAPER_PROGRAM, FILE_PROGRAM = 1_000, 20_000
 #: For people: about half a megabyte a problem.
 PAPER = Limit(2_000, 10_000)
+#: Of Routh's and Hamilton's forms on paper: longer ones have coefficients that no line holds.
+PAPER_FORMS = Limit(300, 3_000)
 #: For programs; the numbers of long equations come from straight-line programs anyway.
 FILE = Limit(6_000, 40_000)
 

@@ -13,8 +13,11 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex
 from jsonschema import Draft202012Validator
 
 import mbsym
+from mbsym.report.canonical import forms_of
+from mbsym.report.canonical_denominators import with_names
 from mbsym.report.python_module import render as module_text
 from mbsym.report.schemas import schema
+from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
 
 #: Ignored coordinates; dissipation and inertia that couples; prescribed motion; speeds of their own.
@@ -114,3 +117,40 @@ def test_numbers_agree_with_lagranges_equations(name: str) -> None:
     assert found == pytest.approx(np.concatenate([x[n:][kept], whole[n:][kept]]), abs=1e-10 * scale)
     assert module.ignored_rates(time, reduced, constants, p) == pytest.approx(x[gone], rel=1e-9)
     assert np.isfinite(module.reduced_potential(reduced[: len(kept)], constants, p, time))
+
+
+@needs_pdflatex
+@pytest.mark.slow
+def test_long_denominators_are_written_once_and_stay_on_the_page(tmp_path: Path) -> None:
+    """The determinant of the ignored coordinates' inertia is wider than any line."""
+    analysis = mbsym.load(SHIPPED / "satellite-with-damper.yaml", (3,))
+    analysis.forms = ("routh", "hamilton")
+    text = TARGETS["latex"].render(analysis, (3,))
+    assert isinstance(text, str)
+    assert text.count("\\Delta_{1} = ") == 1
+    assert "\\frac{1}{\\Delta_{1}}" in text or "{\\Delta_{1}" in text.split("\\Delta_{1} = ")[1]
+    assert "Overfull" not in compiled_latex(text, tmp_path)
+
+
+def test_names_of_denominators_stand_for_them() -> None:
+    """With Delta put back every formula is the one that was derived; names of the two forms differ."""
+    analysis = mbsym.load(SHIPPED / "satellite-with-damper.yaml", (3,))
+    analysis.forms = ("routh", "hamilton")
+    forms = forms_of(analysis, (3,))
+    found = with_names(forms, analysis.system)
+    letters = [str(letter) for letter, _ in (*found.routh, *found.hamilton)]
+    assert len(letters) == len(set(letters)) > 1
+    for told, whole, named in (
+        (found.forms.routh.reduced_potential, forms.routh.reduced_potential, found.routh),
+        (found.forms.hamilton.hamiltonian, forms.hamilton.hamiltonian, found.hamilton),
+    ):
+        ring = whole.ring
+        back = {ring.index("parameter", str(letter)): value.polynomial for letter, value in named}
+        inverse = {
+            k: ring.reciprocal(value.polynomial)
+            for letter, value in named
+            for k, g in enumerate(ring.generators[: ring.spare])
+            if g.kind == "reciprocal" and g.argument == letter.polynomial
+        }
+        assert told.polynomial != whole.polynomial
+        assert ring.is_zero(ring.substitute(ring.substitute(told.polynomial, inverse), back) - whole.polynomial) is True
