@@ -47,6 +47,7 @@ from mbsym.report.programs import programs_of
 from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
 from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
+from mbsym.report.summary import title_of
 from mbsym.report.unit_text import labelled, pretty
 from mbsym.source.meaning import meaning
 
@@ -113,6 +114,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         motion=motion,
         no_motion=no_motion,
         system=system,
+        title_of=title_of,
         rate=labelled("", rate_unit(system)),
         accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},

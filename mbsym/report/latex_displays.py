@@ -24,7 +24,7 @@ def written_out(text: str) -> str:
     r"""The text with every ``\longformula`` as plain LaTeX; its other mathematics may be broken after commas."""
     pieces = []
     last = 0
-    for start, label, formula, end in _long_formulas(text):
+    for start, label, formula, end in long_formulas(text):
         pieces += [_loosened(text[last:start]), display(formula, label)]
         last = end
     return "".join([*pieces, _loosened(text[last:])])
@@ -35,11 +35,11 @@ def display(formula: str, label: str = "") -> str:
     named = f"\\label{{{label}}}" if label else ""
     return (
         f"{_OPENING}\n\\hangindent=2em \\hangafter=1 \\noindent\\refstepcounter{{equation}}{named}%\n"
-        f"$\\displaystyle {_words_outside(_breakable(formula))}$%\n{_NUMBER}"
+        f"$\\displaystyle {_words_outside(loosened(formula))}$%\n{_NUMBER}"
     )
 
 
-def _long_formulas(text: str) -> Iterator[tuple[int, str, str, int]]:
+def long_formulas(text: str) -> Iterator[tuple[int, str, str, int]]:
     """(start, label, formula, end) of each."""
     place = 0
     while (start := text.find("\\longformula", place)) >= 0:
@@ -76,7 +76,7 @@ _PENALTY = re.compile(r"\\penalty[0-9]+ ?\Z")
 _AT_SIGNS, _BETWEEN_FACTORS = 5000, 9000
 
 
-def _breakable(formula: str) -> str:
+def loosened(formula: str) -> str:
     """The formula with places at which it is broken rather than standing out into the margin."""
     pieces, place, depth = [], 0, 0
     for match in _PLACES.finditer(formula):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.report.environment import rendered
+from mbsym.report.latex_abbreviated import abbreviated
 from mbsym.report.latex_displays import written_out
 from mbsym.report.latex_form import Form, set_apart
 from mbsym.report.latex_values import shown
@@ -24,5 +25,8 @@ def filled(template: str, analysis: Analysis, problems: Sequence[int], form: For
     """A template with the results of some problems; ``more`` are values besides."""
     filters, values = shown(analysis, problems, form)
     text = rendered(template, filters, **values, **more)
+    if analysis.system.constraints:
+        head, begins, rest = text.rpartition("\\begin{document}")  # an appendix has none
+        text = head + begins + abbreviated(rest)
     text = text if form is Form.REPORT else written_out(set_apart(text))
     return "\n".join(map(broken, spared(text).split("\n")))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.model.system import System
 from mbsym.problems.checks import Check
 from mbsym.report.claims import ClaimLine, claim_line
 from mbsym.report.sections import section_of
@@ -48,11 +49,22 @@ def summary(analysis: Analysis, problems: Sequence[int], files: Iterable[Path]) 
     )
 
 
+def title_of(system: System, number: int) -> str:
+    """What a problem derives for this system: which equations problem 3 holds is said."""
+    from mbsym.analysis import PROBLEMS
+
+    if PROBLEMS[number].attribute == "equations" and system.speeds:
+        return "nonlinear Kane's equations" + (" with multipliers" if system.constraints else "")
+    if PROBLEMS[number].attribute == "equations" and system.constraints:
+        return "nonlinear Lagrange equations with multipliers"
+    return PROBLEMS[number].title
+
+
 def _line(analysis: Analysis, number: int) -> Line:
     from mbsym.analysis import PROBLEMS
 
     stage = analysis.stage(number)
-    title = PROBLEMS[number].title
+    title = title_of(analysis.system, number)
     if stage.failure is not None:
         lines = [f"no result: {stage.failure.reason}", *([stage.failure.hint] if stage.failure.hint else [])]
         return Line(number, title, tuple(lines), stage.seconds, False)

@@ -65,12 +65,13 @@ def derive_all(
     from mbsym.analysis import PROBLEMS
     from mbsym.analysis.forms import asked
     from mbsym.analysis.second_routes import carried_out
+    from mbsym.report.summary import title_of
     from mbsym.report.targets import FORMATS
 
     def derive(late: bool) -> None:
         for number in analysis.problems:
             if late == (PROBLEMS[number].attribute == "stability"):
-                say(f"problem {number}, {PROBLEMS[number].title}")
+                say(f"problem {number}, {title_of(analysis.system, number)}")
                 analysis.stage(number)
 
     helped = beside is not unhelped
