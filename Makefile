@@ -57,6 +57,13 @@ $(if $(5),$(BIN)/python -c "$(SMALL)",cp) reports/gallery/$(1)/$(3).png systems/
 
 endef
 
+# The system, its axes and settings.
+define map
+$(BIN)/mbsym map systems/$(1).yaml $(2) --format png --out reports/gallery/map-$(1) --quiet
+$(BIN)/python -c "$(SMALL)" reports/gallery/map-$(1)/map.png systems/figures/map-$(1).png
+
+endef
+
 gallery: $(READY)
 	@mkdir -p systems/figures
 	$(call figure,tethered-satellites,60,motion)
@@ -82,6 +89,13 @@ gallery: $(READY)
 	$(call figure,cart-pole,2,motion,,small)
 	$(call figure,gyrostat-poisson,0.1,motion,,small)
 	$(call figure,clebsch-poisson,8,motion,,small)
+	$(call map,satellite,--x alpha=-1:1 --y gamma=0:1 -s p1=2/5 -s p2=1/5)
+	$(call map,gravity-gradient,--x A=0:2 --y B=0:2 -s C=1)
+	$(call map,ziegler-damped,--x b1=0:1/5 --y b2=0:1/5 -s P=9/5)
+	$(call map,orbital-gyrostat,--x h=-9:9 --y A=2:8)
+	$(call map,satellite-with-damper,--x omega=0:5 --y Lambda=0:2)
+	$(call map,heavy-top,--x Omega=0:100 --y l=0:1/2)
+	$(call map,bicycle,--x v=0:10)
 
 docs: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
