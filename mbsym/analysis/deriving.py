@@ -60,7 +60,13 @@ def stabilisation_of(analysis: Analysis) -> Stabilisation:
     """Problem 8, with numbers where the description gives all of them."""
     from mbsym.problems.stabilisation import problem  # few ask for it
 
-    values = stability.parameter_values(analysis.parameters_scene, analysis.equilibrium)
+    found = analysis.equilibrium
+    if len(found.conditions) > len(found.solved):
+        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
+        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    values = stability.parameter_values(analysis.parameters_scene, found)
+    if values is not None and not problem.on_motion(analysis.parameters_scene, found, values):
+        values = None
     return problem.stabilisation(analysis.parameters_scene, analysis.judgeable, analysis.signs, values)
 
 

@@ -11,7 +11,7 @@ from mbsym.source.reading import Fields, Reading, comma_hint
 from mbsym.source.scope import Allowed
 
 #: A system has at most so many coordinates.
-MOST_COORDINATES = 100
+MOST_COORDINATES = 30
 
 #: What describes bodies, and has no meaning beside matrices.
 OF_BODIES = (

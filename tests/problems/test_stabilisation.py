@@ -330,3 +330,29 @@ def test_every_sentence_has_its_translations(pole: Analysis) -> None:
 def test_the_terminal_tells_the_gains(pole: Analysis) -> None:
     told = list(lines(pole.stabilisation, pole))
     assert any(line.startswith("  k of F: (") for line in told)
+
+
+def test_many_coordinates_are_told_to_be_many() -> None:
+    n = 14
+    rows = [[2 if i == j else -1 if abs(i - j) == 1 else 0 for j in range(n)] for i in range(n)]
+    names = ", ".join(f"x{i}" for i in range(n))
+    half = [[int(i == j and i < n // 2) for j in range(n)] for i in range(n)]
+    whole = f"{{coordinates: [{names}], K: {rows}, D: {half}, B: {[[int(i == 0)] for i in range(n)]}}}"
+    got = analysed(whole, "{}", "inputs: [u]").stabilisation
+    assert got.feedback is None
+    assert got.no_feedback == "there are more than 12 coordinates"
+    assert got.control[0].rank.sure is Sure.UNDECIDED
+
+
+def test_parameters_that_a_condition_ties_are_not_called_independent() -> None:
+    """p^2 + w^2 = k^2 is linear in none of them, and K = k is not independent of the others there."""
+    text = """
+mbsym: 1
+name: Tied
+parameters: {k: real, p: real, w: real}
+bodies: [{name: one, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 1}]
+loads: [{generalized force: {x: p**2 + w**2 - k**2 - x*k}}]
+motion: {x: 0}
+"""
+    with pytest.raises(Unavailable, match="conditions that were not solved"):
+        _ = mbsym.loads(text).stabilisation

@@ -115,7 +115,7 @@ def _announcing(shape: str) -> bytes:
         ("K.npy", saved(np.eye(2) * 1j), "K.npy holds complex128"),
         ("K.npy", b"no array", "K.npy is no NumPy file"),
         ("K.npy", _announcing("(99999999, 99999999)"), "K.npy holds a matrix of 99999999 x 99999999"),
-        ("K.npy", _announcing("(90, 90)"), "K.npy is not as long as its header says"),
+        ("K.npy", _announcing("(20, 20)"), "K.npy is not as long as its header says"),
         ("K.csv", "1, 2", "K.csv is no file of a matrix"),
         ("../K.mtx", "", "a file of a matrix stands beside the description"),
         ("missing.mtx", "", "there is no file missing.mtx beside the description"),

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from math import comb
 from typing import Any
 
 from mbsym.algebra.characteristic import _Variable, determinant, resultant
@@ -29,6 +30,8 @@ from mbsym.problems.stabilisation.result import Locus, Rank, Sure
 
 #: So many maximal minors are formed, of so many rows at most.
 MOST_MINORS, MOST_ROWS = 60, 6
+#: So many blocks of B are looked at for one that is not singular.
+MOST_BLOCKS = 5_000
 #: Terms of a minor whose roots are still compared with those of others.
 MOST_TERMS = 3_000
 
@@ -78,6 +81,8 @@ def annihilator(inputs: Rows, known: Signs, size: int) -> tuple[Polynomial, Rows
     unit = [[zero + (1 if i == j else 0) for j in range(size)] for i in range(size)]
     width = len(inputs[0]) if inputs and inputs[0] else 0
     for rank in range(min(size, width), 0, -1):
+        if comb(size, rank) * comb(width, rank) > MOST_BLOCKS:
+            raise TooLargeError("too many minors")
         best: tuple[int, Polynomial, tuple[int, ...], tuple[int, ...]] | None = None
         for at in combinations(range(size), rank):
             for columns in combinations(range(width), rank):
