@@ -25,6 +25,7 @@ from typing import Any
 
 from flint import acb_mat, arb_mat, ctx, fmpq
 
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
 from mbsym.algebra.plane.laws import Breach, breaches
 from mbsym.algebra.plane.line import Line
@@ -186,11 +187,15 @@ class _Checking:
 
     def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:
         """A second exact point of an arc."""
-        self.arcs += 1
         point = self._second(found, arc, self.source.choice(arc.pieces))
         if self._exact is None:
             self._exact = ExactVerdicts(self.section)
-        wrong = _differences(self._exact(point), judged)
+        try:
+            there = self._exact(point)
+        except TooLargeError:  # not counted among those tried
+            return
+        self.arcs += 1
+        wrong = _differences(there, judged)
         self.findings += [Finding(mistake, arc=arc.id, near=point.floats()) for mistake in wrong]
 
     def _second(self, found: Arrangement, arc: Arc, piece: Piece) -> Point:

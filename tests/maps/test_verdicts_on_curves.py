@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx, fmpq_poly
 
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, decompose
 from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomial
 from mbsym.algebra.plane.numbers import number, roots_between
@@ -178,3 +179,22 @@ def test_inverses_over_a_tower() -> None:
     assert field.value(Y**4 - X - 1) == 0
     with pytest.raises(ZeroDivisionError):
         field.value(Y**4 - X - 1).inverse()
+
+
+def test_fields_of_high_degree_are_refused() -> None:
+    found = decompose([X**50 - 2, Y**2 - X], Box(1, 2, 0, 2))
+    corner = next(c for c in found.corners if c.kind == "crossing")
+    with pytest.raises(TooLargeError, match="degree 50"):
+        verdict_on(gyroscopic(), corner.point)
+    assert corner.point.sign(Y**2 - X) == 0
+
+
+def test_what_curves_share_at_a_corner_is_of_lower_degree() -> None:
+    """y = x - 1 and (y - x + 1) (y^2 + 3) + x^2 - 2 = 0 meet over x^2 = 2, once: there y is in QQ(x)."""
+    line, cubic = Y - X + 1, (Y - X + 1) * (Y**2 + 3) + X**2 - 2
+    found = decompose([line, cubic], Box(-2, 2, -2, 2))
+    corner = next(c for c in found.corners if c.factors == (0, 1))
+    field = PointField(corner.point)
+    assert field.value(line) == 0
+    assert field.value(X**2 - 2) == 0
+    assert len(corner.point.y.polynomial) == 2

@@ -191,13 +191,17 @@ class Extension:
 
 @dataclass(eq=False)
 class Over:
-    """The only root in [low, high] of a square-free polynomial over QQ(alpha); low = high where it is rational."""
+    """The only root in [low, high] of a polynomial over QQ(alpha), a simple one; low = high where it is rational.
+
+    ``shared``: further polynomials with this root.
+    """
 
     over: Extension
     polynomial: OverField
     low: Rational
     high: Rational
     _rising: int = field(default=0, repr=False)
+    shared: list[OverField] = field(default_factory=list, repr=False)
 
     @property
     def exact(self) -> Rational | None:
@@ -261,6 +265,13 @@ class Over:
             if value > 0 or value < 0:
                 return 1 if value > 0 else -1
             bits *= 2
+
+    def shrink(self) -> None:
+        """Puts what the polynomial has in common with those shared in its place."""
+        while self.shared and len(self.polynomial) > 2:
+            common = self.over.gcd(self.polynomial, self.shared.pop())
+            if 1 < len(common) < len(self.polynomial):
+                self.restrict(common)
 
     def restrict(self, divisor: OverField) -> None:
         """Puts a monic divisor that vanishes at this root in place of the polynomial."""

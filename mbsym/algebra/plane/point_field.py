@@ -11,12 +11,25 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
+from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.elements import Element, ElementMatrix
 from mbsym.algebra.plane.fields import Extension, Over, OverField
 from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Polynomial, coefficients
+
+#: Number fields of a higher degree are left alone: arithmetic in them takes minutes.
+MOST_DEGREE = 48
+
+
+def _affordable(degree: int) -> None:
+    if degree > MOST_DEGREE:
+        raise TooLargeError(f"a point in a number field of degree {degree}", limit=Limit.DEGREE)
+
+
+def _degree(x: Any) -> int:
+    return 1 if isinstance(x, fmpq) else int(x.polynomial.degree())
 
 
 class SimpleField:
@@ -113,10 +126,15 @@ class PointField:
     matrix = ElementMatrix
 
     def __init__(self, point: Point) -> None:
+        """Raises TooLargeError beyond ``MOST_DEGREE``, ValueError for a rational point."""
         if point.rational:
             raise ValueError("a rational point has the rational numbers for its field")
         self.point = point
         x, y = point.x, point.y
+        _affordable(_degree(x))
+        if isinstance(y, Over):
+            y.shrink()
+        _affordable(_degree(x) * (len(y.polynomial) - 1 if isinstance(y, Over) else _degree(y)))
         self._field: SimpleField | TowerField
         if isinstance(y, Over) and len(y.polynomial) > 2:
             self._field = TowerField(y)

@@ -214,6 +214,7 @@ def _join(nodes: list[_Node], j: int, k: int) -> None:
     if a is not b:
         keep, drop = (a, b) if len(a.root.polynomial) <= len(b.root.polynomial) else (b, a)
         keep.through.update(drop.through)
+        keep.root.shared += [drop.root.polynomial, *drop.root.shared]
         nodes.remove(drop)
 
 
