@@ -161,9 +161,34 @@ def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     found = run.trajectory
     conserved = run.conservation.standing.conserved is True
     if run.dynamics.in_states:
-        return figures(found, kinds, note(found), conserved)
+        return figures(found, kinds, note(found), conserved) | _places(run, kinds)
     rates = accelerations(run.dynamics, found.times, found.states)
     return figures(found, kinds, note(found), conserved, rates) | _motion(run, kinds, rates)
+
+
+def _places(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
+    """The same pictures of a run in declared variables, through the coordinates of its rows."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.positions import positions
+    from mbsym.numerics.states import StateDynamics, in_coordinates
+    from mbsym.report.motion_figure import motion_figures
+
+    found, dynamics, given = run.trajectory, run.dynamics, run.given
+    assert isinstance(dynamics, StateDynamics)
+    every = -(-len(found.times) // min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies))))
+    rows = in_coordinates(dynamics, found.states[:, ::every])
+    if rows is None or given is None or len(found.times) < 2:
+        return {}
+    try:
+        plain = replace(given, system=dynamics.plain)
+        places = positions(plain, found.times[::every], np.vstack([rows, np.zeros_like(rows)]))
+    except Failure:
+        return {}
+    return motion_figures(places, kinds, note(found)) if places is not None else {}
 
 
 def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:

@@ -13,7 +13,7 @@ Energies are those of ``mbsym.numerics.dynamics``, T2 - T0 - U = sum (u_r - s0_r
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -26,6 +26,7 @@ from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.tree import Name
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.factorisation import solve
@@ -36,7 +37,7 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.speeds import Quaternion
 from mbsym.model.states import described, in_states
-from mbsym.model.system import System
+from mbsym.model.system import Body, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
@@ -223,3 +224,52 @@ def norm_drifts(dynamics: StateDynamics, states: Any) -> dict[str, Any]:
 def has_quaternions(system: System) -> bool:
     """Whether a body is told by one."""
     return any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation)
+
+
+def in_coordinates(dynamics: StateDynamics, states: Any) -> Any | None:
+    """q (n, m) of states (k, m), for places of bodies; None where a joint is not turned by three coordinates by name.
+
+    Where angles are singular they are some that make the same orientation.
+    """
+    place = {name: i for i, name in enumerate(dynamics.inputs[1:])}
+    rows = np.asarray(states, dtype=float)
+    found: dict[str, Any] = {}
+    for body in dynamics.described.bodies:
+        found |= {name: rows[place[name]] for name in body.coordinates if name in place}
+        if not body.orientation:
+            continue
+        turns = [(axis - 1, angle) for axis, angle in body.rotation.turns()]
+        names = [angle.name for _, angle in turns if isinstance(angle, Name)]
+        if len(turns) != 3 or len(names) != 3:
+            return None
+        found |= dict(zip(names, _angles([axis for axis, _ in turns], _cosines(body, rows, place)), strict=True))
+    return np.array([found[name] for name in dynamics.described.coordinates])
+
+
+def _cosines(body: Body, rows: Any, place: Mapping[str, int]) -> Any:
+    """A (3 x 3 x m), from the axes of a body to those of the frame that it hangs on."""
+    vectors = [rows[[place[name] for name in one.components]] for one in body.orientation]
+    if not isinstance(body.orientation[0], Quaternion):
+        return np.array(vectors)
+    e, v = vectors[0][0], vectors[0][1:]
+    found = 2 * v[:, None] * v[None, :]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        found[i, i] += e * e - np.sum(v * v, axis=0)
+        found[i, j] -= 2 * e * v[k]
+        found[j, i] += 2 * e * v[k]
+    return found
+
+
+def _angles(axes: Sequence[int], a: Any) -> tuple[Any, Any, Any]:
+    """x1, x2, x3 with A = A_i(x1) A_j(x2) A_l(x3); x2 and x3 from what is left when the first turn is undone."""
+    i, j, last = axes
+    k = 3 - i - j
+    sign = 1 if (j - i) % 3 == 1 else -1
+    first = np.arctan2(a[j, i], -sign * a[k, i]) if last == i else np.arctan2(-sign * a[j, k], a[k, k])
+    s, c = np.sin(first), np.cos(first)
+    b = np.array(a)
+    b[j], b[k] = c * a[j] + sign * s * a[k], c * a[k] - sign * s * a[j]
+    if last == i:
+        return first, np.arctan2(-sign * b[k, i], b[i, i]), np.arctan2(-sign * b[j, k], b[j, j])
+    return first, np.arctan2(sign * b[i, k], b[k, k]), np.arctan2(sign * b[j, i], b[j, j])

@@ -34,6 +34,7 @@ def test_columns_and_words_are_those_of_the_description(tmp_path: Path) -> None:
     assert "e0, e1, e2, e3; p, q, r, as declared" in result.stdout
     assert "norms of quaternions are restored" in result.stdout
     assert (tmp_path / "histories.svg").exists()
+    assert (tmp_path / "motion.svg").exists()
 
 
 def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> None:

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import mbsym
+from mbsym.mechanics.quaternions import product as turned
 from mbsym.numerics.scenario import Incomplete, scenario
+from mbsym.numerics.states import StateDynamics, in_coordinates, scenario_in_states
 from mbsym.source import to_yaml
 from mbsym.source.meaning import meaning
 
@@ -53,6 +55,29 @@ def test_angles_and_rates_belong_to_the_state_for_every_sequence_of_axes(axes: t
     given = np.array([0.5, -0.5, 0.7, 0.1])
     assert min(np.max(np.abs(e - given)), np.max(np.abs(e + given))) < 1e-13
     assert [run[x][0] for x in "pqr"] == pytest.approx([1, -2, 3], abs=1e-12)
+
+
+@pytest.mark.parametrize("axes", [(3, 1, 3), (1, 2, 3), (2, 1, 3), (2, 3, 2)], ids=str)
+def test_rows_as_coordinates_have_the_same_orientation_where_angles_are_singular_too(axes: tuple[int, ...]) -> None:
+    """There and back through the elementary turns, at 1, at half turns and between."""
+    start = "{e0: 1, e1: 0, e2: 0, e3: 0, p: 0, q: 0, r: 0}"
+    dynamics = StateDynamics(scenario_in_states(scenario(described(start, str(list(axes))).system, declared=True)))
+    half = math.sqrt(0.5)
+    given = [
+        (1, 0, 0, 0),
+        (half, half, 0, 0),
+        (half, 0, half, 0),
+        (half, 0, 0, -half),
+        (0, 1, 0, 0),
+        (0.5, -0.5, 0.7, 0.1),
+    ]
+    for e in given:
+        (q,) = in_coordinates(dynamics, np.array([[*e, 0, 0, 0]]).T).T
+        found = np.array([1.0, 0, 0, 0])
+        for axis, angle in zip(axes, q, strict=True):
+            turn = [math.cos(angle / 2), *(math.sin(angle / 2) * (axis == k) for k in (1, 2, 3))]
+            found = np.array(turned(found, turn))
+        assert min(np.max(np.abs(found - e)), np.max(np.abs(found + e))) < 1e-14
 
 
 def test_a_run_begins_where_angles_are_singular() -> None:
