@@ -100,7 +100,9 @@ def not_closed(file: Path, found: NotClosed, system: System) -> int:
     for gap in sorted(found.gaps, key=lambda one: -one.size)[:MOST_GAPS]:
         line = "" if gap.row.span is None else f" (line {gap.row.span.line})"
         complain(file, f"  gap of {gap.row.label}{line}: {gap.size:.6g}{' (velocity)' if gap.velocity else ''}")
-    if found.fixed:
+    if found.singular:
+        complain(file, "  hint: accelerations do not follow from constraints in such a position; start elsewhere")
+    elif found.fixed:
         complain(file, f"  hint: fix fewer initial values than {', '.join(found.fixed)}, or change them")
     else:
         complain(file, "  hint: check lengths and the initial position; a start nearer to a closed one may succeed")

@@ -77,17 +77,23 @@ class Gap:
 
 
 class NotClosed(Failure):
-    """No state near the given one satisfies the constraints: ``state`` (2n,) is the closest found, with ``gaps``."""
+    """No state near the given one satisfies the constraints: ``state`` (2n,) is the closest found, with ``gaps``.
+
+    ``singular``: it does in float64, and no more digits of it are found since the constraints lose their rank there.
+    """
 
     code = "not-closed"
 
-    def __init__(self, state: Any, gaps: Sequence[Gap], fixed: Sequence[str]) -> None:
+    def __init__(self, state: Any, gaps: Sequence[Gap], fixed: Sequence[str], singular: bool = False) -> None:
         worst = max(gaps, key=lambda gap: gap.size)
         what = "velocities satisfy them" if worst.velocity else "position satisfies them"
         held = f" with {', '.join(fixed)} fixed" if fixed else ""
         text = f"the constraints cannot be closed at these values{held}: no {what} near what is given"
+        if singular:
+            rank = "near what is given they seem to lose their rank"
+            text = f"the constraints are satisfied only to roundings{held}: {rank}"
         super().__init__(f"{text} (gap {worst.size:.6g} in {worst.row.label})")
-        self.state, self.gaps, self.fixed = state, tuple(gaps), tuple(fixed)
+        self.state, self.gaps, self.fixed, self.singular = state, tuple(gaps), tuple(fixed), singular
 
 
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
@@ -306,7 +312,7 @@ class _Exact:
         if not self.satisfied(found):
             left = zip(self._constraints.names, self.residuals(found), strict=False)
             gaps = [Gap(name, abs(float(x))) for name, x in left]
-            raise NotClosed(np.array([float(x) for x in found]), gaps, search.fixed)
+            raise NotClosed(np.array([float(x) for x in found]), gaps, search.fixed, singular=True)
         return tuple(found)
 
 

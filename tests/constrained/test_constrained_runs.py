@@ -307,6 +307,31 @@ def test_tradeoff_tells_from_where_it_begins_and_what_does_not_apply(tmp_path: P
     assert "measured order" in result.stdout
 
 
+def test_links_that_close_in_one_line_only_are_not_called_open(tmp_path: Path) -> None:
+    """Two links of lengths 1 and 2 between points 3 apart: J loses its rank in the one position there is."""
+    text = """
+mbsym: 1
+name: Stretched
+parameters: {m: 1}
+bodies:
+  - {name: one, attached to: 0, rotation: {axes: [3], angles: [a]}, mass: m, inertia about: joint, inertia: [1, 1, 1]}
+  - {name: two, attached to: one, connection point: [1, 0, 0], rotation: {axes: [3], angles: [b]}, mass: m,
+     inertia about: joint, inertia: [1, 1, 1]}
+constraints:
+  - coincide: [{body: two, point: [2, 0, 0]}, {body: 0, point: [3, 0, 0]}]
+initial: {a: 1, b: 1}
+"""
+    with pytest.raises(NotClosed, match="only to roundings") as caught:
+        closed(scenario(described(text)))
+    assert caught.value.singular
+    result = called(tmp_path, text)
+    assert result.exit_code == 3
+    assert "start elsewhere" in result.stderr
+    with pytest.raises(NotClosed, match="cannot be closed") as caught:
+        closed(scenario(described(text.replace("[3, 0, 0]}]", "[3.0001, 0, 0]}]"))))
+    assert not caught.value.singular
+
+
 # --- redundant rows ---
 
 
