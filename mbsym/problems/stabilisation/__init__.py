@@ -22,8 +22,15 @@
 Everything is about the linear equations; asymptotic stability and instability carry over to the nonlinear ones, the
 feedback being the same (Lyapunov's first method).
 
-Sources: Thomson & Tait; N. G. Chetaev, The Stability of Motion (1961); D. R. Merkin, Introduction to the Theory of
+Source: Thomson & Tait; N. G. Chetaev, The Stability of Motion (1961); D. R. Merkin, Introduction to the Theory of
 Stability (1997), chapter 6; W. T. Thomson's and E. E. Zajac's pervasive damping; Kalman, Hautus.
+
+Example:
+
+    >>> import mbsym
+    >>> pole = mbsym.load("systems/cart-pole.yaml").stabilisation
+    >>> pole.control[0].rank.full, pole.least
+    (True, (('F',),))
 """
 
 from __future__ import annotations
