@@ -116,7 +116,7 @@ bench: robot-data
 	$(BIN)/python tests/bench/run.py
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python tests/bench/rows_bench.py
-	$(BIN)/python tests/bench/loops_bench.py
+	$(BIN)/python tests/bench/loops_bench.py --large
 	$(BIN)/python tests/bench/sweep_bench.py
 	$(BIN)/python tests/bench/peers_bench.py
 	$(BIN)/python tests/bench/choice_bench.py
