@@ -90,10 +90,8 @@ def _polynomial(p: Any, names: LatexNames, language: Language) -> str:
 
 
 def _rational(value: Any) -> str:
-    text = str(value)
-    top, slash, bottom = text.removeprefix("-").partition("/")
-    sign = "-" if text.startswith("-") else ""
-    return f"{sign}\\tfrac{{{top}}}{{{bottom}}}" if slash else text
+    """As in running text: fractions with a stroke need no package."""
+    return str(value)
 
 
 def _text(plain: str) -> str:

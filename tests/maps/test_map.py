@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import subprocess
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -26,11 +27,13 @@ from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
+from mbsym.report.latex_reading import read_latex
 from mbsym.report.map_language import WORDS
 from mbsym.report.map_located import located, stratum_at
 from mbsym.report.map_words import _CONDITIONS, STANDINGS
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from tests.conftest import needs_pdflatex
 
 SATELLITE = ("satellite", (("alpha", -1, 1), ("gamma", 0, 1)), (("p1", "2/5"), ("p2", "1/5")))
 RIGID = ("gravity-gradient", (("A", 0, 2), ("B", 0, 2)), (("C", "1"),))
@@ -238,6 +241,19 @@ def test_the_files_of_a_map(written: Path) -> None:
     assert r"\includegraphics[width=\columnwidth]{map.pdf}" in text
     assert r"13 \alpha + 17 \gamma - 4 = 0" in text
     assert text.count("{") == text.count("}")
+
+
+@needs_pdflatex
+def test_the_tex_of_a_map_compiles(written: Path, tmp_path: Path) -> None:
+    """With graphicx alone, into somebody else's document."""
+    read_latex("fragments/map.tex", (written / "map.tex").read_text())
+    head = r"\documentclass[twocolumn]{article}\usepackage{graphicx}\begin{document}"
+    (tmp_path / "paper.tex").write_text(head + r"\input{map.tex}\end{document}")
+    for name in ("map.tex", "map.pdf"):
+        (tmp_path / name).write_bytes((written / name).read_bytes())
+    words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout[-2000:]
 
 
 def test_located_points(written: Path) -> None:
