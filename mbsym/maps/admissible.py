@@ -16,7 +16,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import Analysis
-from mbsym.expressions.tree import text
+from mbsym.expressions.tree import is_number, text
 from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.images import Images
 from mbsym.maps.section import Section
@@ -116,6 +116,9 @@ def _triangles(analysis: Analysis, body: Body, images: Images, found: list[Deman
     """The second moments of a body about its mass centre are positive semidefinite: no principal minor is negative."""
     if body.inertia is None or body.inertia.accepted:
         return
+    tensor = body.inertia.tensor
+    if sum(not is_number(x, 0) for row in tensor for x in row) == 1:
+        return  # one moment alone is that of plane motion, and leaves the others open
     scene, about = analysis.parameters_scene, f"inertia of {body.name}"
     try:
         moments = list(_second_moments(scene, body))

@@ -20,6 +20,7 @@ from jsonschema import Draft202012Validator
 import mbsym
 from mbsym.algebra.roots import count_roots
 from mbsym.maps.boundaries import Origin
+from mbsym.maps.line_map import line_map
 from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import PlaneMap, Standing
 from mbsym.maps.section import Axis
@@ -329,3 +330,10 @@ def test_the_words_of_the_schema_are_those_of_the_code() -> None:
     assert set(region["border"]["enum"]) == {None, *Border}
     origins = found["properties"]["vanishing"]["items"]["properties"]["origin"]["enum"]
     assert set(origins) == {x.value for x in Origin}
+
+
+def test_one_moment_of_inertia_alone_is_that_of_plane_motion() -> None:
+    """The snakeboard's bodies have a moment about the vertical only: no triangle inequality is asked of them."""
+    found = line_map(mbsym.load("systems/snakeboard.yaml"), Axis("m", Fraction(1), Fraction(2)), {})
+    assert all(one.standing is Standing.JUDGED for one in found.regions)
+    assert not found.admissibility.left_out
