@@ -80,6 +80,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         found=found,
         stabilisation_sentences=[filled(said) for said in sentences(found[8], PLAIN)] if 8 in found else [],
         forms=forms,
+        reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
         code=_code(analysis) if 3 in stages and 3 not in found else None,

@@ -32,6 +32,7 @@ from mbsym.report.constrained_code import tied_of
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
 from mbsym.report.identifiers import prefix_of
+from mbsym.report.parsing import unreadable
 from mbsym.report.targets import FORMATS
 
 SHIPPED = Path(__file__).parents[2] / "systems"
@@ -365,3 +366,19 @@ def test_a_corrupted_file_is_found(seed: int, tmp_path: Path) -> None:
     assert differences(found, expected("four-bar"))
     lost = {**expected("four-bar"), "multipliers": -expected("four-bar")["multipliers"]}
     assert differences(lost, expected("four-bar")) == ["multipliers"]
+
+
+def test_reactions_in_the_wolfram_language() -> None:
+    """Force and moment of the joint asked for, and the same for each of the two multipliers."""
+    text = FORMATS["wolfram"].render(analysis_of("driven"), (3,))
+    assert isinstance(text, str)
+    assert not unreadable("report.wl", text)
+    assert unreadable("report.wl", text.replace('reaction["rocker"] = {{', 'reaction["rocker"] = {'))
+    (one,) = analysis_of("driven").reactions
+    _, mark, rest = text.partition('reactionPerMultiplier["rocker"] = {\n')
+    assert mark
+    rows = rest.partition("\n  };")[0].split("\n")
+    assert len(rows) == len(one.per_multiplier) == 2
+    for row, (force, moment) in zip(rows, one.per_multiplier, strict=True):
+        parts = (", ".join(x.wolfram() for x in part) for part in (force, moment))
+        assert row.strip().rstrip(",") == "{{" + "}, {".join(parts) + "}}"
