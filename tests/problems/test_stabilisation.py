@@ -141,6 +141,32 @@ def test_where_a_pervasive_damper_loses_its_grip() -> None:
     assert found(text, values.replace("6", "5")).dissipation[0].at_values is True
 
 
+def test_a_uniform_motion_that_is_not_felt() -> None:
+    """Two masses with a spring and a damper between them alone drift together; held to the ground by a damper not.
+
+    The drift does not show as a loss of rank off lambda = 0.
+    """
+    text = "{coordinates: [x, y], K: [[k, -k], [-k, k]], D: [[c, -c], [-c, c]]}"
+    (part,) = found(text, "{k: {positive: true, value: 1}, c: {positive: true, value: 1}}").dissipation
+    assert part.at_values is False
+    assert (part.rank.full, part.rank.sure) == (False, Sure.PROVED)
+    assert [[str(x) for x in factor] for factor in part.rank.factors] == [["0", "1"]]
+    (held,) = found(text.replace("D: [[c, -c]", "D: [[c+1, -c]"), "{k: positive, c: positive}").dissipation
+    assert (held.rank.full, held.rank.locus) == (True, Locus())
+
+
+def test_a_charge_damped_along_one_axis_drifts_only_without_a_field() -> None:
+    """x'' + g y' + d x' = 0, y'' - g x' = 0: x' = 0 at all times needs g y' = 0."""
+    text = "{coordinates: [x, y], G: [[0, g], [-g, 0]], D: [[d, 0], [0, 0]]}"
+    (part,) = found(text, "{g: {value: 0}, d: {positive: true, value: 1}}").dissipation
+    assert part.at_values is False
+    assert part.rank.full
+    assert part.rank.locus is not None
+    assert texts((*part.rank.locus.factors, *part.rank.locus.provided)) == {"g"}
+    (part,) = found(text, "{g: {value: 2}, d: {positive: true, value: 1}}").dissipation
+    assert part.at_values is True
+
+
 def test_damping_that_may_feed_is_not_called_dissipation() -> None:
     said = [
         text

@@ -22,6 +22,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stabilisation import gyroscopic, numbers
 from mbsym.problems.stabilisation.clearing import Cleared, Rows, cleared
+from mbsym.problems.stabilisation.drift import without_drift
 from mbsym.problems.stabilisation.hautus import annihilator, rank_of
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.problems.stabilisation.result import (
@@ -163,7 +164,7 @@ def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues 
         return Dissipation(names, True, True, Rank(True, Sure.PROVED, (), Locus()), (), True if there else None)
     opposite = [[-x for x in row] for row in gyro]  # [P(lambda); D] transposed is [P(-lambda), D] with D instead of B
     try:
-        rank = rank_of(whole, mass, opposite, stiff, damping, rest=False)
+        rank = without_drift(rank_of(whole, mass, opposite, stiff, damping, rest=False), whole, gyro, stiff, damping)
     except TooLargeError as error:
         rank = _at_random(whole, mass, opposite, stiff, damping, str(error))
     motions = tuple(

@@ -1,0 +1,60 @@
+"""Uniform motions that dissipation does not feel:  x = v t + w,  v != 0.
+
+Hautus' test off lambda = 0 does not see them.  They move with  D x' = 0  exactly if
+
+    D v = 0,   K v = 0,   and some w has  G v + K w = 0,  that is  u.G v = 0 for all u with K u = 0
+
+(K is symmetric).  A free body between whose parts a damper acts drifts so; a charge in a magnetic field does not.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import comb
+
+from mbsym.algebra.characteristic import determinant
+from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.ring import Polynomial
+from mbsym.problems.stabilisation.clearing import Cleared, Rows
+from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator
+from mbsym.problems.stabilisation.result import Locus, Rank, Sure
+
+
+def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: Rows) -> Rank:
+    """``rank``, found off lambda = 0, with what uniform motions that are not felt change in it.
+
+    Where some are there for all parameters, lambda is a root; else all is said where the minors that exclude them do
+    not vanish.  Raises TooLargeError.
+    """
+    if not rank.full or rank.sure is not Sure.PROVED or determinant(stiff) != 0:
+        return rank
+    both, unfelt = annihilator([[*k, *d] for k, d in zip(stiff, damping, strict=True)], whole.known, len(stiff))
+    needed = [both]
+    if unfelt:
+        _, free = annihilator(stiff, whole.known, len(stiff))
+        found = _minor([[_paired(u, gyro, v) for v in unfelt] for u in free], whole)
+        if found is None:
+            drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
+            return Rank(False, Sure.PROVED, (drift,), rank.locus)
+        needed.append(found)
+    if rank.locus is None:
+        return rank
+    provided = [*rank.locus.provided]
+    for one in needed:
+        provided += [x for x in map(whole.formula, _open_factors(one, whole.known)) if str(x) not in map(str, provided)]
+    return Rank(True, rank.sure, (), Locus(rank.locus.factors, rank.locus.together, tuple(provided)), rank.why_not)
+
+
+def _paired(u: list[Polynomial], gyro: Rows, v: list[Polynomial]) -> Polynomial:
+    places = range(len(v))
+    return sum((u[i] * gyro[i][j] * v[j] for i in places for j in places), v[0] * 0)
+
+
+def _minor(rows: Rows, whole: Cleared) -> Polynomial | None:
+    """A minor of full column rank, one that cannot vanish if there is one; None where all vanish identically."""
+    width = len(rows[0])
+    if comb(len(rows), width) > MOST_BLOCKS:
+        raise TooLargeError("too many minors")
+    minors = [determinant([rows[i] for i in at]) for at in combinations(range(len(rows)), width)]
+    left = [x for x in minors if x != 0]
+    return min(left, key=lambda x: (not whole.known.never_zero(x), len(x))) if left else None
