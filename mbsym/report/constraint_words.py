@@ -65,6 +65,8 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
             "Dependent speeds: [[dependent]]; independent ones: [[free]].",
             {"dependent": write.speeds(found.dependent), "free": write.speeds(found.free)},
         )
+    elif found.dependent and not found.free:
+        yield "The constraints determine all velocities: nothing is left to be integrated.", {}
     elif found.dependent and found.free:
         yield (
             "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
@@ -117,7 +119,13 @@ def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator
     if found.kept is None:
         yield "Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.", {}
         return
-    if found.word == "holonomic":
+    if found.word == "holonomic" and found.rheonomic:
+        yield (
+            "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
+            "configurations that can be reached at any one time have [[k]] dimensions.",
+            {"sure": sure, "k": dimension - found.kept},
+        )
+    elif found.word == "holonomic":
         yield (
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
             "configurations that can be reached have [[k]] dimensions.",

@@ -110,6 +110,8 @@ class _Points:
     def rank(self, fields: Sequence[Field]) -> tuple[int, bool]:
         """The rank of fields, the greatest at the points; proved to be no greater only where it is full."""
         best = 0
+        if not fields:  # all that moves is moved
+            return 0, True
         for carrier in self.carriers:
             try:
                 rows = [[carrier(x) for x in field] for field in fields]
@@ -145,8 +147,18 @@ class _Analysis:
         best = max(range(len(ranked)), key=lambda k: ranked[k].rank)
         independent = [i for i, _ in ranked[best].pivots]
         self._check_velocities(points, independent)
+        self._check_freedom(independent)
         jacobian = [row.partials for row in self.rows]
         return points, independent, self._chosen(jacobian, independent, points)
+
+    def _check_freedom(self, independent: Sequence[int]) -> None:
+        """Raises Unsound where nothing can move, and nothing is moved either."""
+        still = {self.ring.index("velocity", name): self.ring.zero for name in self.system.coordinates}
+        if len(independent) < self.n or any(self.ring.substitute(row.velocity, still) for row in self.rows):
+            return
+        message = "the constraints leave no freedom: nothing can move"
+        hint = "leave one of them out; the contact of 'rolling' wants 'axes' that do not spin with the wheel"
+        raise Unsound([Fault("no-freedom", message, tuple(self.rows[i].name for i in independent), hint)])
 
     def _chosen(self, jacobian: Sequence[Sequence[Polynomial]], independent: list[int], points: _Points) -> Pivots:
         columns, required = self._columns(len(independent))
