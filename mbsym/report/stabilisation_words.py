@@ -157,6 +157,8 @@ def _dissipation(part: Dissipation, write: Medium) -> Iterator[Said]:
             "Motions of [[names]] are not felt by D at all parameters (proved): those of the roots of [[roots]].",
             {**names, "roots": roots},
         )
+        if any(factor[0].is_zero for factor in part.rank.factors):  # a drift, which is proved under conditions
+            yield from _provided(part.rank.locus, write)
     else:
         yield (
             "Whether D is felt by every motion of [[names]] is undecided: [[why]].",
@@ -204,10 +206,14 @@ def _locus(rank: Rank, write: Medium) -> Iterator[Said]:
             "It is otherwise where all of these vanish at once: [[where]].",
             {"where": _all(locus.together, "=", write)},
         )
-    if locus.provided:
-        yield "This is about parameters with [[where]].", {"where": _all(locus.provided, "!=", write)}
+    yield from _provided(locus, write)
     if not locus.factors and not locus.together and not locus.provided:
         yield "It is so at all parameters that are allowed (proved).", {}
+
+
+def _provided(locus: Locus | None, write: Medium) -> Iterator[Said]:
+    if locus is not None and locus.provided:
+        yield "This is about parameters with [[where]].", {"where": _all(locus.provided, "!=", write)}
 
 
 def _any(formulas: Sequence[Formula], write: Medium) -> str:

@@ -99,6 +99,24 @@ def test_a_bundle_of_energies_is_definite_where_the_pair_is_stabilised() -> None
     assert found(text, "{g: {sign: positive, value: 3}}").energy[0].bundle is None
 
 
+def test_a_degree_is_not_told_of_places_where_a_square_in_the_determinant_vanishes() -> None:
+    """K = [1 a; a 0]: det K = -a^2, one negative eigenvalue but where a = 0, with the eigenvalues 1 and 0."""
+    (part,) = found("{coordinates: [x, y], K: [[1, a], [a, 0]]}", "{a: real}").gyroscopic
+    assert part.degree is None
+    assert [([(str(x), how) for x, how in region.signs], region.degree) for region in part.regions] == [
+        ([("a", "!=")], 1)
+    ]
+    (sure,) = found("{coordinates: [x, y], K: [[1, a], [a, 0]]}", "{a: nonzero}").gyroscopic
+    assert sure.degree == 1
+
+
+def test_signs_that_contradict_each_other_make_no_region() -> None:
+    """K = [b+2 -2; -2 b+2] has the eigenvalues b and b + 4: b > 0 > b + 4 and b > 0 > b + 2 do not go together."""
+    (part,) = found("{coordinates: [x, y], K: [[b+2, -2], [-2, b+2]], G: [[0, 1], [-1, 0]]}", "{b: real}").gyroscopic
+    degrees = {region.degree for region in part.regions}
+    assert degrees == {0, 1, 2}
+
+
 # --- dissipation ---
 
 
@@ -165,6 +183,26 @@ def test_a_charge_damped_along_one_axis_drifts_only_without_a_field() -> None:
     assert texts((*part.rank.locus.factors, *part.rank.locus.provided)) == {"g"}
     (part,) = found(text, "{g: {value: 2}, d: {positive: true, value: 1}}").dissipation
     assert part.at_values is True
+
+
+def test_a_drift_that_leans_on_a_spring_is_told_with_its_condition() -> None:
+    """x = -g v/b, y = v t solve x'' + g y' + b x = 0, y'' = g x'; where b = 0 nothing but rest has x' = 0."""
+    result = found("{coordinates: [x, y], G: [[0, g], [-g, 0]], K: [[b, 0], [0, 0]], D: [[1, 0], [0, 0]]}",
+                   "{g: positive, b: real}")  # fmt: skip
+    (part,) = result.dissipation
+    assert not part.rank.full
+    assert [[str(x) for x in factor] for factor in part.rank.factors] == [["0", "1"]]
+    said = [text for text, _ in sentences(result, PLAIN)]
+    assert "This is about parameters with [[where]]." in said
+
+
+def test_where_springs_vanish_what_is_not_felt_drifts() -> None:
+    """K = -a [1 1; 1 0]: where a = 0 the motion (1, -1) t is not felt by D = [1 1; 1 1]."""
+    text = "{coordinates: [x, y], K: [[-a, -a], [-a, 0]], D: [[1, 1], [1, 1]]}"
+    (part,) = found(text, "{a: {sign: real, value: 0}}").dissipation
+    assert part.at_values is False
+    assert part.rank.locus is not None
+    assert texts((*part.rank.locus.factors, *part.rank.locus.provided)) == {"a"}
 
 
 def test_damping_that_may_feed_is_not_called_dissipation() -> None:

@@ -75,11 +75,11 @@ def _wrong(
         own = there.only([names.index(name) for name in part.coordinates])
         stiff = (own.places + own.places.transpose()) / 2
         for region in part.regions:
-            if all((carry(x.polynomial) > 0) == (relation == ">") for x, relation in region.signs):
-                if any(vanishes(x) for x, _ in region.signs):
-                    continue
-                if inertia(stiff)[2] != region.degree:
-                    yield "the degree of instability"
+            if any(vanishes(x) for x, _ in region.signs):
+                continue
+            there_too = all(r == "!=" or (carry(x.polynomial) > 0) == (r == ">") for x, r in region.signs)
+            if there_too and inertia(stiff)[2] != region.degree:
+                yield "the degree of instability"
     for damped in found.dissipation:
         at = [names.index(name) for name in damped.coordinates]
         own = there.only(at)

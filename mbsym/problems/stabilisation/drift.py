@@ -26,23 +26,30 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     Where some are there for all parameters, lambda is a root; else all is said where the minors that exclude them do
     not vanish.  Raises TooLargeError.
     """
-    if not rank.full or rank.sure is not Sure.PROVED or determinant(stiff) != 0:
+    if not rank.full or rank.sure is not Sure.PROVED or whole.known.never_zero(determinant(stiff)):
         return rank
-    both, unfelt = annihilator([[*k, *d] for k, d in zip(stiff, damping, strict=True)], whole.known, len(stiff))
+    damped = [j for j, row in enumerate(damping) if any(x != 0 for x in row)]
+    beside = [[*k, *(d[j] for j in damped)] for k, d in zip(stiff, damping, strict=True)]
+    both, unfelt = annihilator(beside, whole.known, len(stiff))
     needed = [both]
     if unfelt:
-        _, free = annihilator(stiff, whole.known, len(stiff))
+        held, free = annihilator(stiff, whole.known, len(stiff))
         found = _minor([[_paired(u, gyro, v) for v in unfelt] for u in free], whole)
         if found is None:
             drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
-            return Rank(False, Sure.PROVED, (drift,), rank.locus)
+            turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
+            open_ = _open_factors(held, whole.known) if turned else []
+            return Rank(False, Sure.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
         needed.append(found)
     if rank.locus is None:
         return rank
-    provided = [*rank.locus.provided]
-    for one in needed:
-        provided += [x for x in map(whole.formula, _open_factors(one, whole.known)) if str(x) not in map(str, provided)]
-    return Rank(True, rank.sure, (), Locus(rank.locus.factors, rank.locus.together, tuple(provided)), rank.why_not)
+    locus = rank.locus
+    doubtful = {str(x): x for one in needed for x in map(whole.formula, _open_factors(one, whole.known))}
+    if all(x == 0 for row in gyro for x in row):  # then what Hautus' test loses at lambda = 0 is a drift
+        doubtful = {text: x for text, x in doubtful.items() if text not in map(str, locus.factors)}
+    factors = tuple(x for x in locus.factors if str(x) not in doubtful)
+    provided = {str(x): x for x in locus.provided} | doubtful
+    return Rank(True, rank.sure, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
 
 
 def _paired(u: list[Polynomial], gyro: Rows, v: list[Polynomial]) -> Polynomial:

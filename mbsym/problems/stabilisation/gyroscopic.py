@@ -9,7 +9,7 @@ from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.ring import Polynomial
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.problems.stabilisation.clearing import Cleared, Rows
 from mbsym.problems.stabilisation.result import Region
 
@@ -23,8 +23,8 @@ def regions(whole: Cleared, stiffness: Rows) -> tuple[Region, ...]:
     """Jacobi's rule: as many negative eigenvalues as changes of sign in 1, Delta_1, ..., Delta_n, none of them zero.
 
     Rows of zeros are left out.  One region for every choice of signs of the irreducible factors of the minors that is
-    not known to be impossible; none where in every order of the coordinates a minor vanishes identically, or where
-    there is too much to tell.
+    not known to be impossible, and where no square in det K vanishes; none where in every order of the coordinates a
+    minor vanishes identically, or where there is too much to tell.
     """
     minors = _minors(stiffness)
     if minors is None:
@@ -37,6 +37,16 @@ def regions(whole: Cleared, stiffness: Rows) -> tuple[Region, ...]:
                 factors.setdefault(str(factor), factor)
     if len(factors) > MOST_FACTORS or any(len(x) > MOST_TERMS for x in factors.values()):
         return ()
+    # By continuity the degree is the same wherever det K keeps away from zero: borders of other minors need no word.
+    squares = (
+        [
+            (whole.formula(factor), "!=")
+            for factor, exponent in powers[-1][1]
+            if exponent % 2 == 0 and not whole.known.never_zero(factor)
+        ]
+        if powers
+        else []
+    )
     found = []
     for choice in product((1, -1), repeat=len(factors)):
         signs = dict(zip(factors, choice, strict=True))
@@ -44,7 +54,7 @@ def regions(whole: Cleared, stiffness: Rows) -> tuple[Region, ...]:
             continue
         degree = _changes([_sign(unit, held, signs, whole.known) for unit, held in powers])
         told = tuple((whole.formula(factors[name]), ">" if sign > 0 else "<") for name, sign in signs.items())
-        found.append(Region(told, degree))
+        found.append(Region((*told, *squares), degree))
     return tuple(found)
 
 
@@ -82,6 +92,9 @@ def _excluded(known: Signs, positive: Sequence[Polynomial]) -> bool:
     """Whether it is known that not all of these are positive."""
     for k, x in enumerate(positive):
         others = [(y, ">") for j, y in enumerate(positive) if j != k]
-        if known.assuming(others).sign(x) in ("negative", "nonpositive", "zero"):
+        try:
+            if known.assuming(others).sign(x) in ("negative", "nonpositive", "zero"):
+                return True
+        except ContradictionError:  # the others alone leave no parameters
             return True
     return False

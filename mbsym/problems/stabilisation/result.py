@@ -20,7 +20,7 @@ class Sure(StrEnum):
 
 @dataclass(frozen=True)
 class Region:
-    """Where each of the ``signs`` (polynomial, ``>`` or ``<``) holds, K has ``degree`` negative eigenvalues."""
+    """Where each of the ``signs`` (polynomial, ``>``, ``<`` or ``!=``) holds, K has ``degree`` negative eigenvalues."""
 
     signs: tuple[tuple[Formula, str], ...]
     degree: int
@@ -46,7 +46,9 @@ class Gyroscopic(Shown):
 
     @property
     def degree(self) -> int | None:
-        """The degree, where it is the same everywhere."""
+        """The degree, where it is the same everywhere; None where there are places of which nothing is said."""
+        if any(relation == "!=" for region in self.regions for _, relation in region.signs):
+            return None
         found = {region.degree for region in self.regions}
         return found.pop() if len(found) == 1 else None
 
