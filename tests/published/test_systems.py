@@ -146,8 +146,10 @@ def test_make_runs_them_all() -> None:
 def test_every_figure_of_the_gallery_is_there_small_and_drawn_by_make() -> None:
     figures = {path.stem: path for path in (SHIPPED / "figures").iterdir()}
     drawn = re.findall(r"\$\(call figure,([\w-]+),", MAKEFILE)
-    assert sorted(drawn) == sorted(figures)
+    mapped = re.findall(r"\$\(call map,([\w-]+),", MAKEFILE)
+    assert sorted([*drawn, *(f"map-{name}" for name in mapped)]) == sorted(figures)
     assert {f"{name}.yaml" for name in drawn} <= {path.name for path in FILES}
+    assert {f"{name}.yaml" for name in mapped} <= {path.name for path in FILES}
     sizes = [path.stat().st_size for path in figures.values()]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in figures.values())
     assert max(sizes) < 60_000
