@@ -135,9 +135,11 @@ def conditions_of(
 
     yield told(Origin.MASS, determinant(system.kinetic))
     if not is_zero(system.K):
-        yield told(Origin.STIFFNESS, _lowest_coefficient(system.K, constant))
+        for coefficient in deciding_zeros(_coefficients(system.K, constant)):
+            yield told(Origin.STIFFNESS, coefficient)
     if not is_zero(system.D):
-        yield told(Origin.DAMPING, _lowest_coefficient(system.D, constant))
+        for coefficient in deciding_zeros(_coefficients(system.D, constant)):
+            yield told(Origin.DAMPING, coefficient)
     origins = (Origin.UNDAMPED, Origin.NOT_GYROSCOPIC, Origin.POTENTIAL)
     for origin, matrix in zip(origins, (system.D, system.G, system.N), strict=True):
         if not is_zero(matrix):
@@ -170,7 +172,8 @@ def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condit
     even: list[Coefficients] = []
     for number, (p, _) in enumerate(factors, start=1):
         about = f"factor {number}" if len(factors) > 1 else ""
-        yield told(Origin.CONSTANT, p[0], about)
+        for coefficient in deciding_zeros(p):
+            yield told(Origin.CONSTANT, coefficient, about)
         yield told(Origin.LEADING, p[-1], about)
         if len(p) <= 2:
             continue
@@ -209,7 +212,8 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
         p = p[:-1]
     if len(p) < 2:
         return
-    yield told(Origin.CONSTANT, p[0])
+    for coefficient in deciding_zeros(p):
+        yield told(Origin.CONSTANT, coefficient)
     yield told(Origin.LEADING, p[-1])
     if any(c != 0 for c in p[1::2]):
         if len(p) > 2:
@@ -219,13 +223,29 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
         yield told(Origin.DISCRIMINANT, discriminant(p[::2]))
 
 
-def _lowest_coefficient(matrix: Matrix, constant: Constant | None = None) -> Polynomial:
-    """The lowest coefficient of det(s + matrix) that is not identically zero: a sum of principal minors."""
+def deciding_zeros(coefficients: Sequence[Polynomial]) -> Iterator[Polynomial]:
+    """The lowest coefficient that is not identically zero, and so many further ones as a factor divides it more often.
+
+    On a curve f = 0 where f divides the lowest coefficient once one root is zero, and another one only where the curve
+    is singular.  Where f^e divides it up to e roots are zero all along, and how many of the others are on which side
+    changes where a coefficient behind vanishes: on the curve, not beside it.
+    """
+    kept = [x for x in coefficients if x != 0]
+    if not kept:
+        return
+    yield kept[0]
+    most = max((int(exponent) for _, exponent in irreducible_factors(kept[0])[1]), default=1)
+    if most > 1:
+        yield from kept[1 : 1 + most]
+
+
+def _coefficients(matrix: Matrix, constant: Constant | None = None) -> Coefficients:
+    """Those of det(s + matrix), from low to high powers: sums of principal minors."""
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + (1 if i == j else 0) for j in range(n)] for i in range(n)]
     nothing = [[zero] * n for _ in range(n)]
     found = characteristic_polynomial(nothing, unit, matrix)
-    return next(c for c in (found if constant is None else map(constant.reduced, found)) if c != 0)
+    return tuple(found) if constant is None else tuple(map(constant.reduced, found))
 
 
 def _common(entries: Sequence[Polynomial]) -> Polynomial:

@@ -84,3 +84,27 @@ def test_curves_that_do_not_meet_the_plane_leave_one_region(tmp_path: Path) -> N
     found = mapped(described(tmp_path, "a + b + 10"))
     assert len(found.regions) == 1
     assert abs(found.areas[0][0] - 4) < 1e-9
+
+
+def test_where_a_squared_determinant_vanishes_the_other_roots_are_looked_at(tmp_path: Path) -> None:
+    """K = [[b + 1, -2a], [-2a, 0]]: det K = -4a^2; on a = 0 K is diag(b + 1, 0), so b = -1 parts that line.
+
+    Below it lambda^2 = -(b + 1) > 0: one root to the right; above it roots are imaginary and zero, twice.
+    """
+    path = tmp_path / "system.yaml"
+    path.write_text(HEAD.format("squared").replace("[x]", "[x, y]") + "  K: [[b+1, -2*a], [-2*a, 0]]\n")
+    found = plane_map(
+        mbsym.load(path), [Axis("a", Fraction(-2), Fraction(2)), Axis("b", Fraction(-2), Fraction(2))], {}
+    )
+    below, above = (stratum_at(found, Fraction(0), b) for b in (Fraction(-3, 2), Fraction(1, 2)))
+    assert below is not None
+    assert above is not None
+    assert below.judged is not None
+    assert above.judged is not None
+    assert (below.judged.right, below.judged.degree) == (1, 1)
+    assert below.word == "unstable"
+    assert (above.judged.right, above.judged.degree) == (0, 0)
+    assert above.word == "undecided"
+    corner = stratum_at(found, Fraction(0), Fraction(-1))
+    assert corner is not None
+    assert corner.shape is Shape.CORNER
