@@ -38,6 +38,7 @@ GCC = shutil.which("gcc")
 #: Fragments of what a description, or a run, need not have: claims, and problem 8.
 NOT_ALWAYS = {"fragments/claims.tex", "fragments/stabilisation.tex"}
 
+
 def valid(number: int) -> tuple[str, System]:
     """The first variant of a small system, from a number on, that is a description."""
     chance = Random(f"variant {number}")
