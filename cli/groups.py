@@ -75,7 +75,11 @@ def _told(found: Groups) -> Iterator[str]:
     from mbsym.expressions.tree import text
 
     left = counted(len(found.groups), "group", "groups")
-    yield f"{counted(len(found.free), 'parameter', 'parameters')}, {len(found.units)} of them set to 1: {left}"
+    most = "at most " if found.unused else ""
+    yield f"{counted(len(found.free), 'parameter', 'parameters')}, {len(found.units)} of them set to 1: {most}{left}"
+    if found.unused:
+        more = counted(found.unused, "scaling more is", "scalings more are")
+        yield f"{more} not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
     if found.units:
         yield ", ".join(f"{name} = 1" for name in found.units)
     for one in found.groups:

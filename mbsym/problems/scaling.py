@@ -62,7 +62,9 @@ class Groups:
 
     ``units`` are set to 1; ``groups`` are what is left; ``rate`` is the product of powers of units by which 1/t is
     measured then, ``lengths`` those by which coordinates are that are no angles: (coordinate, powers).  ``singly`` are
-    the units that stand in no group: with them only the clock runs faster, or forces are greater.
+    the units that stand in no group: with them only the clock runs faster, or forces are greater.  ``unused``: so many
+    scalings more there are, for which no parameter is left that is known to be positive; then there are fewer groups
+    wherever one of the others does not vanish.
     """
 
     free: tuple[str, ...]
@@ -71,6 +73,7 @@ class Groups:
     groups: tuple[Group, ...]
     rate: tuple[tuple[str, Fraction], ...] | None
     lengths: tuple[Group, ...] = ()
+    unused: int = 0
 
     @property
     def singly(self) -> tuple[str, ...]:
@@ -218,12 +221,12 @@ def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups
     unknowns, basis = made.solutions([*names, TIME, *(("coordinate", name) for name in lengths)])
     place = {key: k for k, key in enumerate(unknowns)}
     exponents = {name: [vector[place["parameter", name]] for vector in basis] for name in free}
-    units = _units(free, exponents, {x.name: x.sign for x in scene.system.parameters})
-    table = [exponents[name] for name in units]
+    units, held = _units(free, exponents, {x.name: x.sign for x in scene.system.parameters})
+    table = [exponents[name] for name in (*units, *held)]
 
     def powers(weights: Sequence[fmpq]) -> tuple[tuple[str, Fraction], ...] | None:
         found = _solved(table, weights)
-        return None if found is None else tuple(x for x in zip(units, found, strict=True) if x[1])
+        return None if found is None else tuple(x for x in zip(units, found, strict=False) if x[1])
 
     left = []
     for name in free:
@@ -232,33 +235,49 @@ def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups
             left.append(Group(name, tuple((unit, -power) for unit, power in own or ())))
     measured = [Group(name, own) for name in lengths if (own := powers([v[place["coordinate", name]] for v in basis]))]
     rate = powers([-vector[place[TIME]] for vector in basis])
-    return Groups(free, idle, units, tuple(left), rate, tuple(measured))
+    return Groups(free, idle, units, tuple(left), rate, tuple(measured), len(held))
 
 
-def _units(free: Sequence[str], exponents: Mapping[str, Sequence[fmpq]], signs: Mapping[str, str]) -> tuple[str, ...]:
-    """The parameters that are set to 1: positive ones, whose powers in the groups are whole and small."""
-    rank = _rank([exponents[name] for name in free])
-    candidates = [name for name in free if signs.get(name, "positive") == "positive"]
-    if rank == 0 or _rank([exponents[name] for name in candidates]) < rank:
-        return ()
-    best: tuple[Any, tuple[str, ...]] | None = None
-    for number, chosen in enumerate(combinations(candidates, rank)):
+def _units(
+    free: Sequence[str], exponents: Mapping[str, Sequence[fmpq]], signs: Mapping[str, str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """(units, held): parameters that are set to 1, and others that are left as they are though they could be scaled.
+
+    Units are positive, and such that the powers in the groups are whole and small.  Where fewer of them are independent
+    than there are scalings, the scalings that are used are those that change none of ``held``.
+    """
+    candidates = [name for name in free if signs.get(name) == "positive"]
+    size = _rank([exponents[name] for name in candidates])
+    best: tuple[Any, tuple[str, ...], tuple[str, ...]] | None = None
+    for number, chosen in enumerate(combinations(candidates, size)):
         if number > MOST_CHOICES and best is not None:
             break
-        table = [exponents[name] for name in chosen]
-        if _rank(table) < rank:
+        if _rank([exponents[name] for name in chosen]) < size:
             continue
-        powers = [_solved(table, exponents[name]) or () for name in free if name not in chosen]
+        held = _completing(chosen, free, exponents)
+        table = [exponents[name] for name in (*chosen, *held)]
+        powers = [(_solved(table, exponents[name]) or ())[:size] for name in free if name not in chosen]
         cost = (
             sum(x.denominator > 1 for row in powers for x in row),
             sum(abs(x) for row in powers for x in row),
             number,
         )
         if best is None or cost < best[0]:
-            best = cost, chosen
-        if comb(len(candidates), rank) > MOST_CHOICES:
+            best = cost, chosen, held
+        if comb(len(candidates), size) > MOST_CHOICES:
             break
-    return () if best is None else best[1]
+    return ((), ()) if best is None else best[1:]
+
+
+def _completing(chosen: Sequence[str], free: Sequence[str], exponents: Mapping[str, Sequence[fmpq]]) -> tuple[str, ...]:
+    """Further parameters with which the chosen ones determine a scaling."""
+    found: list[str] = []
+    rank = len(chosen)
+    for name in free:
+        if _rank([exponents[x] for x in (*chosen, *found, name)]) > rank:
+            found.append(name)
+            rank += 1
+    return tuple(found)
 
 
 def _solved(rows: Sequence[Sequence[fmpq]], target: Sequence[fmpq]) -> tuple[Fraction, ...] | None:

@@ -115,3 +115,27 @@ def test_constraints_are_refused_by_name() -> None:
     done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "bicycle.yaml")])
     assert done.exit_code == 2
     assert "constraints" in done.stderr
+
+
+def test_what_may_vanish_is_not_set_to_1_and_scalings_left_over_are_told(tmp_path: Path) -> None:
+    """m x'' + b x' + k x = 0 has one number, b^2/(k m), where k does not vanish; with k, b of any sign two are left."""
+    text = (
+        "mbsym: 1\nname: Block\nparameters: {k: real, b: real, m: positive}\nbodies:\n"
+        "  - {name: block, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}\n"
+        "loads:\n  - spring: {coordinate: x, stiffness: k, rest: 0}\n  - damper: {coordinate: x, coefficient: b}\n"
+        "motion: {x: 0}\n"
+    )
+    (tmp_path / "block.yaml").write_text(text)
+    (tmp_path / "positive.yaml").write_text(text.replace("real", "positive"))
+    told = {}
+    for name in ("block", "positive"):
+        analysis = mbsym.load(tmp_path / f"{name}.yaml")
+        told[name] = groups(analysis.scene, analysis.equations)
+    assert len(told["positive"].groups) == 1
+    assert told["positive"].unused == 0
+    assert (told["block"].units, told["block"].unused, len(told["block"].groups)) == (("m",), 1, 2)
+    # With k as it is, m -> s m needs t -> sqrt(s) t: b/sqrt(m) does not change.
+    assert {one.parameter: dict(one.powers) for one in told["block"].groups} == {"k": {}, "b": {"m": Fraction(-1, 2)}}
+    done = CliRunner().invoke(main, ["groups", str(tmp_path / "block.yaml")])
+    assert "at most 2 groups" in done.output
+    assert "1 scaling more is not used" in done.output
