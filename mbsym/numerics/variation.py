@@ -105,31 +105,36 @@ def complaints(system: System, variations: Sequence[Variation], members: int | N
         if one.name in seen:
             yield one.name, f"{one.name} is varied twice", "join the two"
         seen.add(one.name)
-        ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
-        if not all(map(isfinite, ends)):
-            yield one.name, f"the range of {one.name} is not finite", ""
-        if isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
-            yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
-        if isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
-            yield (
-                one.name,
-                f"the range of {one.name} is empty: {one.first:g} to {one.second:g}",
-                "the smaller one first",
-            )
+        yield from badly_ranged(one)
+    clash = list(mixed(variations))
+    yield from clash
     grids = [one for one in variations if isinstance(one, Grid)]
-    if grids and len(grids) < len(variations):
-        yield (
-            grids[0].name,
-            "a grid and draws at random do not go together",
-            "draw all of them: name=uniform(low, high)",
-        )
-    elif grids and members is not None:
+    if not clash and grids and members is not None:
         yield grids[0].name, "a grid says itself how many members it has", "leave --members out"
     elif not grids and members is None and variations:
         yield variations[0].name, "how many members to draw is not said", "for example --members 1000"
     count = prod(one.count for one in grids) if grids else members or 0
     if count > MOST_MEMBERS:
         yield variations[0].name, f"{count} members are too many", f"at most {MOST_MEMBERS}"
+
+
+def badly_ranged(one: Variation) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with one range: (name, sentence, hint)."""
+    ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
+    if not all(map(isfinite, ends)):
+        yield one.name, f"the range of {one.name} is not finite", ""
+    if isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
+        yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
+    if isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
+        yield one.name, f"the range of {one.name} is empty: {one.first:g} to {one.second:g}", "the smaller one first"
+
+
+def mixed(variations: Sequence[Variation]) -> Iterator[tuple[str, str, str]]:
+    """That grids and draws stand side by side: (name, sentence, hint)."""
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if grids and len(grids) < len(variations):
+        told = "a grid and draws at random do not go together"
+        yield grids[0].name, told, "draw all of them: name=uniform(low, high)"
 
 
 def drawn(

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, prod
+from math import prod
 from typing import Any
 
 import numpy as np
 
 from mbsym.expressions.guessing import guess
-from mbsym.numerics.variation import NORMAL, RANDOM, SOBOL, UNIFORM, Draw, Grid, Variation
+from mbsym.numerics.variation import RANDOM, SOBOL, Draw, Grid, Variation, badly_ranged, mixed
 
 #: More points than this are refused: a picture of so many says no more, and their numbers fill disks.
 MOST_POINTS = 1_000_000_000
@@ -82,30 +82,16 @@ def complaints(
         if one.name in seen:
             yield one.name, f"{one.name} is varied twice", "join the two"
         seen.add(one.name)
-        yield from _range(one)
+        yield from badly_ranged(one)
+        if isinstance(one, Grid) and one.low == one.high:
+            yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"
+    clash = list(mixed(variations))
+    yield from clash
     grids = [one for one in variations if isinstance(one, Grid)]
-    if grids and len(grids) < len(variations):
-        yield (
-            grids[0].name,
-            "a grid and draws at random do not go together",
-            "draw all of them: name=uniform(low, high)",
-        )
-    elif grids and members is not None:
+    if not clash and grids and members is not None:
         yield grids[0].name, "a grid says itself how many points it has", "leave --points out"
     elif not grids and members is None and variations:
         yield variations[0].name, "how many points to draw is not said", "for example --points 100000"
     count = prod(one.count for one in grids) if grids else members or 0
     if count > MOST_POINTS:
         yield variations[0].name, f"{count} points are too many", f"at most {MOST_POINTS}"
-
-
-def _range(one: Variation) -> Iterator[tuple[str, str, str]]:
-    ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
-    if not all(map(isfinite, ends)):
-        yield one.name, f"the range of {one.name} is not finite", ""
-    elif isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
-        yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
-    elif isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
-        yield one.name, f"the range of {one.name} is empty: {one.first:g} to {one.second:g}", "the smaller one first"
-    elif isinstance(one, Grid) and one.low == one.high:
-        yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"
