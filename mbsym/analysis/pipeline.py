@@ -379,5 +379,5 @@ PROBLEMS: dict[int, Problem[Any]] = {
     for item in sorted((x for x in vars(Analysis).values() if isinstance(x, Problem)), key=lambda item: item.number)
 }
 ALL_PROBLEMS = tuple(PROBLEMS)
-#: Those of every run; problem 8 is derived where it is named, and of systems that are given by their matrices.
-USUAL_PROBLEMS = tuple(number for number in PROBLEMS if number != 8)
+#: Those of every run; later ones are derived where they are named (8 of systems that are given by their matrices, too).
+USUAL_PROBLEMS = tuple(number for number in PROBLEMS if number < 8)
