@@ -1,0 +1,106 @@
+"""Polynomial vector fields over QQ(parameters): what integrals, invariant sets, normal and slow forms are found on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from flint import fmpq, fmpq_mpoly_ctx
+
+Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
+
+
+@dataclass(frozen=True)
+class PolynomialField:
+    """x'_i = numerators[i](x) / denominator(x), autonomous.
+
+    Generators of ``context`` are the ``parameters``, then the ``variables``.  ``denominator`` does not vanish where the
+    field is regular (it holds det M, and what parameters are divided by).  ``relations`` vanish on all states and are
+    kept by the field: the norm of a unit vector less 1, sin^2 + cos^2 - 1.
+    """
+
+    context: Any
+    parameters: tuple[str, ...]
+    variables: tuple[str, ...]
+    numerators: tuple[Polynomial, ...]
+    denominator: Polynomial
+    relations: tuple[Polynomial, ...] = ()
+
+    def __post_init__(self) -> None:
+        if tuple(self.context.names()) != (*self.parameters, *self.variables):
+            raise ValueError("the generators are the parameters, then the variables")
+        if len(self.numerators) != len(self.variables):
+            raise ValueError(f"{len(self.variables)} variables, but {len(self.numerators)} derivatives")
+
+    @property
+    def places(self) -> range:
+        """The indices of the variables among the generators."""
+        return range(len(self.parameters), len(self.parameters) + len(self.variables))
+
+    def generator(self, name: str) -> Polynomial:
+        return self.context.gen((*self.parameters, *self.variables).index(name))
+
+    def derivative(self, f: Polynomial) -> Polynomial:
+        """denominator * df/dt = sum_i numerators[i] df/dx_i."""
+        total = self.context.constant(0)
+        for place, slope in zip(self.places, self.numerators, strict=True):
+            total += f.derivative(place) * slope
+        return total
+
+    def reduced(self, f: Polynomial) -> Polynomial:
+        """A remainder of f by the relations: of degree 1 at most in what stands first in each.
+
+        The relations of unit vectors and angles share no leading variable, so it is zero if and only if f is in their
+        ideal.
+        """
+        for relation in self.relations:
+            f = divmod(f, relation)[1]
+        return f
+
+    def at(self, values: Mapping[str, fmpq | int]) -> PolynomialField:
+        """The field with numbers in place of some parameters, which are no generators any more.
+
+        Raises KeyError for a name that is no parameter, ZeroDivisionError where the denominator vanishes.
+        """
+        unknown = [name for name in values if name not in self.parameters]
+        if unknown:
+            raise KeyError(unknown[0])
+        kept = [name for name in self.parameters if name not in values]
+        context = fmpq_mpoly_ctx.get([*kept, *self.variables], self.context.ordering())
+        images = [
+            context.constant(fmpq(values[name]) if isinstance(values[name], int) else values[name])
+            if name in values
+            else context.gen((*kept, *self.variables).index(name))
+            for name in (*self.parameters, *self.variables)
+        ]
+
+        def moved(p: Polynomial) -> Polynomial:
+            return p.compose(*images, ctx=context)
+
+        denominator = moved(self.denominator)
+        if denominator == 0:
+            raise ZeroDivisionError("the denominator of the field vanishes at these values")
+        return replace(
+            self,
+            context=context,
+            parameters=tuple(kept),
+            numerators=tuple(map(moved, self.numerators)),
+            denominator=denominator,
+            relations=tuple(r for r in map(moved, self.relations) if r != 0),
+        )
+
+
+def in_lowest_terms(numerators: Sequence[Polynomial], denominator: Polynomial) -> tuple[list[Polynomial], Polynomial]:
+    """Without the factor that all of them share; the leading coefficient of the denominator is 1."""
+    common = denominator
+    for p in numerators:
+        common = common.gcd(p)
+        if common.is_constant():
+            break
+    common = (
+        common * (denominator / common).leading_coefficient()
+        if not common.is_constant()
+        else denominator.leading_coefficient() * (denominator * 0 + 1)
+    )
+    return [p / common for p in numerators], denominator / common

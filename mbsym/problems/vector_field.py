@@ -1,0 +1,112 @@
+"""The equations of motion in speeds as a polynomial vector field: Euler-Poisson's, Kirchhoff's and their like."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from flint import Ordering, fmpq_mpoly_ctx
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.problems.speed_integrals import Field
+from mbsym.problems.speeds import SpeedEquations
+
+
+def in_speeds(
+    form: SpeedForm, equations: SpeedEquations, also: Sequence[Polynomial] = ()
+) -> tuple[PolynomialField, Transfer]:
+    """(u, s)' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
+
+    Variables are the speeds and the positions on which the equations depend; parameters are those that occur in the
+    equations and in ``also``.  Raises NoClosedForm where the time, roots
+    or functions occur, or angles do (their sines and cosines are no variables of these equations).
+    """
+    ring = form.ring
+    field = Field(form, equations)
+    positions = [one for one in form.positions if one.name not in equations.aside]
+    numerators = [*field.scaled, *(ring.times(field.determinant, form.rates[one.name]) for one in positions)]
+    variables = [*form.speeds, *positions]
+    relations = []
+    names = {one.name for one in positions}
+    for first, second in (pair for pair in equations.products):
+        (name, components), (other, others) = first, second
+        if not names.issuperset((*components, *others)):
+            continue
+        total = ring.zero if name != other else -ring.one
+        for a, b in zip(components, others, strict=True):
+            total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
+        relations.append(total)
+    places = {one.index: one.name for one in variables}
+    fractions = [ring.fraction(p) for p in (field.determinant, *numerators)]
+    held = [factor for _, factors in fractions for factor, _ in factors]
+    also = [p for x in also for p in (ring.fraction(x)[0], *(f for f, _ in ring.fraction(x)[1]))]
+    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also])
+    tops, bottoms = zip(*(transfer.fraction(p) for p in (field.determinant, *numerators)), strict=True)
+    common = bottoms[0]
+    for bottom in bottoms[1:]:
+        common = common * (bottom / bottom.gcd(common))
+    cleared = [top * (common / bottom) for top, bottom in zip(tops, bottoms, strict=True)]
+    moved, denominator = in_lowest_terms(cleared[1:], cleared[0])
+    return PolynomialField(
+        transfer.context,
+        transfer.parameters,
+        transfer.variables,
+        tuple(moved),
+        denominator,
+        tuple(transfer(p) for p in relations),
+    ), transfer
+
+
+class Transfer:
+    """Polynomials of a ring over a context of parameters and variables alone.  Raises NoClosedForm for others."""
+
+    def __init__(self, ring: Ring, places: dict[int, str], parameters: Sequence[int]) -> None:
+        self.ring = ring
+        self.parameters = tuple(ring.generators[k].name for k in parameters)
+        self.variables = tuple(places.values())
+        self.places = (*parameters, *places)
+        self.context: Any = fmpq_mpoly_ctx.get([*self.parameters, *self.variables], Ordering.lex)
+
+    def __call__(self, p: Polynomial) -> Any:
+        degrees = p.degrees()
+        for k, degree in enumerate(degrees):
+            if degree and k not in self.places:
+                raise NoClosedForm(
+                    f"{_told(self.ring, k)} occurs: the equations are not polynomial in speeds and positions"
+                )
+        return self.context.from_dict({tuple(m[k] for k in self.places): c for m, c in p.to_dict().items()})
+
+    def fraction(self, p: Polynomial) -> tuple[Any, Any]:
+        """(P, Q) with p = P/Q, for p with reciprocals of polynomials in the parameters."""
+        top, factors = self.ring.fraction(p)
+        bottom = self.context.constant(1)
+        for factor, exponent in factors:
+            bottom *= self(factor) ** exponent
+        return self(top), bottom
+
+    def back(self, p: Any) -> Polynomial:
+        """A polynomial of the context in the ring."""
+        total: dict[tuple[int, ...], Any] = {}
+        for monomial, c in p.to_dict().items():
+            exponents = [0] * len(self.ring.generators)
+            for k, power in zip(self.places, monomial, strict=True):
+                exponents[k] = power
+            total[tuple(exponents)] = c
+        return self.ring.context.from_dict(total)
+
+
+def transfer_of(ring: Ring, places: dict[int, str], polynomials: Sequence[Polynomial]) -> Transfer:
+    """With the parameters that occur; ``places``: generators of the ring that are variables, by name."""
+    parameters = [k for k in occurring(polynomials) if k not in places and ring.generators[k].kind == "parameter"]
+    return Transfer(ring, places, parameters)
+
+
+def _told(ring: Ring, k: int) -> str:
+    g = ring.generators[k]
+    return (
+        "the time" if g.kind == "time" else f"{g.kind} of {g.name}" if g.name and not g.name.startswith("#") else g.kind
+    )
