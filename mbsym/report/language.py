@@ -15,6 +15,9 @@ from typing import Any
 #: What may follow ``--language``, and what it is called.
 LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
 
+#: Problems whose sentences stand in modules of their own, ``stabilisation_ru`` and so on.
+FURTHER = ("stabilisation",)
+
 _BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 
 
@@ -25,9 +28,12 @@ class Language:
         self.name = name or "en"
         self.babel = _BABEL[self.name]
         catalogue: Any = None if self.name == "en" else import_module(f"mbsym.report.language_{self.name}")
-        further: Any = None if self.name == "en" else import_module(f"mbsym.report.stabilisation_{self.name}")
-        self._sentences: dict[str, str] = getattr(catalogue, "SENTENCES", {}) | getattr(further, "SENTENCES", {})
-        self._words: dict[str, str] = getattr(catalogue, "WORDS", {}) | getattr(further, "WORDS", {})
+        self._sentences: dict[str, str] = dict(getattr(catalogue, "SENTENCES", {}))
+        self._words: dict[str, str] = dict(getattr(catalogue, "WORDS", {}))
+        for problem in FURTHER if catalogue else ():
+            further = import_module(f"mbsym.report.{problem}_{self.name}")
+            self._sentences |= getattr(further, "SENTENCES", {})
+            self._words |= getattr(further, "WORDS", {})
 
     @cached_property
     def _explained(self) -> list[tuple[re.Pattern[str], str]]:
