@@ -1,15 +1,16 @@
-"""Second-order Taylor polynomials over the ring: "quadratisation" without ever forming the nonlinear equations.
+"""Truncated Taylor polynomials over the ring, of any order: expansion while formulas are built, never afterwards.
 
-A jet is p0 + sum p_i x_i + sum_{i<=j} p_ij x_i x_j in small deviations x_i, everything of third order dropped.  Running
-the kinetic energy and force function over jets expands the Lagrangian about the unperturbed motion while it is being
-built, so a system whose closed equations are out of reach can still be linearised (Banshchikov & Vetrov, Problem 5).
+A jet of order n is the sum over k <= n of homogeneous polynomials of degree k in small deviations x_i; everything of
+higher order is dropped.  Running the kinetic energy and force function over jets expands the Lagrangian about the
+unperturbed motion while it is being built, so a system whose closed equations are out of reach can still be linearised
+(order 2: "quadratisation"; Banshchikov & Vetrov, Problem 5), and has its normal form (order 4 or 6).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from math import factorial
 
 from flint import fmpq
 
@@ -20,46 +21,76 @@ from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression
 
-First = dict[int, Polynomial]
-Second = dict[tuple[int, int], Polynomial]
+#: The deviations in a product, in ascending order: (0, 0, 3) is x_0^2 x_3.
+Key = tuple[int, ...]
+Terms = dict[Key, Polynomial]
 
 
 class Jet:
-    """``value`` + ``first`` + ``second``; coefficients are ring polynomials, absent ones are zero."""
+    """``value`` + ``parts[0]`` + ``parts[1]`` + ..., the terms of degree 1, 2, ...; absent coefficients are zero."""
 
-    __slots__ = ("first", "second", "value")
+    __slots__ = ("parts", "value")
 
-    def __init__(self, value: Polynomial, first: First | None = None, second: Second | None = None) -> None:
+    def __init__(self, value: Polynomial, *parts: Terms) -> None:
         self.value = value
-        self.first: First = first or {}
-        self.second: Second = second or {}
+        self.parts = parts
+
+    def degree(self, k: int) -> Terms:
+        """The terms of degree k > 0."""
+        return self.parts[k - 1] if k <= len(self.parts) else {}
+
+    @property
+    def first(self) -> dict[int, Polynomial]:
+        """The coefficients of x_i."""
+        return {key[0]: value for key, value in self.degree(1).items()}
+
+    @property
+    def second(self) -> Terms:
+        """The coefficients of x_i x_j by (i, j), i <= j."""
+        return self.degree(2)
+
+    @property
+    def is_constant(self) -> bool:
+        return not any(self.parts)
 
     def __add__(self, other: Jet) -> Jet:
-        return Jet(self.value + other.value, _sum(self.first, other.first), _sum(self.second, other.second))
+        long, short = (self, other) if len(self.parts) >= len(other.parts) else (other, self)
+        parts = [_sum(a, short.parts[k]) if k < len(short.parts) else a for k, a in enumerate(long.parts)]
+        return Jet(self.value + other.value, *parts)
 
     def __neg__(self) -> Jet:
-        return Jet(-self.value, {k: -v for k, v in self.first.items()}, {k: -v for k, v in self.second.items()})
+        return Jet(-self.value, *({key: -value for key, value in part.items()} for part in self.parts))
 
     def __sub__(self, other: Jet) -> Jet:
         return self + (-other)
 
 
-def _sum(a: dict[Any, Polynomial], b: dict[Any, Polynomial]) -> dict[Any, Polynomial]:
+def _sum(a: Terms, b: Terms) -> Terms:
+    if not b:
+        return a
     total = dict(a)
     for key, value in b.items():
         total[key] = total[key] + value if key in total else value
     return total
 
 
-def _accumulate(ring: Ring, into: dict[Any, Polynomial], terms: dict[Any, Polynomial], factor: Polynomial) -> None:
+def _accumulate(ring: Ring, into: Terms, terms: Terms, factor: Polynomial) -> None:
     if not factor.is_zero():
         for key, value in terms.items():
             product = ring.times(value, factor)
             into[key] = into[key] + product if key in into else product
 
 
+def _multiply(ring: Ring, into: Terms, a: Terms, b: Terms) -> None:
+    for i, x in a.items():
+        for j, y in b.items():
+            key = i + j if i[-1] <= j[0] else tuple(sorted(i + j))
+            product = ring.times(x, y)
+            into[key] = into[key] + product if key in into else product
+
+
 class Jets(Algebra[Jet]):
-    """Jets over a ring.
+    """Jets over a ring, to the given ``order``.
 
     ``motion`` gives each coordinate's unperturbed value as an expression in parameters; a coordinate that is not in it
     (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i; ``values``
@@ -72,8 +103,10 @@ class Jets(Algebra[Jet]):
         motion: Mapping[str, Expression],
         deviations: Mapping[str, int],
         values: Mapping[str, Polynomial],
+        order: int = 2,
     ) -> None:
         self.ring = ring
+        self.order = order
         self.values = values
         self.motion = motion
         self.deviations = deviations
@@ -84,41 +117,37 @@ class Jets(Algebra[Jet]):
 
     def deviation(self, index: int, base: Polynomial) -> Jet:
         """base + x_index."""
-        return Jet(base, {index: self.ring.one})
+        return Jet(base, {(index,): self.ring.one})
 
     def vanishes(self, x: Jet) -> bool:
-        return not x.first and not x.second and bool(x.value.is_zero())
+        return x.is_constant and bool(x.value.is_zero())
 
     def times(self, a: Jet, b: Jet) -> Jet:
         """a*b; jets themselves do not multiply, because every product has to keep within the ring's budgets."""
-        ring = self.ring
-        first: First = {}
-        _accumulate(ring, first, a.first, b.value)
-        _accumulate(ring, first, b.first, a.value)
-        second: Second = {}
-        _accumulate(ring, second, a.second, b.value)
-        _accumulate(ring, second, b.second, a.value)
-        for i, x in a.first.items():
-            for j, y in b.first.items():
-                key = (i, j) if i <= j else (j, i)
-                product = ring.times(x, y)
-                second[key] = second[key] + product if key in second else product
-        ring.spend(20 * (8 + len(a.second) + len(b.second)))
-        return Jet(ring.times(a.value, b.value), first, second)
+        ring, parts, terms = self.ring, [], 0
+        for k in range(1, min(self.order, len(a.parts) + len(b.parts)) + 1):
+            part: Terms = {}
+            _accumulate(ring, part, a.degree(k), b.value)
+            _accumulate(ring, part, b.degree(k), a.value)
+            for i in range(1, k):
+                _multiply(ring, part, a.degree(i), b.degree(k - i))
+            terms += len(part)
+            parts.append(part)
+        ring.spend(20 * (8 + terms))
+        return Jet(ring.times(a.value, b.value), *parts)
 
     def reduce(self, x: Jet) -> Jet:
         reduce = self.ring.reduce
-        first = {k: r for k, v in x.first.items() if not (r := reduce(v)).is_zero()}
-        second = {k: r for k, v in x.second.items() if not (r := reduce(v)).is_zero()}
-        return Jet(reduce(x.value), first, second)
+        parts = [{k: r for k, v in part.items() if not (r := reduce(v)).is_zero()} for part in x.parts]
+        return Jet(reduce(x.value), *parts)
 
     def sin_cos(self, angle: LinearForm) -> tuple[Jet, Jet]:
         base = LinearForm(turns=angle.turns)
         elsewhere: list[tuple[str, Fraction, Polynomial]] = []
-        first: First = {}
+        first: Terms = {}
         for name, coefficient in angle.coefficients:
             if name in self.deviations:
-                first[self.deviations[name]] = self.ring.number(coefficient)
+                first[self.deviations[name],] = self.ring.number(coefficient)
             form: LinearForm | None = LinearForm(((name, Fraction(1)),))
             if name in self.motion:
                 form = linear_form(self.motion[name])
@@ -154,30 +183,53 @@ class Jets(Algebra[Jet]):
         return self._turned(*self.ring.sin_cos_of(argument.value), _small(argument))
 
     def _turned(self, sine: Polynomial, cosine: Polynomial, u: Jet) -> tuple[Jet, Jet]:
-        """sin(a + u) and cos(a + u) for small u: the small parts of sin u and cos u are u and -u^2/2."""
-        times, s, c = self.times, Jet(sine), Jet(cosine)
-        small_cosine = self.one - times(times(u, u), self.number(Fraction(1, 2)))
-        return self.reduce(times(s, small_cosine) + times(c, u)), self.reduce(times(c, small_cosine) - times(s, u))
+        """sin(a + u) and cos(a + u) for small u."""
+        times, number, s, c = self.times, self.ring.number, Jet(sine), Jet(cosine)
+        signs = [Fraction((0, 1, 0, -1)[k % 4], factorial(k)) for k in range(self.order + 2)]
+        small_sine = self._composed(u, [number(x) for x in signs[: self.order + 1]])
+        small_cosine = self._composed(u, [number(x * (k + 1)) for k, x in enumerate(signs[1:])])
+        return (
+            self.reduce(times(s, small_cosine) + times(c, small_sine)),
+            self.reduce(times(c, small_cosine) - times(s, small_sine)),
+        )
 
-    def _series(self, x: Jet, value: Polynomial, slope: Polynomial, half_curvature: Polynomial) -> Jet:
-        """f(a) + f'(a) u + f''(a)/2 u^2."""
-        u = _small(x)
-        return self.reduce(Jet(value) + self.times(Jet(slope), u) + self.times(Jet(half_curvature), self.times(u, u)))
+    def _series(self, x: Jet, coefficients: Sequence[Polynomial]) -> Jet:
+        """f(a + u) = c_0 + c_1 u + c_2 u^2 + ..., c_k = f^(k)(a)/k!, for x = a + u; missing coefficients are zero."""
+        return self.reduce(self._composed(_small(x), coefficients))
+
+    def _composed(self, u: Jet, coefficients: Sequence[Polynomial]) -> Jet:
+        """c_0 + c_1 u + c_2 u^2 + ...; the powers of u are formed up to the order only."""
+        total, power = Jet(coefficients[0]), u
+        for k, coefficient in enumerate(coefficients[1 : self.order + 1]):
+            if k:
+                power = self.reduce(self.times(power, u))
+            if power.is_constant:
+                break
+            if not coefficient.is_zero():
+                total = total + self.times(Jet(coefficient), power)
+        return total
+
+    def _powers(self, x: Polynomial) -> list[Polynomial]:
+        """1, x, x^2, ... up to the order."""
+        found = [self.ring.one]
+        for _ in range(self.order):
+            found.append(self.ring.reduce(self.ring.times(found[-1], x)))
+        return found
 
     def reciprocal(self, x: Jet) -> Jet:
         inverse = self.ring.reciprocal(x.value)
-        square = self.ring.times(inverse, inverse)
-        return self._series(x, inverse, -square, self.ring.times(square, inverse))
+        return self._series(x, [self.ring.times(inverse, one) for one in self._powers(-inverse)])
 
     def square_root(self, x: Jet) -> Jet:
-        if not x.first and not x.second:
-            return Jet(self.ring.square_root(x.value))
         root = self.ring.square_root(x.value)
+        if x.is_constant:
+            return Jet(root)
         inverse = self.ring.reciprocal(root)
-        half = self.ring.number(Fraction(1, 2))
-        eighth = self.ring.number(Fraction(-1, 8))
-        cube = self.ring.times(inverse, self.ring.times(inverse, inverse))
-        return self._series(x, root, half * inverse, eighth * cube)
+        binomial, coefficients = Fraction(1), []
+        for k, power in enumerate(self._powers(self.ring.times(inverse, inverse))):
+            coefficients.append(self.ring.times(self.ring.number(binomial), self.ring.times(root, power)))
+            binomial *= (Fraction(1, 2) - k) / (k + 1)
+        return self._series(x, coefficients)
 
     def function(self, name: str, x: Jet) -> Jet:
         ring = self.ring
@@ -192,14 +244,24 @@ class Jets(Algebra[Jet]):
             return self._off_the_kink(name, x)
         if isinstance(name, Tabulated):
             return self._tabulated(name, x)
-        value = ring.function(name, x.value)
+        value, count = ring.function(name, x.value), self.order + 1
         if name == "exp":
-            return self._series(x, value, value, value * half)
+            return self._series(x, [ring.times(ring.number(Fraction(1, factorial(k))), value) for k in range(count)])
         if name == "log":
-            inverse = ring.reciprocal(x.value)
-            return self._series(x, value, inverse, -half * ring.times(inverse, inverse))
-        inverse = ring.reciprocal(ring.one + ring.times(x.value, x.value))
-        return self._series(x, value, inverse, -ring.times(x.value, ring.times(inverse, inverse)))
+            powers = self._powers(-ring.reciprocal(x.value))
+            rest = (ring.times(ring.number(Fraction(-1, k)), powers[k]) for k in range(1, count))
+            return self._series(x, [value, *rest])
+        return self._series(x, [value, *self._arc_tangent(x.value)])
+
+    def _arc_tangent(self, a: Polynomial) -> Iterable[Polynomial]:
+        """The coefficients of u, u^2, ... of atan(a + u): those of 1/(1 + a^2 + 2 a u + u^2), divided by 1, 2, ..."""
+        ring = self.ring
+        inverse = ring.reciprocal(ring.one + ring.times(a, a))
+        before, now = ring.zero, inverse
+        for k in range(1, self.order + 1):
+            yield ring.times(ring.number(Fraction(1, k)), now)
+            following = ring.times(ring.number(2), ring.times(a, now)) + before
+            before, now = now, ring.reduce(-ring.times(inverse, following))
 
     def _off_the_kink(self, name: str, x: Jet) -> Jet:
         """|a + u| = |a| + sign(a) u and sign(a + u) = sign(a) for small u, where a is not 0.
@@ -207,7 +269,7 @@ class Jets(Algebra[Jet]):
         Raises NoClosedForm where a is 0, or is not known to be another number: there is no expansion.
         """
         ring = self.ring
-        if not x.first and not x.second:
+        if x.is_constant:
             return Jet(ring.function(name, x.value))
         if ring.is_zero(x.value) is not False:
             what = "kink" if name == "abs" else "jump"
@@ -215,16 +277,16 @@ class Jets(Algebra[Jet]):
         sign = ring.function("sign", x.value)
         if name == "sign":
             return Jet(sign)
-        return self._series(x, ring.function("abs", x.value), sign, ring.zero)
+        return self._series(x, [ring.function("abs", x.value), sign])
 
     def _tabulated(self, name: Tabulated, x: Jet) -> Jet:
-        """f(a) + f'(a) u + f''(a)/2 u^2 off the knots.
+        """The Taylor polynomial off the knots.
 
         Raises NoClosedForm where a is a knot at which a derivative jumps, or is not known to be none: it is a number,
         but no rational one, and its ball holds a knot.
         """
         ring = self.ring
-        if not x.first and not x.second:
+        if x.is_constant:
             return Jet(ring.function(name, x.value))
         ball = ring.constant_value(x.value)
         if ball is not None and any(
@@ -232,21 +294,12 @@ class Jets(Algebra[Jet]):
             for knot in name.curve.knots
         ):
             raise NoClosedForm(f"the table {name.table.name} has a kink at the motion that is expanded about")
-        slope, bend = name.slope, name.slope.slope
-        half = ring.number(Fraction(1, 2))
-        values = [ring.function(one, x.value) for one in (name, slope, bend)]
-        return self._series(x, values[0], values[1], ring.times(half, values[2]))
-
-
-class FirstOrderJets(Jets):
-    """Jets whose second-order parts are dropped: f(a + u) = f(a) + f'(a) u."""
-
-    def times(self, a: Jet, b: Jet) -> Jet:
-        first: First = {}
-        _accumulate(self.ring, first, a.first, b.value)
-        _accumulate(self.ring, first, b.first, a.value)
-        return Jet(self.ring.times(a.value, b.value), first)
+        coefficients, curve = [], name
+        for k in range(self.order + 1):
+            coefficients.append(ring.times(ring.number(Fraction(1, factorial(k))), ring.function(curve, x.value)))
+            curve = curve.slope
+        return self._series(x, coefficients)
 
 
 def _small(x: Jet) -> Jet:
-    return Jet(x.value * 0, x.first, x.second)
+    return Jet(x.value * 0, *x.parts)

@@ -151,7 +151,7 @@ def by_quadratisation(scene: Scene, expanded: Scene[Jet], equilibrium: Equilibri
         return ScalarMatrix.by_entry(ring, n, n, lambda i, j: _second(ring, L, rows + i, columns + j))
 
     def slopes(start: int, count: int) -> ScalarMatrix[Polynomial]:
-        return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].first.get(start + j, ring.zero))
+        return ScalarMatrix.by_entry(ring, n, count, lambda i, j: Q[i].degree(1).get((start + j,), ring.zero))
 
     def rate(matrix: ScalarMatrix[Polynomial]) -> ScalarMatrix[Polynomial]:
         return matrix.map(lambda x: rate_on_motion(scene, x))
@@ -183,8 +183,8 @@ def by_equations(scene: Scene, equations: Equations, equilibrium: Equilibrium | 
     return assemble(scene, equilibrium, (M, C, S, B), "linearised equations", inputs)
 
 
-def quadratised(scene: Scene, whole: System | None = None) -> Scene[Jet]:
-    """The system over second-order jets about the unperturbed motion; with ``whole`` its inputs deviate, too.
+def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Scene[Jet]:
+    """The system over jets of ``order`` about the unperturbed motion; with ``whole`` its inputs deviate, too.
 
     Deviations are numbered: x_i is i, x'_i is n + i, that of input k is 2 n + k.
     """
@@ -196,7 +196,7 @@ def quadratised(scene: Scene, whole: System | None = None) -> Scene[Jet]:
     numbers = {name: i for i, name in enumerate(names)}
     held = {one.name: scene.lower(one.held) for one in system.inputs}
     numbers |= {one.name: 2 * len(names) + k for k, one in enumerate(system.inputs)}
-    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered | held)
+    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered | held, order)
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         value, rate = values[name]

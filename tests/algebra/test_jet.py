@@ -1,8 +1,9 @@
-"""Jets are second-order Taylor polynomials: every coefficient is a derivative taken in the ring."""
+"""Jets are Taylor polynomials: every coefficient is a derivative taken in the ring."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import combinations_with_replacement
 
 import pytest
 from hypothesis import given, settings
@@ -20,12 +21,12 @@ angles = ["x", "-x", "2*x", "x/2", "x - chi", "x + pi/2", "3*x/2 - chi", "chi"]
 own_angles = ["l*x", "x*y", "y*w - 1", "w*t"]
 
 
-def expanded(ring: Ring, expression: Expression, base: dict[str, str]) -> Jet:
+def expanded(ring: Ring, expression: Expression, base: dict[str, str], order: int = 2) -> Jet:
     """The expression over jets about x = base['x'], y = base['y'] (absent: the coordinate itself), x' = 0."""
     motion = {name: parsed(text) for name, text in base.items()}
     plain = lowering(ring)
     lowered = dict(plain.environment) | {name: plain(value) for name, value in motion.items()}
-    jets = Jets(ring, motion, {"x": 0, "y": 1}, lowered)
+    jets = Jets(ring, motion, {"x": 0, "y": 1}, lowered, order)
     environment = {name: Jet(value) for name, value in plain.environment.items()}
     for i, name in enumerate(("x", "y")):
         start = plain(motion[name]) if name in motion else plain.environment[name]
@@ -51,7 +52,7 @@ def taylor(ring: Ring, x: Polynomial, base: dict[str, str]) -> Jet:
     second = {(i, j): ring.number(half) * slope(first[i], NAMES[j]) for (i, j), half in halves.items()}
     return Jet(
         ring.substitute(x, images),
-        {i: ring.substitute(y, images) for i, y in enumerate(first)},
+        {(i,): ring.substitute(y, images) for i, y in enumerate(first)},
         {key: ring.substitute(y, images) for key, y in second.items()},
     )
 
@@ -137,3 +138,31 @@ def test_an_angle_may_rest_anywhere(value: str) -> None:
     assert_equal(
         ring, expanded(ring, parsed("sin(x)"), {"x": value}), taylor(ring, lower(ring, "sin(x)"), {"x": value})
     )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("sin(x)*cos(2*x - chi)*y", "1/(l + x)", "sqrt(l**2 + x**2 + y)", "exp(x - y)", "log(l + x)", "atan(x + w)"),
+        *("tanh(x + y)", "(l + x)**(3/2)", "x_dot**2*x**2 + y*x_dot*cos(x)", "x**5 + x**3*y**2"),
+    ],
+)
+def test_jets_of_higher_order_have_all_derivatives(text: str) -> None:
+    """Every coefficient up to x^a y^b with a + b = 4 is a derivative at the point, divided by a! b!."""
+    ring = new_ring()
+    found = expanded(ring, parsed(text), {"x": "0", "y": "w"}, 4)
+    at = taylor(ring, lower(ring, text), {"x": "0", "y": "w"})
+    assert_equal(ring, found, at)
+    for key in combinations_with_replacement(range(3), 4):
+        slope, divided = lower(ring, text), Fraction(1)
+        for place, i in enumerate(key):
+            name = NAMES[i]
+            slope = ring.velocity_derivative(slope, "x") if name == "x_dot" else ring.derivative(slope, name)
+            divided /= key[: place + 1].count(i)
+        expected = taylor(ring, slope, {"x": "0", "y": "w"}).value * ring.number(divided)
+        assert ring.is_zero(found.degree(4).get(key, ring.zero) - expected) is True, key
+
+
+def test_terms_beyond_the_order_are_dropped() -> None:
+    found = expanded(new_ring(), parsed("x**5 + x**3*y + (x + y)**7"), {"x": "0", "y": "0"}, 4)
+    assert [len(part) for part in found.parts] == [0, 0, 0, 1]

@@ -24,7 +24,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.jet import FirstOrderJets, Jet
+from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.mechanics.constraints.elimination import Row, echelon
@@ -145,7 +145,7 @@ def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
     held = {one.name: scene.lower(one.held) for one in system.inputs}
     lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()} | held
     numbers = {name: i for i, name in enumerate(names)} | {name: 3 * n + k for k, name in enumerate(held)}
-    jets = FirstOrderJets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered)
+    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered, order=1)
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         environment[name] = jets.deviation(i, base.values[i])

@@ -1,0 +1,196 @@
+"""Exact numbers in parameters and square roots: Q(p_1, ..., p_m)[s_1, ..., s_k], s_i^2 given by what stands before it.
+
+An element is a polynomial in the s_i and the parameters over a denominator in the parameters alone.  Square roots are
+adjoined when they are asked for; nobody asks whether they lie in the field already: what is computed then holds for
+either sign of each root.  An element has a reciprocal if the product of its conjugates, in which no root is left, is
+not zero.  Products are reduced at once (s_i^2 is replaced), and common factors of polynomial and denominator cancelled.
+
+Frequencies of normal forms live here: lambda^4 + a lambda^2 + b = 0 by three square roots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
+from mbsym.expressions.angles import LinearForm
+
+#: As many roots can be adjoined, and so many terms may an element have.
+MOST_ROOTS, MOST_TERMS = 8, 20_000
+
+
+class Element:
+    """top / bottom."""
+
+    __slots__ = ("bottom", "top", "tower")
+
+    def __init__(self, tower: Tower, top: fmpq_mpoly, bottom: fmpq_mpoly) -> None:
+        self.tower, self.top, self.bottom = tower, top, bottom
+
+    def __add__(self, other: Any) -> Element:
+        other = self.tower.element(other)
+        if self.bottom == other.bottom:
+            return self.tower.made(self.top + other.top, self.bottom)
+        return self.tower.made(self.top * other.bottom + other.top * self.bottom, self.bottom * other.bottom)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Element:
+        return Element(self.tower, -self.top, self.bottom)
+
+    def __sub__(self, other: Any) -> Element:
+        return self + (-self.tower.element(other))
+
+    def __rsub__(self, other: Any) -> Element:
+        return self.tower.element(other) - self
+
+    def __mul__(self, other: Any) -> Element:
+        other = self.tower.element(other)
+        return self.tower.made(self.tower.reduced(self.top * other.top), self.bottom * other.bottom)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Element:
+        return self * self.tower.reciprocal(self.tower.element(other))
+
+    def __eq__(self, other: object) -> bool:
+        return (self - other).is_zero()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def is_zero(self) -> bool:
+        return bool(self.top.is_zero())
+
+    def __repr__(self) -> str:
+        return f"({self.top})/({self.bottom})"
+
+
+class Tower(Algebra[Element]):
+    """The algebra of ``Element`` over the named ``parameters``; ``roots`` holds the squares s_i^2 in order."""
+
+    def __init__(self, parameters: Sequence[str] = ()) -> None:
+        self.parameters = tuple(parameters)
+        names = [f"s{k}" for k in reversed(range(MOST_ROOTS))] + [f"p{k}" for k in range(len(self.parameters))]
+        self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        gens = self.context.gens()
+        self._roots, self._free = gens[:MOST_ROOTS][::-1], gens[MOST_ROOTS:]
+        #: s_i^2, polynomials in what stands before them, and what each s_i is divided by to give the root asked for.
+        self.squares: list[fmpq_mpoly] = []
+        self._asked: list[tuple[Element, Element]] = []
+        self._unit = self.context.constant(1)
+        self.zero, self.one = self.element(0), self.element(1)
+
+    def element(self, x: Any) -> Element:
+        if isinstance(x, Element):
+            return x
+        if isinstance(x, Fraction):
+            x = fmpq(x.numerator, x.denominator)
+        return Element(self, self.context.constant(x), self._unit)
+
+    def number(self, value: Fraction | int) -> Element:
+        return self.element(Fraction(value))
+
+    def parameter(self, name: str) -> Element:
+        return Element(self, self._free[self.parameters.index(name)], self._unit)
+
+    def reduced(self, top: fmpq_mpoly) -> fmpq_mpoly:
+        """Every s_i^2 replaced, the latest first."""
+        for k in reversed(range(len(self.squares))):
+            if top.degrees()[MOST_ROOTS - 1 - k] > 1:
+                top = divmod(top, self._roots[k] ** 2 - self.squares[k])[1]
+        if len(top) > MOST_TERMS:
+            raise NoClosedForm(f"more than {MOST_TERMS} terms of one coefficient", limit=Limit.TERMS)
+        return top
+
+    def made(self, top: fmpq_mpoly, bottom: fmpq_mpoly) -> Element:
+        """top / bottom with common factors cancelled; top is reduced."""
+        if top.is_zero():
+            return self.zero
+        if not bottom.is_constant():
+            common = top.gcd(bottom)
+            if not common.is_constant():
+                top, bottom = divmod(top, common)[0], divmod(bottom, common)[0]
+        leading = bottom.leading_coefficient()
+        return Element(self, top / leading, bottom / leading)
+
+    def times(self, a: Element, b: Element) -> Element:
+        return a * b
+
+    def vanishes(self, x: Element) -> bool:
+        return x.is_zero()
+
+    def reciprocal(self, x: Element) -> Element:
+        """1/x by the product of its conjugates.  Raises SingularPoint where that is zero."""
+        norm, others = x.top, self._unit
+        for k in reversed(range(len(self.squares))):
+            if norm.degrees()[MOST_ROOTS - 1 - k]:
+                conjugate = self._conjugate(norm, k)
+                norm = self.reduced(norm * conjugate)
+                others = self.reduced(others * conjugate)
+        if norm.is_zero():
+            raise SingularPoint("division by zero")
+        return self.made(self.reduced(others * x.bottom), norm)
+
+    def _conjugate(self, x: fmpq_mpoly, k: int) -> fmpq_mpoly:
+        images = list(self.context.gens())
+        images[MOST_ROOTS - 1 - k] = -images[MOST_ROOTS - 1 - k]
+        return x.compose(*images, ctx=self.context)
+
+    def conjugate(self, x: Element, k: int) -> Element:
+        """x with -s_k for s_k; what was adjoined later and contains s_k is left as it is."""
+        return Element(self, self._conjugate(x.top, k), x.bottom)
+
+    def square_root(self, x: Element) -> Element:
+        """A root of x: rational where x is the square of a rational number, else adjoined, once."""
+        number = self.rational(x)
+        if number is not None and number >= 0:
+            top, bottom = number.p.isqrt(), number.q.isqrt()
+            if top * top == number.p and bottom * bottom == number.q:
+                return self.element(fmpq(top, bottom))
+        for square, root in self._asked:
+            if square == x:
+                return root
+        if len(self.squares) == MOST_ROOTS:
+            raise NoClosedForm(f"more than {MOST_ROOTS} square roots", limit=Limit.FUNCTIONS)
+        self.squares.append(self.reduced(x.top * x.bottom))
+        root = self.made(self._roots[len(self.squares) - 1], x.bottom)
+        self._asked.append((x, root))
+        return root
+
+    def rational(self, x: Element) -> fmpq | None:
+        """The number that x is, if it is written as one."""
+        if not (x.top.is_constant() and x.bottom.is_constant()):
+            return None
+        return fmpq(0) if x.is_zero() else x.top.leading_coefficient() / x.bottom.leading_coefficient()
+
+    def sin_cos(self, angle: LinearForm) -> tuple[Element, Element]:
+        raise NoClosedForm("sines of parameters: give numbers for them")
+
+    def sin_cos_of(self, argument: Element) -> tuple[Element, Element]:
+        raise NoClosedForm("sines of parameters: give numbers for them")
+
+    def function(self, name: str, x: Element) -> Element:
+        raise NoClosedForm(f"{name} of a parameter: give a number for it")
+
+    def enclosed(self, x: Element, values: Mapping[str, Any]) -> acb:
+        """x at values of the parameters; roots by their principal values."""
+        point = [acb(0)] * MOST_ROOTS + [acb(values[name]) for name in self.parameters]
+        for k, square in enumerate(self.squares):
+            point[MOST_ROOTS - 1 - k] = _at(square, point).sqrt()
+        return _at(x.top, point) / _at(x.bottom, point)
+
+
+def _at(x: fmpq_mpoly, point: Sequence[acb]) -> acb:
+    total = acb(0)
+    for monomial, coefficient in x.terms():
+        term = acb(coefficient)
+        for value, exponent in zip(point, monomial, strict=True):
+            if exponent:
+                term *= value ** int(exponent)
+        total += term
+    return total

@@ -1,0 +1,1 @@
+"""Problem 11: what terms of higher order decide where the first approximation does not."""

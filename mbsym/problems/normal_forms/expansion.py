@@ -1,0 +1,200 @@
+"""The Lagrangian and the applied forces as Taylor polynomials about the unperturbed motion; what follows over numbers.
+
+    L(q0 + x, q0' + v) = L_0 + p_0.v + L_2(x, v) + L_3 + ...,      Q = Q_1(x, v) + Q_2 + ...
+
+while they are built (jets).  Over any scalars then (enclosures, exact towers) Legendre's transformation
+
+    p = dL/dv - p_0,      H(x, p) = p.v - (L - L_0 - p_0.v)
+
+and the field x' = v, v' = M(x, v)^-1 (dL/dx + Q - (d^2 L/dv dx) v), both by series to the same order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.jet import Jet, Terms
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.truncated import Space, Truncated
+from mbsym.mechanics.energy import kinetic_energy
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import force_function
+from mbsym.mechanics.motion import relations, unsteady
+from mbsym.mechanics.newton_euler import applied_forces
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.linearisation import quadratised
+
+
+class NotExpanded(Failure):
+    """There is no autonomous expansion about the motion."""
+
+    code = "not-expanded"
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """``lagrangian`` holds the terms of degree 1, 2, ... in x_i (i) and v_i (n + i); ``forces`` those of each Q_i.
+
+    ``cyclic`` are the places of coordinates that occur in none of them and on which no force acts.
+    """
+
+    scene: Scene
+    coordinates: tuple[str, ...]
+    order: int
+    lagrangian: tuple[Terms, ...]
+    forces: tuple[tuple[Terms, ...], ...]
+    cyclic: tuple[int, ...]
+
+    @property
+    def conservative(self) -> bool:
+        """No applied force is left beside the force function."""
+        return not any(part for one in self.forces for part in one)
+
+
+def expansion(scene: Scene, whole: Any, equilibrium: Equilibrium | None, order: int) -> Expansion:
+    """The system ``whole`` about its motion; ``scene`` is over the ring.
+
+    Raises NotExpanded where a coefficient varies with time, NoClosedForm where coefficients outgrow the budget.
+    """
+    expanded: Scene[Jet] = quadratised(scene, whole, order)
+    images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
+    ring, n = scene.ring, len(scene.system.coordinates)
+
+    def kept(terms: Terms) -> Terms:
+        found: Terms = {}
+        for key, value in terms.items():
+            constant = ring.substitute(value, images)
+            if constant.is_zero() or max(key) >= 2 * n:
+                continue
+            varying = unsteady(scene, constant)
+            if varying:
+                raise NotExpanded(f"terms of order {len(key)} vary with {', '.join(varying)}")
+            found[key] = constant
+        return found
+
+    def parts(x: Jet) -> tuple[Terms, ...]:
+        return tuple(kept(x.degree(k)) for k in range(1, order + 1))
+
+    lagrangian = parts(kinetic_energy(expanded) + force_function(expanded))
+    applied = applied_forces(expanded)
+    forces = tuple(parts(applied[name]) for name in scene.system.coordinates)
+    felt = {i for part in lagrangian for key in part for i in key}
+    felt |= {i for one in forces for part in one for key in part for i in key}
+    pushed = {i for i, one in enumerate(forces) if any(one)}
+    cyclic = tuple(i for i in range(n) if i not in felt and i not in pushed)
+    return Expansion(scene, scene.system.coordinates, order, lagrangian, forces, cyclic)
+
+
+class Numbers:
+    """An expansion over scalars: ``carry`` gives each coefficient its value, ``inverse`` that of a scalar."""
+
+    def __init__(
+        self, found: Expansion, carry: Callable[[Polynomial], Any], inverse: Callable[[Any], Any], zero: Any, one: Any
+    ) -> None:
+        self.found, self.carry, self.inverse = found, carry, inverse
+        self.zero, self.one, self.n = zero, one, len(found.coordinates)
+        self.space = Space(2 * self.n, found.order, zero, one)
+
+    def _lowered(self, parts: Sequence[Terms], least: int) -> Truncated:
+        terms = {key: self.carry(value) for part in parts for key, value in part.items() if len(key) >= least}
+        return self.space.of(terms)
+
+    def hamiltonian(self) -> Truncated:
+        """H(x, p) without the cyclic coordinates, whose momenta keep their unperturbed values; from degree 2 on.
+
+        Variables are the other x in order, then their p.  Raises SingularPoint (or ZeroDivisionError) where det M = 0.
+        """
+        n, space = self.n, self.space
+        lagrangian = self._lowered(self.found.lagrangian, 2)
+        slopes = [lagrangian.derivative(n + i) for i in range(n)]
+        mass = [[slopes[i][_unit(2 * n, n + j)] for j in range(n)] for i in range(n)]
+        back = inverted(mass, self.inverse, self.zero, self.one)
+        rest = [slope - space.of({(n + j,): mass[i][j] for j in range(n)}) for i, slope in enumerate(slopes)]
+        x = [space.variable(i) for i in range(n)]
+        p = [space.nothing if i in self.found.cyclic else space.variable(n + i) for i in range(n)]
+        v = [space.nothing] * n
+        for _ in range(self.found.order):
+            right = [p[i] - rest[i].composed([*x, *v]) for i in range(n)]
+            v = [_sum(space, (right[j].scaled(back[i][j]) for j in range(n))) for i in range(n)]
+        whole = _sum(space, (p[i] * v[i] for i in range(n))) - lagrangian.composed([*x, *v])
+        return self._without_cyclic(whole)
+
+    def _without_cyclic(self, whole: Truncated) -> Truncated:
+        left = [i for i in range(self.n) if i not in self.found.cyclic]
+        places = [*left, *(self.n + i for i in left)]
+        space = Space(len(places), self.found.order, self.zero, self.one)
+        terms = {tuple(key[k] for k in places): value for key, value in whole.coefficients.items()}
+        return Truncated(space, terms)
+
+    def field(self) -> list[Truncated]:
+        """v' as series in x and v (all coordinates), to one order less than that of the Lagrangian."""
+        n, space = self.n, Space(2 * self.n, self.found.order - 1, self.zero, self.one)
+        lagrangian = self._lowered(self.found.lagrangian, 2)
+        cut = lambda one: Truncated(space, one.coefficients)  # noqa: E731
+        slopes = [lagrangian.derivative(n + i) for i in range(n)]
+        mass = [[cut(slopes[i].derivative(n + j)) for j in range(n)] for i in range(n)]
+        right = []
+        for i in range(n):
+            total = cut(lagrangian.derivative(i)) + cut(self._lowered(self.found.forces[i], 1))
+            for j in range(n):
+                total = total - cut(slopes[i].derivative(j)) * space.variable(n + j)
+            right.append(total)
+        back = inverted([[m[(0,) * (2 * n)] for m in row] for row in mass], self.inverse, self.zero, self.one)
+        moving = [[m - space.constant(m[(0,) * (2 * n)]) for m in row] for row in mass]
+        a = [space.nothing] * n
+        for _ in range(self.found.order):
+            left = [right[i] - _sum(space, (moving[i][j] * a[j] for j in range(n))) for i in range(n)]
+            a = [_sum(space, (left[j].scaled(back[i][j]) for j in range(n))) for i in range(n)]
+        return a
+
+
+def _unit(size: int, index: int) -> tuple[int, ...]:
+    return tuple(int(k == index) for k in range(size))
+
+
+def _sum(space: Space, items: Any) -> Truncated:
+    total = space.nothing
+    for item in items:
+        total = total + item
+    return total
+
+
+def inverted(matrix: Sequence[Sequence[Any]], inverse: Callable[[Any], Any], zero: Any, one: Any) -> list[list[Any]]:
+    """The inverse matrix by the adjugate (Faddeev and LeVerrier): one division, by the determinant.
+
+    Raises what ``inverse`` raises where the determinant is zero.
+    """
+    adjugates, coefficients = faddeev(matrix, zero, one)
+    factor = -inverse(coefficients[0])
+    return [[value * factor for value in row] for row in adjugates[-1]]
+
+
+def faddeev(matrix: Sequence[Sequence[Any]], zero: Any, one: Any) -> tuple[list[list[list[Any]]], list[Any]]:
+    """(B_0 ... B_(m-1)) and (c_0 ... c_m):  adj(s - A) = sum B_k s^(m-1-k),  det(s - A) = sum c_k s^k.
+
+    Source: Faddeev & LeVerrier (Gantmacher, The Theory of Matrices, chapter IV, section 5).
+    """
+    m = len(matrix)
+    identity = [[one if i == j else zero for j in range(m)] for i in range(m)]
+    found, coefficients, now = [identity], [one], identity
+    for k in range(1, m + 1):
+        product = [[_dot(matrix[i], [now[r][j] for r in range(m)], zero) for j in range(m)] for i in range(m)]
+        trace = zero
+        for i in range(m):
+            trace = trace + product[i][i]
+        c = -trace / k
+        coefficients.append(c)
+        now = [[product[i][j] + c if i == j else product[i][j] for j in range(m)] for i in range(m)]
+        if k < m:
+            found.append(now)
+    return found, coefficients[::-1]
+
+
+def _dot(row: Sequence[Any], column: Sequence[Any], zero: Any) -> Any:
+    total = zero
+    for a, b in zip(row, column, strict=True):
+        total = total + a * b
+    return total
