@@ -142,6 +142,7 @@ UNITS = {
     "spring-pendulum": {"m": "kg", "k": "N/m", "l0": "m", "g": "m/s^2", "r": "m"},
     "stick-slip": {"m": "kg", "k": "N/m", "R": "N", "v": "m/s", "F": "N", "T": "s", "d": "s", "x": "m"},
     "tethered-satellites": TETHER,
+    "three-bodies": {"mu": "1", "a": "m", "n": "rad/s", "m": "kg", "x": "1", "y": "1", "phi": "rad"},
     "turntable-sphere": {
         "m": "kg",
         "r": "m",

@@ -25,7 +25,8 @@ def _exactly(order: int, mu: fmpq | None) -> tuple[Tower, Truncated, NormalForm]
     analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
     found = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order)
     tower = Tower(("mu",))
-    carry = Carrier(found.scene.ring, tower, {"mu": tower.parameter("mu") if mu is None else tower.element(mu)})
+    values = {"mu": tower.parameter("mu") if mu is None else tower.element(mu), **dict.fromkeys("anm", tower.one)}
+    carry = Carrier(found.scene.ring, tower, values)
     numbers = Numbers(found, carry, tower.reciprocal, tower.zero, tower.one)
     whole = numbers.hamiltonian()
     product = numbers.carry(found.scene.lower(parsed("27*mu*(1 - mu)/4")))
