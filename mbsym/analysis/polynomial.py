@@ -1,0 +1,108 @@
+"""Problem 9 of a system: its equations as a polynomial field, which integrals are known, what is found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq
+
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.formulas.formula import Formula
+from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+from mbsym.problems.vector_field import Transfer, in_speeds
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The field of a system: ``whole`` over all parameters, ``field`` with numbers in place of some.
+
+    ``kinds``: variables that have one weight, speeds first; ``known``: integrals of problem 7 over ``field``.
+    """
+
+    whole: PolynomialField
+    field: PolynomialField
+    transfer: Transfer
+    kinds: tuple[tuple[str, ...], ...]
+    vectors: tuple[tuple[str, ...], ...]
+    known: tuple[tuple[str, Any], ...]
+
+    def formula(self, p: Any) -> Formula:
+        """A polynomial over ``field`` as a formula."""
+        places = [(*self.whole.parameters, *self.whole.variables).index(name) for name in self.field.context.names()]
+        terms = {}
+        for monomial, c in p.to_dict().items():
+            exponents = [0] * len(self.whole.context.names())
+            for k, power in zip(places, monomial, strict=True):
+                exponents[k] = power
+            terms[tuple(exponents)] = c
+        return Formula(self.transfer.ring, self.transfer.back(self.whole.context.from_dict(terms)))
+
+
+def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Setting:
+    """The equations of motion as a polynomial field, with numbers in place of some parameters.
+
+    Raises NoClosedForm where they are no such field, ZeroDivisionError where it divides by zero at these numbers.
+    """
+    form = analysis.speed_form
+    if form is None:
+        raise NoClosedForm("the system has no speeds: its equations are in angles")
+    equations: Any = analysis.equations
+    listed = analysis.integrals
+    whole, transfer = in_speeds(form, equations, [one.formula.polynomial for one in listed])
+    numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
+    field = whole.at(numbers) if numbers else whole
+    known = []
+    for one in listed:
+        try:
+            top, bottom = transfer.fraction(one.formula.polynomial)
+        except Failure:
+            continue  # it holds the time, or positions on which the equations do not depend
+        if not any(bottom.degrees()[k] for k in whole.places):
+            known.append((one.name, _at(whole, field, numbers, top)))
+    vectors = [tuple(x for x in components if x in whole.variables) for _, components in equations.vectors]
+    grouped = {name for vector in vectors for name in vector}
+    speeds = tuple(name for name in equations.speeds if name in whole.variables)
+    alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
+    vectors = [one for one in vectors if one]
+    kinds = tuple(x for x in (speeds, *dict.fromkeys(vectors), *alone) if x)
+    return Setting(whole, field, transfer, kinds, tuple(vectors), tuple(known))
+
+
+def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, Any], p: Any) -> Any:
+    if field is whole:
+        return p
+    places = (*field.parameters, *field.variables)
+    images = [
+        field.context.constant(numbers[name]) if name in numbers else field.context.gen(places.index(name))
+        for name in (*whole.parameters, *whole.variables)
+    ]
+    return p.compose(*images, ctx=field.context)
+
+
+def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grading:
+    """The weights of the variables: those found, or found and then replaced by ``weights``.
+
+    The components of a unit vector have one weight: the largest that is given to one of them.
+    """
+    found = grading(there.field, there.kinds)
+    if not weights:
+        return found
+    given = dict(zip(there.field.variables, found.weights, strict=True)) | dict(weights)
+    for vector in there.vectors:
+        largest = max((weights[name] for name in vector if name in weights), default=given[vector[0]])
+        given |= dict.fromkeys(vector, largest)
+    return grading(there.field, there.kinds, [given[name] for name in there.field.variables])
+
+
+def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
+    """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
+    return polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)

@@ -1,0 +1,33 @@
+"""Problem 9: polynomial first integrals of equations that are polynomial in speeds and direction cosines.
+
+Of  x' = P(x)/d  the polynomials f with  sum_i P_i df/dx_i = 0  (modulo the relations that all states keep) are the
+kernel of a linear map on the monomials of one weighted degree.  The search goes through the weights w from below:
+
+* the kernel modulo a prime, at random parameters, has at least the dimension that it has over QQ(parameters);
+* products of integrals that are known already span a part of it, whose dimension modulo the prime is at most their own;
+* where the two are equal there is no further one: absence is proved, for almost all parameters;
+* where they are not, the monomials of a further integral are read off, its coefficients are found over QQ(parameters)
+  and it is proved by substitution.
+
+Weights are looked for under which the equations are quasi-homogeneous (Euler's and Poisson's: angular velocity 1, unit
+vector 2; without forces that are linear in it 1): then each weight stands for itself.  Integrals are told apart as
+functions by the rank of their gradients at a random state.
+
+Source: H. Yoshida, Necessary condition for the existence of algebraic first integrals, Celest. Mech. 31 (1983), on
+weights; the integrals themselves are those of Euler, Lagrange, Kovalevskaya and Clebsch.
+
+Example:
+
+    >>> import mbsym
+    >>> from mbsym.analysis.polynomial import integrals_of, setting
+    >>> there = setting(mbsym.load("systems/clebsch-poisson.yaml"))
+    >>> found = integrals_of(there, 4)
+    >>> [(one.weight, one.name) for one in found.generators if one.is_new], found.complete
+    ([(2, '')], True)
+"""
+
+from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.result import Count, Generator, PolynomialIntegrals, Sure
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+
+__all__ = ["Count", "Generator", "Grading", "PolynomialIntegrals", "Sure", "grading", "polynomial_integrals"]

@@ -1,0 +1,151 @@
+"""From a kernel modulo a prime to polynomials over QQ(parameters): the few monomials that occur, solved exactly.
+
+The image modulo a prime tells which monomials an integral is made of.  On these alone  sum c_a d(x^a)/dt = 0  is a
+small linear system over QQ[parameters]; it is solved by elimination with rows kept primitive.  What comes out is put
+into the field once more: an identity, whatever the prime was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.modular import SMALLER, Exponents
+
+#: Monomials of an integral that is lifted, and terms of one entry while that is done.
+MOST_SUPPORT, MOST_ENTRY = 120, 4000
+
+
+def lifted(field: PolynomialField, support: Sequence[Exponents], modulo: bool, leading: Exponents) -> Any | None:
+    """The polynomial on these monomials with  df/dt = 0, primitive over ZZ[parameters], if it is one up to a factor.
+
+    ``leading``: a monomial that occurs in it.  None where there is none (or more than one that has ``leading``).
+    Raises NoClosedForm where it outgrows its bounds.
+    """
+    if len(support) > MOST_SUPPORT:
+        told = f"an integral has {len(support)} monomials, more than {MOST_SUPPORT}"
+        raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
+    order = [one for one in support if one != leading]
+    columns = [*order, leading]
+    equations = _equations(field, columns, modulo)
+    solved = _eliminated(field, equations, len(order))
+    if solved is None:
+        return None
+    tops, bottoms = solved
+    common = field.context.constant(1)
+    for bottom in bottoms:
+        common = common * (bottom / bottom.gcd(common))
+    total = common * monomial(field, leading)
+    for one, top, bottom in zip(order, tops, bottoms, strict=True):
+        total -= top * (common / bottom) * monomial(field, one)
+    found = primitive(field, total)
+    rate = field.derivative(found)
+    return found if (field.reduced(rate) if modulo else rate) == 0 else None
+
+
+def monomial(field: PolynomialField, exponents: Sequence[int]) -> Any:
+    """x^a in the field's context."""
+    return field.context.from_dict({(*(0,) * len(field.parameters), *exponents): 1})
+
+
+def coefficients(field: PolynomialField, f: Any) -> dict[Exponents, Any]:
+    """Polynomials in the parameters, by the monomials in the variables that they belong to."""
+    count = len(field.parameters)
+    nothing = (0,) * len(field.variables)
+    parts: dict[Exponents, dict[tuple[int, ...], Any]] = {}
+    for exponents, c in f.to_dict().items():
+        key = tuple(int(x) for x in exponents[count:])
+        parts.setdefault(key, {})[(*exponents[:count], *nothing)] = c
+    return {key: field.context.from_dict(terms) for key, terms in parts.items()}
+
+
+def primitive(field: PolynomialField, f: Any) -> Any:
+    """Without the factor in the parameters that all coefficients share; integers without one; the leading one > 0."""
+    parts = list(coefficients(field, f).values())
+    if not parts:
+        return f
+    common = field.context.constant(0)
+    for part in parts:
+        common = common.gcd(part)
+        if common.is_constant():
+            break
+    found = f if common.is_constant() else f / common
+    numbers = list(found.to_dict().values())
+    bottom = numbers[0].q
+    for c in numbers[1:]:
+        bottom = bottom * (c.q // bottom.gcd(c.q))
+    top = numbers[0].p * (bottom // numbers[0].q)
+    for c in numbers[1:]:
+        top = top.gcd(c.p * (bottom // c.q))
+    scaled = found * bottom / top
+    return -scaled if scaled.leading_coefficient() < 0 else scaled
+
+
+def _equations(field: PolynomialField, columns: Sequence[Exponents], modulo: bool) -> list[dict[int, Any]]:
+    rows: dict[Exponents, dict[int, Any]] = {}
+    for k, one in enumerate(columns):
+        image = field.derivative(monomial(field, one))
+        for key, c in coefficients(field, field.reduced(image) if modulo else image).items():
+            rows.setdefault(key, {})[k] = c
+    return sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values())))
+
+
+def _eliminated(
+    field: PolynomialField, rows: list[dict[int, Any]], unknowns: int
+) -> tuple[list[Any], list[Any]] | None:
+    """c_k = tops_k / bottoms_k  with the last unknown -1; None where they are not determined, or contradict."""
+    pivots: dict[int, dict[int, Any]] = {}
+    for row in rows:
+        row = _brought_down(row, pivots)
+        left = [k for k in row if k < unknowns]
+        if not left:
+            if row:
+                return None
+            continue
+        k = min(left, key=lambda j: (len(row[j]), j))
+        for place, other in list(pivots.items()):
+            if k in other:
+                pivots[place] = _combined(other, row, k)
+        pivots[k] = row
+    if len(pivots) < unknowns:
+        return None
+    zero, one = field.context.constant(0), field.context.constant(1)
+    tops, bottoms = [], []
+    for k in range(unknowns):
+        top, bottom = pivots[k].get(unknowns, zero), pivots[k][k]
+        common = top.gcd(bottom) if top != 0 else bottom
+        tops.append(top / common if top != 0 else zero)
+        bottoms.append(bottom / common if top != 0 else one)
+    return tops, bottoms
+
+
+def _brought_down(row: dict[int, Any], pivots: dict[int, dict[int, Any]]) -> dict[int, Any]:
+    for k in [k for k in row if k in pivots]:
+        if k in row:
+            row = _combined(row, pivots[k], k)
+    return row
+
+
+def _combined(row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
+    """The row without its entry k, primitive."""
+    a, b = pivot[k], row[k]
+    common = a.gcd(b)
+    a, b = a / common, b / common
+    found: dict[int, Any] = {}
+    for j in {*row, *pivot}:
+        if j == k:
+            continue
+        value: Any = (row[j] * a if j in row else 0) - (pivot[j] * b if j in pivot else 0)
+        if value != 0:
+            if len(value) > MOST_ENTRY:
+                raise NoClosedForm("the coefficients of an integral are too long", limit=Limit.TERMS, remedy=SMALLER)
+            found[j] = value
+    if not found:
+        return found
+    shared: Any = None
+    for value in found.values():
+        shared = value if shared is None else shared.gcd(value)
+    shared = shared * next(iter(found.values())).leading_coefficient()
+    return {j: value / shared for j, value in found.items()}

@@ -1,0 +1,218 @@
+"""Derivatives of monomials along a polynomial field, modulo a prime, as a sparse matrix: ranks and kernels of parts.
+
+With parameters put in and reduced modulo p, a rank can only become smaller: the kernel over QQ(parameters) has at most
+the dimension that is found here, whatever the prime and the values are.  That is what absence is proved by.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+from flint import nmod_mat
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+
+Exponents = tuple[int, ...]
+#: A polynomial in the variables with coefficients modulo a prime.
+Terms = dict[Exponents, int]
+
+#: Primes: a rank is found modulo the first, and once more modulo the second where it is a check.
+PRIMES = (2**61 - 1, 2**61 - 31)
+#: Monomials that are coupled with each other: the matrix of a part is dense.
+MOST_COUPLED = 1500
+#: Monomials altogether.
+MOST_MONOMIALS = 20_000
+#: What helps where there are too many.
+SMALLER = "ask for a smaller --degree, or put in numbers with --set"
+
+
+@dataclass(frozen=True)
+class ModularField:
+    """``field`` with its parameters put in at ``values`` (random where there is none), modulo ``prime``."""
+
+    field: PolynomialField
+    prime: int
+    values: Mapping[str, int]
+
+    @cached_property
+    def slopes(self) -> tuple[tuple[tuple[Exponents, int], ...], ...]:
+        """x'_i, times the denominator of the field."""
+        return tuple(tuple(self.terms(p).items()) for p in self.field.numerators)
+
+    def terms(self, p: Any) -> Terms:
+        """A polynomial of the field's context at these parameters."""
+        count, prime = len(self.field.parameters), self.prime
+        numbers = [self.values[name] for name in self.field.parameters]
+        found: defaultdict[Exponents, int] = defaultdict(int)
+        for monomial, c in p.to_dict().items():
+            value = int(c.p) * pow(int(c.q), -1, prime)
+            for number, power in zip(numbers, monomial[:count], strict=True):
+                if power:
+                    value = value * pow(number, int(power), prime) % prime
+            key = tuple(int(x) for x in monomial[count:])
+            found[key] = (found[key] + value) % prime
+        return {key: value for key, value in found.items() if value}
+
+    def derivative(self, monomial: Exponents) -> Terms:
+        """denominator * d(x^a)/dt."""
+        prime = self.prime
+        found: dict[Exponents, int] = {}
+        for k, power in enumerate(monomial):
+            if not power:
+                continue
+            base = (*monomial[:k], power - 1, *monomial[k + 1 :])
+            for exponents, c in self.slopes[k]:
+                key = tuple(map(int.__add__, base, exponents))
+                found[key] = (found.get(key, 0) + power * c) % prime
+        return {key: value for key, value in found.items() if value}
+
+    @cached_property
+    def rules(self) -> tuple[tuple[Exponents, Terms], ...]:
+        """Each relation: its leading monomial, and what stands for it.
+
+        Raises NoClosedForm where two leading monomials share a variable: remainders would not be unique then.
+        """
+        found = []
+        for relation in self.field.relations:
+            terms = self.terms(relation)
+            leading = max(terms)
+            inverse = pow(-terms[leading], -1, self.prime)
+            found.append((leading, {m: c * inverse % self.prime for m, c in terms.items() if m != leading}))
+        if any(a and b for (one, _), (other, _) in combinations(found, 2) for a, b in zip(one, other, strict=True)):
+            raise NoClosedForm(
+                "unit vectors that are perpendicular to each other have relations that are not told apart"
+            )
+        return tuple(found)
+
+    def reduced(self, terms: Terms) -> Terms:
+        """Modulo the relations."""
+        for leading, tail in self.rules:
+            terms = _reduced(terms, leading, tail, self.prime)
+        return terms
+
+
+def at_random(
+    field: PolynomialField, prime: int, seed: str = "", values: Mapping[str, int] | None = None
+) -> ModularField:
+    """The field at parameters modulo ``prime`` at which its denominator does not vanish."""
+    source = random.Random(f"{seed} {prime}")
+    for _ in range(20):
+        numbers = {name: source.randrange(1, prime) for name in field.parameters} | dict(values or {})
+        found = ModularField(field, prime, numbers)
+        if found.terms(field.denominator):
+            return found
+    raise NoClosedForm("the equations divide by what vanishes at these values")
+
+
+def _reduced(terms: Terms, leading: Exponents, tail: Terms, prime: int) -> Terms:
+    done: dict[Exponents, int] = {}
+    todo = terms
+    while todo:
+        further: dict[Exponents, int] = {}
+        for monomial, c in todo.items():
+            rest = tuple(map(int.__sub__, monomial, leading))
+            if min(rest) < 0:
+                done[monomial] = (done.get(monomial, 0) + c) % prime
+                continue
+            for m, d in tail.items():
+                key = tuple(map(int.__add__, rest, m))
+                further[key] = (further.get(key, 0) + c * d) % prime
+        todo = {m: c for m, c in further.items() if c}
+    return {m: c for m, c in done.items() if c}
+
+
+def monomials(weights: Sequence[int], weight: int) -> Iterator[Exponents]:
+    """Every x^a with sum a_i weights_i = weight, those of the last variable first."""
+    if not weights:
+        if weight == 0:
+            yield ()
+        return
+    for power in range(weight // weights[0] + 1):
+        for rest in monomials(weights[1:], weight - power * weights[0]):
+            yield (power, *rest)
+
+
+def count(weights: Sequence[int], weight: int) -> int:
+    """How many monomials of that weight there are, without making them."""
+    numbers = [1] + [0] * weight
+    for one in weights:
+        for k in range(one, weight + 1):
+            numbers[k] += numbers[k - one]
+    return numbers[weight]
+
+
+def kernel(there: ModularField, columns: Sequence[Exponents], modulo: bool) -> list[Terms]:
+    """A basis of the f on these monomials with  df/dt = 0  (``modulo`` the relations), over the prime field.
+
+    Raises NoClosedForm where more monomials are coupled than ``MOST_COUPLED``.
+    """
+    images = [there.derivative(one) for one in columns]
+    if modulo:
+        images = [there.reduced(one) for one in images]
+    found: list[Terms] = []
+    for part in coupled(images):
+        if len(part) > MOST_COUPLED:
+            told = f"{len(part)} monomials are coupled with each other, more than {MOST_COUPLED}"
+            raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+        matrix = matrix_of([images[k] for k in part], there.prime)
+        for vector in null_space(matrix):
+            found.append({columns[part[k]]: c for k, c in enumerate(vector) if c})
+    return found
+
+
+def coupled(images: Sequence[Terms]) -> list[list[int]]:
+    """Indices of columns that share rows, directly or through others: the matrix falls into such parts."""
+    parent = list(range(len(images)))
+
+    def root(k: int) -> int:
+        while parent[k] != k:
+            parent[k] = parent[parent[k]]
+            k = parent[k]
+        return k
+
+    first: dict[Exponents, int] = {}
+    for k, image in enumerate(images):
+        for row in image:
+            other = first.setdefault(row, k)
+            parent[root(k)] = root(other)
+    parts: defaultdict[int, list[int]] = defaultdict(list)
+    for k in range(len(images)):
+        parts[root(k)].append(k)
+    return list(parts.values())
+
+
+def matrix_of(images: Sequence[Terms], prime: int) -> Any:
+    """Columns are the images, rows the monomials in them."""
+    rows = {key: k for k, key in enumerate(dict.fromkeys(key for image in images for key in image))}
+    table = [[0] * len(images) for _ in range(max(1, len(rows)))]
+    for k, image in enumerate(images):
+        for key, value in image.items():
+            table[rows[key]][k] = value
+    return nmod_mat(table, prime)
+
+
+def null_space(matrix: Any) -> list[list[int]]:
+    """A basis, each vector with 1 in a place where the others have 0."""
+    basis, nullity = matrix.nullspace()
+    return [[int(basis[r, k]) for r in range(basis.nrows())] for k in range(nullity)]
+
+
+def echelon(rows: Sequence[Terms], order: Sequence[Exponents], prime: int) -> tuple[list[Terms], list[Exponents]]:
+    """The reduced echelon form of polynomials with respect to an order of monomials, and its pivots."""
+    if not rows:
+        return [], []
+    matrix = nmod_mat([[row.get(one, 0) for one in order] for row in rows], prime)
+    reduced, rank = matrix.rref()
+    found, pivots = [], []
+    for r in range(rank):
+        values = [int(reduced[r, k]) for k in range(len(order))]
+        found.append({one: c for one, c in zip(order, values, strict=True) if c})
+        pivots.append(next(one for one, c in zip(order, values, strict=True) if c))
+    return found, pivots

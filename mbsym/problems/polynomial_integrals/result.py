@@ -1,0 +1,81 @@
+"""What is found of problem 9, as values; words are made in ``report/integrals_words.py``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.gradings import Grading
+
+
+class Sure(Enum):
+    """How a statement is known: an identity or a rank that bounds; a random point modulo a prime; not at all."""
+
+    PROVED = "proved"
+    VERIFIED = "verified"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Generator:
+    """An integral that is no polynomial in those before it.
+
+    ``polynomial`` in the field's context, df/dt = 0 (modulo the relations), proved by substitution.  ``name``: that of
+    the integral of problem 7 which it is, or is a part of; "" for one that problem 7 does not know.  ``independent`` of
+    those before it as a function, and how that is known.
+    """
+
+    polynomial: Any
+    weight: int
+    name: str
+    independent: bool
+    sure: Sure
+
+    @property
+    def is_new(self) -> bool:
+        return not self.name
+
+
+@dataclass(frozen=True)
+class Count:
+    """Integrals of one weight (at most that of it, where the field is not quasi-homogeneous).
+
+    ``monomials``: so many coefficients are unknown.  ``most``: the dimension of the kernel modulo a prime, at least
+    that over QQ(parameters).  ``products``: the rank of products of the generators modulo the prime, at most that over
+    QQ(parameters).  Where the two are equal the list is complete, which is proved then.
+    """
+
+    weight: int
+    monomials: int
+    most: int
+    products: int
+
+    @property
+    def complete(self) -> bool:
+        return self.most == self.products
+
+
+@dataclass(frozen=True)
+class PolynomialIntegrals:
+    """Polynomials in ``generators`` are all integrals of weighted degree up to ``degree``, where ``complete``.
+
+    ``independent``: so many of them are, as functions (a lower bound).
+    """
+
+    field: PolynomialField
+    grading: Grading
+    degree: int
+    generators: tuple[Generator, ...]
+    counts: tuple[Count, ...]
+    independent: int
+
+    @property
+    def complete(self) -> bool:
+        return all(one.complete for one in self.counts)
+
+    @property
+    def new(self) -> tuple[Generator, ...]:
+        """Those that problem 7 does not list, nor combinations of what it lists."""
+        return tuple(one for one in self.generators if one.is_new)

@@ -1,0 +1,225 @@
+"""All polynomial integrals up to a weighted degree: kernels of d/dt on monomials, less products of what is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import permutations
+from typing import Any
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.gradings import Grading, homogeneous_parts
+from mbsym.problems.polynomial_integrals.independence import Independence
+from mbsym.problems.polynomial_integrals.lifting import lifted, primitive
+from mbsym.problems.polynomial_integrals.modular import (
+    MOST_MONOMIALS,
+    PRIMES,
+    SMALLER,
+    Exponents,
+    ModularField,
+    Terms,
+    at_random,
+    count,
+    echelon,
+    kernel,
+    monomials,
+)
+from mbsym.problems.polynomial_integrals.result import Count, Generator, PolynomialIntegrals
+
+#: Products of generators of one weight.
+MOST_PRODUCTS = 3000
+#: Orders of the variables that are tried to have an integral in few monomials.
+MOST_ORDERS = 24
+
+
+@dataclass(frozen=True)
+class Known:
+    """An integral, its weight, and itself modulo the prime."""
+
+    polynomial: Any
+    weight: int
+    name: str
+    terms: Terms
+
+
+def polynomial_integrals(
+    field: PolynomialField, grading: Grading, degree: int, known: Sequence[tuple[str, Any]] = ()
+) -> PolynomialIntegrals:
+    """The generators of weighted degree up to ``degree`` of the ring  {f : df/dt = 0}  over QQ(parameters).
+
+    ``known``: names and polynomials of integrals, which are listed under these names; what is no integral is left out.
+
+    Raises NoClosedForm where a degree needs more monomials than the bounds of ``modular`` allow.
+    """
+    return Search(field, grading, degree, known, PRIMES[0]).found()
+
+
+class Search:
+    """One run over the weights, modulo one prime."""
+
+    def __init__(
+        self, field: PolynomialField, grading: Grading, degree: int, known: Sequence[tuple[str, Any]], prime: int
+    ) -> None:
+        self.field, self.grading, self.degree = field, grading, degree
+        self.modulo = bool(field.relations) and not grading.free
+        self.there: ModularField = at_random(field, prime, f"integrals {degree}")
+        self.waiting = self._named(known)
+        self.generators: list[Known] = []
+        self.counts: list[Count] = []
+
+    def found(self) -> PolynomialIntegrals:
+        refuse_too_many(self.field, self.grading, self.degree)
+        for weight in range(1, self.degree + 1):
+            self._of_weight(weight)
+        judged = Independence(self.there, self.grading.free)
+        listed = []
+        for one in self.generators:
+            independent, sure = judged.of(one.terms)
+            listed.append(Generator(one.polynomial, one.weight, one.name, independent, sure))
+        return PolynomialIntegrals(
+            self.field, self.grading, self.degree, tuple(listed), tuple(self.counts), judged.rank
+        )
+
+    def _of_weight(self, weight: int) -> None:
+        columns = list(self._columns(weight))
+        most = kernel(self.there, columns, self.modulo)
+        products = self.products(weight)
+        order = columns
+        rows, _ = echelon(products, order, self.there.prime)
+        for one in [one for one in self.waiting if one.weight == weight]:
+            enlarged, _ = echelon([*rows, one.terms], order, self.there.prime)
+            if len(enlarged) > len(rows):
+                self.generators.append(one)
+                products = [*products, *([one.terms])]
+                rows = enlarged
+        if len(most) > len(rows):
+            for f, terms in self._new(rows, most, columns):
+                self.generators.append(Known(f, weight, "", terms))
+                rows, _ = echelon([*rows, terms], order, self.there.prime)
+        self.counts.append(Count(weight, len(columns), len(most), len(rows)))
+
+    def _columns(self, weight: int) -> Iterator[Exponents]:
+        weights = range(weight + 1) if not self.grading.homogeneous or self.modulo else (weight,)
+        leading = [one for one, _ in self.there.rules] if self.modulo else []
+        for one in weights:
+            for exponents in monomials(self.grading.weights, one):
+                if not any(all(a >= b for a, b in zip(exponents, top, strict=True)) for top in leading):
+                    yield exponents
+
+    def products(self, weight: int) -> list[Terms]:
+        """Products of the generators of that weight (up to it, with 1, where weights are not told apart)."""
+        exactly = self.grading.homogeneous and not self.modulo
+        one: Terms = {(0,) * len(self.field.variables): 1}
+        reached: list[tuple[int, Terms]] = [(0, one)]
+        for generator in self.generators:
+            further = []
+            for start, terms in reached:
+                at, product = start, terms
+                further.append((at, product))
+                while at + generator.weight <= weight:
+                    at, product = at + generator.weight, self._times(product, generator.terms)
+                    further.append((at, product))
+            reached = further
+            if len(reached) > MOST_PRODUCTS:
+                told = f"the integrals have more than {MOST_PRODUCTS} products of weight {weight}"
+                raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+        return [terms for at, terms in reached if at == weight or not exactly]
+
+    def _times(self, a: Terms, b: Terms) -> Terms:
+        prime = self.there.prime
+        found: Terms = {}
+        for m, c in a.items():
+            for n, d in b.items():
+                key = tuple(map(int.__add__, m, n))
+                found[key] = (found.get(key, 0) + c * d) % prime
+        found = {m: c for m, c in found.items() if c}
+        return self.there.reduced(found) if self.modulo else found
+
+    def _new(self, rows: list[Terms], most: list[Terms], columns: Sequence[Exponents]) -> Iterator[tuple[Any, Terms]]:
+        """What the kernel has beyond the products, each in as few monomials as some order of the variables gives."""
+        for terms, leading in sparsest(rows, most, columns, self.there.prime):
+            f = None
+            with suppress(NoClosedForm):  # too long to be written: the count of this weight stays incomplete
+                f = lifted(self.field, list(terms), self.modulo, leading)
+            if f is not None:
+                yield f, self.there.terms(f)
+
+    def _named(self, known: Sequence[tuple[str, Any]]) -> list[Known]:
+        """Homogeneous parts of known integrals without their constants, those of least weight first."""
+        field, found = self.field, []
+        apart = self.grading.homogeneous and not self.modulo
+        listed = [(name, f, apart) for name, f in known]
+        if self.grading.free:  # norms are integrals by themselves; their constant is no part of them
+            listed = [(f"length of {_stem(field, r)}", r, False) for r in field.relations] + listed
+        for name, f, in_parts in listed:
+            f = field.reduced(f) if self.modulo else f
+            parts = homogeneous_parts(field, f, self.grading) if in_parts else _whole(field, f, self.grading)
+            for weight, part in parts:
+                rate = field.derivative(part)
+                if weight and (field.reduced(rate) if self.modulo else rate) == 0:
+                    part = primitive(field, part)
+                    found.append(Known(part, weight, name, self.there.terms(part)))
+        return sorted(found, key=lambda one: one.weight)
+
+
+def _stem(field: PolynomialField, relation: Any) -> str:
+    """``gamma`` of a relation between gamma1, gamma2, gamma3."""
+    degrees = relation.degrees()
+    names = [name for name, k in zip(field.variables, field.places, strict=True) if degrees[k]]
+    return names[0].rstrip("0123456789") or names[0]
+
+
+def _whole(field: PolynomialField, f: Any, grading: Grading) -> list[tuple[int, Any]]:
+    """f without its constant, under its largest weight."""
+    count = len(field.parameters)
+    terms = {m: c for m, c in f.to_dict().items() if any(m[count:])}
+    if not terms:
+        return []
+    return [(max(grading.of([int(a) for a in m[count:]]) for m in terms), field.context.from_dict(terms))]
+
+
+def sparsest(
+    rows: Sequence[Terms], most: Sequence[Terms], columns: Sequence[Exponents], prime: int
+) -> list[tuple[Terms, Exponents]]:
+    """A complement of the span of ``rows`` in that of ``most``, of few monomials: polynomials and a monomial of each.
+
+    Of each order of the variables the reduced echelon form is a candidate: leading monomials of products do not occur.
+    """
+    best: list[tuple[Terms, Exponents]] = []
+    size = None
+    for number, order in enumerate(permutations(range(len(columns[0])))):
+        if number == MOST_ORDERS and len(columns[0]) > 4:
+            break
+        ordered = sorted(columns, key=lambda m: tuple(m[k] for k in _spaced(order, number)), reverse=True)
+        known, pivots = echelon(rows, ordered, prime)
+        taken = set(pivots)
+        left = []
+        for f in most:
+            rest = dict(f)
+            for row, pivot in zip(known, pivots, strict=True):
+                c = rest.get(pivot, 0)
+                if c:
+                    for m, d in row.items():
+                        rest[m] = (rest.get(m, 0) - c * d) % prime
+            left.append({m: c for m, c in rest.items() if c})
+        new, leading = echelon([f for f in left if f], [m for m in ordered if m not in taken], prime)
+        total = sum(map(len, new))
+        if size is None or total < size:
+            size, best = total, list(zip(new, leading, strict=True))
+    return best
+
+
+def _spaced(order: Sequence[int], number: int) -> Sequence[int]:
+    """The orders one after the other, each turned once more: the first ones put each variable in front."""
+    turn = number % len(order)
+    return [*order[turn:], *order[:turn]]
+
+
+def refuse_too_many(field: PolynomialField, grading: Grading, degree: int) -> None:
+    """Raises NoClosedForm where the degree needs more monomials than are looked at."""
+    needed = sum(count(grading.weights, one) for one in range(degree + 1))
+    if needed > MOST_MONOMIALS:
+        told = f"weighted degree {degree} has {needed} monomials in {len(field.variables)} variables"
+        raise NoClosedForm(f"{told}, more than {MOST_MONOMIALS}", limit=Limit.DEGREE, remedy=SMALLER)

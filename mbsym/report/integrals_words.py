@@ -1,0 +1,64 @@
+"""What is said of polynomial integrals: sentences with gaps, filled by whoever writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mbsym.problems.polynomial_integrals import Generator, PolynomialIntegrals, Sure
+from mbsym.report.said import Said
+
+HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
+
+
+def weights(found: PolynomialIntegrals) -> str:
+    """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
+    groups: dict[int, list[str]] = {}
+    for name, weight in zip(found.field.variables, found.grading.weights, strict=True):
+        groups.setdefault(weight, []).append(name)
+    return "; ".join(f"{', '.join(names)}: {weight}" for weight, names in groups.items())
+
+
+def title(one: Generator) -> str:
+    """What an integral is called."""
+    return one.name or "further integral"
+
+
+def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
+    """What is known of the list as a whole."""
+    values: dict[str, object] = {"degree": found.degree, "count": found.independent}
+    if not found.generators:
+        yield _NONE[bool(found.field.parameters)] if found.complete else "None was found.", values
+        return
+    yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
+    for one in found.generators:
+        if not one.independent:
+            yield _DEPENDENT[one.sure], {"name": title(one), "weight": one.weight}
+    if found.complete and found.field.parameters:
+        yield (
+            "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all "
+            "values of the parameters (proved).",
+            values,
+        )
+    elif found.complete:
+        yield "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).", values
+    for count in found.counts:
+        if not count.complete:
+            yield (
+                "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.",
+                {"weight": count.weight, "more": count.most - count.products},
+            )
+    if found.complete and not found.new:
+        yield "There is none beyond those of problem 7.", {}
+
+
+_NONE = {
+    True: "There is none (proved for almost all values of the parameters).",
+    False: "There is none (proved).",
+}
+_DEPENDENT = {
+    Sure.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    "(proved: no more can be).",
+    Sure.VERIFIED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    "(verified at a random state).",
+    Sure.UNDECIDED: "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.",
+}
