@@ -21,6 +21,7 @@ FORMATS = ("svg", "pdf", "png", "json", "tex")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--x", "across", metavar="NAME=LOW:HIGH", help="The parameter or symbol to the right, and its interval.")
 @click.option("--y", "up", metavar="NAME=LOW:HIGH", help="The one upwards; without it: a line.")
+@click.option("--z", "deep", metavar="NAME=LOW:HIGH", help="A third one: slices, so that no picture is missed.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Another's number; repeatable.")
 @click.option(
     "--of", "of", default="stability", show_default=True, metavar="WHAT", help="stability, or signature: of K."
@@ -36,6 +37,7 @@ def command(
     file: Path,
     across: str | None,
     up: str | None,
+    deep: str | None,
     settings: tuple[str, ...],
     of: str,
     locate: Path | None,
@@ -49,8 +51,9 @@ def command(
     The boundaries are the polynomials on which the verdict depends (constant terms, Hurwitz minors, discriminants,
     det K, assumptions, triangle inequalities of inertias).  Their arrangement is exact: every region is judged at a
     rational point, every arc and corner at an algebraic one, each with its theorem.  With --x alone a line is divided
-    into intervals.  Numbers are taken exactly, from the description (values:) or --set; axes and settings are
-    parameters, or symbols of the notation.
+    into intervals; with --z the plane is shown at the critical values of a third parameter and between them, on pages
+    map.pdf, map-2.pdf, ....  Numbers are taken exactly, from the description (values:) or --set; axes and settings
+    are parameters, or symbols of the notation.
 
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
@@ -61,17 +64,20 @@ def command(
       mbsym map systems/satellite.yaml --x alpha=-1:1 --y gamma=0:1 --set p1=2/5 --set p2=1/5
       mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --locate points.csv
       mbsym map systems/triangular-points.yaml --x mu=0:1/2
+      mbsym map systems/gravity-gradient.yaml --x A=0:2 --y B=0:2 --z C=1/2:3/2
     """
     leave(
         file,
-        lambda: _command(file, folder_for(file, out), (across, up), settings, of, locate, formats, language, quiet),
+        lambda: _command(
+            file, folder_for(file, out), (across, up, deep), settings, of, locate, formats, language, quiet
+        ),
     )
 
 
 def _command(
     file: Path,
     folder: Path,
-    texts: tuple[str | None, str | None],
+    texts: tuple[str | None, str | None, str | None],
     settings: tuple[str, ...],
     of: str,
     locate: Path | None,
@@ -91,7 +97,10 @@ def _command(
     if system is None:
         asked.refused()
         return BAD_INPUT
-    named = (("--x", texts[0]), *([("--y", texts[1])] if texts[1] is not None else []))
+    if texts[2] is not None and texts[1] is None:
+        asked.complain("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
+    further = [(name, text) for name, text in (("--y", texts[1]), ("--z", texts[2])) if text is not None]
+    named = [("--x", texts[0]), *further]
     axes = [read_axis(text, name, system, asked) for name, text in named]
     found = [axis for axis in axes if axis is not None]
     values = read_settings(settings, system, asked)

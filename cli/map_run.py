@@ -79,6 +79,10 @@ def run(request: Request) -> int:
     from mbsym.maps.result import Of
     from mbsym.maps.section import Unfit
 
+    if len(request.axes) == 3:
+        from mbsym_cli.map_slices import run_slices
+
+        return run_slices(request)
     started = time.perf_counter()
     try:
         with watched(request.quiet, request.file.name) as watch:

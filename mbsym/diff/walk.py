@@ -68,10 +68,11 @@ def _resolved(place: _Place, sample: Any) -> tuple[Schema, bool]:
     for _ in range(8):
         reference = schema.get("$ref")
         if reference is not None:
-            name = str(reference).removeprefix("#/$defs/")
-            if name == "formula":
+            if reference == "#/$defs/formula":
                 return schema, True
-            schema = place.whole["$defs"][name]
+            schema = place.whole
+            for name in str(reference).removeprefix("#/").split("/"):
+                schema = schema[name]
         elif "oneOf" in schema:
             schema = _alternative(place, schema["oneOf"], sample)
         else:

@@ -16,7 +16,7 @@ from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Arrangement, Box, Point, areas, decompose
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
-from mbsym.maps.boundaries import Condition, Origin, boundaries
+from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, check
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
@@ -52,8 +52,14 @@ def plane_map(
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
     found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
-    x, y = (ends(axis) for axis in axes)
-    made = decompose(found.factors, Box(*x, *y), progress=watch)
+    return mapped(there, kept, found, of, watch)
+
+
+def mapped(
+    there: Section, kept: Admissibility, found: Boundaries, of: Of = Of.STABILITY, watch: Watch = unwatched
+) -> PlaneMap:
+    """The map of a section of two axes with these boundaries, judged and checked; fails as ``plane_map`` does."""
+    made = decompose(found.factors, box_of(there.axes), progress=watch)
     judge = Judge(there, kept)
     places = _places(made)
     strata: list[Stratum] = []
@@ -109,6 +115,12 @@ def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Str
 def ends(axis: Axis) -> tuple[Any, Any]:
     """As numbers of flint."""
     return fmpq(axis.low.numerator, axis.low.denominator), fmpq(axis.high.numerator, axis.high.denominator)
+
+
+def box_of(axes: Sequence[Axis]) -> Box:
+    """The box of the first two axes."""
+    across, up = axes[:2]
+    return Box(*ends(across), *ends(up))
 
 
 def asked(there: Section) -> list[Condition]:

@@ -22,6 +22,7 @@ from mbsym.algebra.plane import polyline
 from mbsym.algebra.plane.drawing import Branches
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
+from mbsym.maps.seen import drawn, stands_out
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.drawing import pictures
@@ -73,11 +74,17 @@ def _drawn(system: System, found: PlaneMap, language: Language) -> Figure:
     height = HEIGHT + 0.35 + 0.155 * len(entries)
     figure = Figure(figsize=(WIDTH, height), dpi=RESOLUTION, layout="constrained")
     axes = figure.subplots()
-    _plane(axes, system, found, told)
-    handles, labels = zip(*entries, strict=True)
+    draw_plane(axes, system, found, told)
+    legend(figure, entries)
+    return figure
+
+
+def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:
+    """(What is shown, what it means) below a figure."""
+    handles, told = zip(*entries, strict=True)
     figure.legend(
         handles,
-        labels,
+        told,
         loc="outside lower left",
         fontsize=SMALL,
         frameon=False,
@@ -87,10 +94,15 @@ def _drawn(system: System, found: PlaneMap, language: Language) -> Figure:
         borderaxespad=0.2,
         handler_map={str: Letter()},
     )
-    return figure
 
 
-def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str]) -> None:
+def draw_plane(
+    axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str], size: float = SMALL, room: float = ROOM
+) -> None:
+    """A map in axes of a figure; ``told`` are the letters of its curves, ``size`` that of small text.
+
+    Numbers stand in regions that are wider than ``room``, as a part of the plane.
+    """
     box = found.arrangement.box
     axes.grid(False)
     axes.set_xlim(float(box.x0), float(box.x1))
@@ -99,11 +111,10 @@ def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str])
     axes.yaxis.set_major_locator(MaxNLocator(6))
     for side in ("top", "right"):
         axes.spines[side].set_visible(True)
-    axes.tick_params(labelsize=SMALL, length=2.5, width=0.6)
+    axes.tick_params(labelsize=size, length=2.5, width=0.6)
     for spine in axes.spines.values():
         spine.set_linewidth(0.6)
-    names = LatexNames([axis.name for axis in found.section.axes])
-    across, up = (labelled(named(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
+    across, up = labels(system, found)
     axes.set_xlabel(across, fontsize=TEXT)
     axes.set_ylabel(up, fontsize=TEXT)
     branches = Branches(found.arrangement)
@@ -116,8 +127,15 @@ def _plane(axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str])
             xs, ys = zip(*lines[stratum.number], strict=True)
             axes.plot(xs, ys, solid_capstyle="round", **style)
     _corners(axes, found)
-    _numbers(axes, found, branches)
-    _letters(axes, found, told, lines)
+    _numbers(axes, found, branches, size, room)
+    _letters(axes, found, told, lines, size)
+
+
+def labels(system: System, found: PlaneMap) -> tuple[str, str]:
+    """What stands along the axes."""
+    names = LatexNames([axis.name for axis in found.section.axes])
+    across, up = (labelled(named(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
+    return across, up
 
 
 def named(names: LatexNames, name: str) -> str:
@@ -164,27 +182,21 @@ def hatch_of(shown: Look) -> str:
 
 def _style(found: PlaneMap, arc: Stratum) -> dict[str, Any] | None:
     """How an arc is drawn; None where nothing changes at it."""
-    sides = [one for one in found.beside(arc) if one is not None]
-    if len(sides) < 2:
-        return None
-    if all(one.judged is None for one in sides) and not found.separates(arc):
+    if not drawn(found, arc):
         return None
     if found.separates(arc):
-        open_side = any(one.judged is None for one in sides)
+        open_side = any(one is not None and one.judged is None for one in found.beside(arc))
         return {"color": _EDGE if open_side else _DARK, "linewidth": 0.7 if open_side else 0.9, "zorder": 2}
-    if found.singles_out(arc):
-        return {"color": _DARK, "linewidth": 0.8, "linestyle": _DASHES, "zorder": 2}
-    return None
+    return {"color": _DARK, "linewidth": 0.8, "linestyle": _DASHES, "zorder": 2}
 
 
 def _corners(axes: Axes, found: PlaneMap) -> None:
     """Points in which drawn arcs meet, and those that differ from what is around them."""
     points = []
     for stratum, corner in zip(found.corners, found.arrangement.corners, strict=True):
-        drawn = [k for k in corner.arcs if _style(found, found.arcs[k])]
+        lines = [k for k in corner.arcs if drawn(found, found.arcs[k])]
         inside = corner.kind != "edge"
-        alone = not corner.arcs and inside and stratum.judged is not None
-        if (inside and len(drawn) > 2) or alone:
+        if (inside and len(lines) > 2) or stands_out(found, stratum):
             points.append(corner.point.floats())
     if points:
         xs, ys = zip(*points, strict=True)
@@ -193,12 +205,23 @@ def _corners(axes: Axes, found: PlaneMap) -> None:
 
 def lettered(found: PlaneMap) -> dict[int, str]:
     """A letter for every curve (by its number) of which an arc is drawn, in the order in which they are listed."""
-    drawn = {k for one, there in _arcs(found) if _style(found, one) for k in there.factors}
+    return {k: letter_of(i) for i, k in enumerate(sorted(drawn_curves(found)))}
+
+
+def drawn_curves(found: PlaneMap) -> set[int]:
+    """The curves, by number, of which an arc is drawn."""
+    return {k for one, there in _arcs(found) if _style(found, one) for k in there.factors}
+
+
+def letter_of(place: int) -> str:
+    """a, b, ..., z, a1, ..."""
     letters = "abcdefghijklmnopqrstuvwxyz"
-    return {k: letters[i] if i < len(letters) else f"{letters[i % 26]}{i // 26}" for i, k in enumerate(sorted(drawn))}
+    return letters[place] if place < len(letters) else f"{letters[place % 26]}{place // 26}"
 
 
-def _letters(axes: Axes, found: PlaneMap, told: Mapping[int, str], lines: Mapping[int, Sequence[XY]]) -> None:
+def _letters(
+    axes: Axes, found: PlaneMap, told: Mapping[int, str], lines: Mapping[int, Sequence[XY]], points: float
+) -> None:
     """Each letter once, on the longest arc of its curve, at a place away from the letters before it."""
     box = found.arrangement.box
     size = float(box.x1 - box.x0), float(box.y1 - box.y0)
@@ -215,7 +238,7 @@ def _letters(axes: Axes, found: PlaneMap, told: Mapping[int, str], lines: Mappin
             start[0] + place[0] * size[0],
             start[1] + place[1] * size[1],
             letter,
-            fontsize=SMALL,
+            fontsize=points,
             style="italic",
             ha="center",
             va="center",
@@ -237,7 +260,7 @@ def _along(line: Sequence[XY]) -> list[XY]:
     return list(middle[:: max(1, len(middle) // 24)])
 
 
-def _numbers(axes: Axes, found: PlaneMap, branches: Branches) -> None:
+def _numbers(axes: Axes, found: PlaneMap, branches: Branches, points: float, least: float) -> None:
     """How many roots lie to the right, in the middle of the widest part of every unstable region with room for it."""
     if found.of is not Of.STABILITY:
         return
@@ -253,41 +276,55 @@ def _numbers(axes: Axes, found: PlaneMap, branches: Branches) -> None:
             room = min((right - left) / width, (ys[cell + 1] - ys[cell]) / height)
             if room > best:
                 best, place = room, (x, (ys[cell] + ys[cell + 1]) / 2)
-        if best > ROOM:
+        if best > least:
             halo = [withStroke(linewidth=1.6, foreground=look(found, stratum).colour)]
             told = str(stratum.judged.right)
             axes.text(
-                *place, told, fontsize=SMALL, color="white", ha="center", va="center", path_effects=halo, zorder=3
+                *place, told, fontsize=points, color="white", ha="center", va="center", path_effects=halo, zorder=3
             )
 
 
 def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> list[tuple[Any, str]]:
-    """The legend: what colours mean, in the order of area, then what curves are."""
+    return entries_of([(found, told)], language)
+
+
+def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: Language) -> list[tuple[Any, str]]:
+    """The legend of maps of one section or of its slices, each with the letters of its curves.
+
+    It says what colours mean, in the order of area, then what curves are.
+    """
     by_words: dict[str, tuple[float, Look]] = {}
-    for one, (area, _) in zip(found.regions, found.areas, strict=True):
-        words = look_words(found, one, language)
-        by_words[words] = (by_words.get(words, (0.0, NONE))[0] + area, look(found, one))
-    entries: list[tuple[Any, str]] = []
-    for words, (_, shown) in sorted(by_words.items(), key=lambda item: -item[1][0]):
-        patch = Patch(facecolor=shown.colour, edgecolor=hatch_of(shown), linewidth=0.3, hatch=shown.hatch or None)
-        entries.append((patch, words))
-    if found.of is Of.STABILITY and any(one.judged is not None and one.judged.right for one in found.regions):
-        entries.append(("2", say(language, "number of roots with positive real part")))
     by_condition: dict[str, list[str]] = {}
-    for k, letter in told.items():
-        condition = telling(found.boundaries.conditions[k], _borders_open(found, k))
-        by_condition.setdefault(condition_words(condition, found.section, language), []).append(letter)
+    named_letters: set[str] = set()
+    dashed = counted = False
+    for found, told in shown:
+        for one, (area, _) in zip(found.regions, found.areas, strict=True):
+            words = look_words(found, one, language)
+            by_words[words] = (by_words.get(words, (0.0, NONE))[0] + area, look(found, one))
+        for k, letter in told.items():
+            if letter not in named_letters:  # of slices, the first tells what a curve is
+                named_letters.add(letter)
+                condition = telling(found.boundaries.conditions[k], _borders_open(found, k))
+                by_condition.setdefault(condition_words(condition, found.section, language), []).append(letter)
+        counted |= found.of is Of.STABILITY and any(x.judged is not None and x.judged.right for x in found.regions)
+        dashed |= any(found.singles_out(arc) and _style(found, arc) for arc in found.arcs)
+    entries: list[tuple[Any, str]] = []
+    for words, (_, seen) in sorted(by_words.items(), key=lambda item: -item[1][0]):
+        patch = Patch(facecolor=seen.colour, edgecolor=hatch_of(seen), linewidth=0.3, hatch=seen.hatch or None)
+        entries.append((patch, words))
+    if counted:
+        entries.append(("2", say(language, "number of roots with positive real part")))
     entries += [(", ".join(letters), words) for words, letters in by_condition.items()]
-    if any(found.singles_out(arc) and _style(found, arc) for arc in found.arcs):
-        dashed = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
-        entries.append((dashed, say(language, "dashed: another verdict on the curve alone")))
+    if dashed:
+        line = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
+        entries.append((line, say(language, "dashed: another verdict on the curve alone")))
     return entries
 
 
 def _borders_open(found: PlaneMap, curve: int) -> bool:
     """Whether a drawn arc of a curve borders on parameters without a verdict."""
-    drawn = [arc for arc, there in _arcs(found) if curve in there.factors and _style(found, arc)]
-    return any(side is not None and side.judged is None for arc in drawn for side in found.beside(arc))
+    lines = [arc for arc, there in _arcs(found) if curve in there.factors and _style(found, arc)]
+    return any(side is not None and side.judged is None for arc in lines for side in found.beside(arc))
 
 
 class Letter:

@@ -10,9 +10,10 @@ from flint import fmpq
 from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.admissible import Demand
-from mbsym.maps.boundaries import Condition
+from mbsym.maps.boundaries import Boundaries, Condition
 from mbsym.maps.check import Check
 from mbsym.maps.result import LineMap, PlaneMap, Stratum
+from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.schemas import version
 from mbsym.report.sections.stability import verdict_data
@@ -27,7 +28,22 @@ DIGITS = 15
 
 def map_json(system: System, found: PlaneMap | LineMap) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    data = {
+    data = head(system, found) | {
+        "interrupted": found.interrupted,
+        "check": check_data(found.check),
+        **(_of_line(found) if isinstance(found, LineMap) else plane_data(found)),
+    }
+    return written(data)
+
+
+def written(data: dict[str, Any]) -> str:
+    """The text of map.json."""
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def head(system: System, found: PlaneMap | LineMap | Stack) -> dict[str, Any]:
+    """What maps over any number of axes have in common."""
+    return {
         "format": FORMAT,
         "version": version(),
         "system": system.name,
@@ -39,19 +55,22 @@ def map_json(system: System, found: PlaneMap | LineMap) -> str:
         "subsystems": [list(names) for names in found.section.coordinates],
         "demands": [_demand(one) for one in found.admissibility.demands],
         "left_out": list(found.admissibility.left_out),
-        "curves": [
-            {"number": k, "polynomial": str(p), "conditions": [_condition(one) for one in conditions]}
-            for k, (p, conditions) in enumerate(zip(found.boundaries.factors, found.boundaries.conditions, strict=True))
-        ],
+        "curves": curves_data(found.boundaries),
         "vanishing": [_condition(one) for one in found.boundaries.vanishing],
-        "interrupted": found.interrupted,
-        "check": check_data(found.check),
-        **(_of_line(found) if isinstance(found, LineMap) else _of_plane(found)),
     }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
-def _of_plane(found: PlaneMap) -> dict[str, Any]:
+def curves_data(found: Boundaries, start: int = 0) -> list[dict[str, Any]]:
+    """The boundary polynomials from number ``start`` on."""
+    return [
+        {"number": k, "polynomial": str(p), "conditions": [_condition(one) for one in conditions]}
+        for k, (p, conditions) in enumerate(zip(found.factors, found.conditions, strict=True))
+        if k >= start
+    ]
+
+
+def plane_data(found: PlaneMap) -> dict[str, Any]:
+    """Regions, arcs and corners."""
     arrangement = found.arrangement
     return {
         "regions": [
@@ -81,13 +100,13 @@ def _of_line(found: LineMap) -> dict[str, Any]:
     """Intervals are the regions, with their ends; zeros the corners."""
     return {
         "regions": [
-            _stratum(one, [_coordinate(there.sample)])
+            _stratum(one, [coordinate(there.sample)])
             | {"signs": list(there.signs), "arcs": [], "ends": list(there.ends), "area": area, "area_error": error}
             for one, there, (area, error) in zip(found.regions, found.line.intervals, found.areas, strict=True)
         ],
         "arcs": [],
         "corners": [
-            _stratum(one, [_coordinate(there.number)]) | {"curves": list(there.factors), "arcs": [], "kind": "zero"}
+            _stratum(one, [coordinate(there.number)]) | {"curves": list(there.factors), "arcs": [], "kind": "zero"}
             for one, there in zip(found.corners, found.line.zeros, strict=True)
         ],
     }
@@ -129,10 +148,10 @@ def _demand(one: Demand) -> dict[str, Any]:
 
 
 def _point(point: Point) -> list[dict[str, Any]]:
-    return [_coordinate(x) for x in (point.x, point.y)]
+    return [coordinate(x) for x in (point.x, point.y)]
 
 
-def _coordinate(x: Any) -> dict[str, Any]:
+def coordinate(x: Any) -> dict[str, Any]:
     """A rational number as text, an algebraic one by its minimal polynomial and an interval with no other root."""
     if isinstance(x, fmpq):
         return {"exact": str(x), "polynomial": None, "between": None, "number": float(enclosure(x).mid())}

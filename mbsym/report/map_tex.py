@@ -6,6 +6,7 @@ from typing import Any
 
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.result import LineMap, Of, PlaneMap
+from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.line_figure import changes
@@ -33,19 +34,8 @@ def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> st
     """Needs graphicx; the picture is map.pdf in the same folder."""
     names = LatexNames([axis.name for axis in found.section.axes])
     axes = ", ".join(f"${names[axis.name]}$" for axis in found.section.axes)
-    fixed = LatexNames(list(found.section.told))
-    values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
-    what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
     plane = f"({axes})" if len(found.section.axes) > 1 else axes
-    caption = f"{say(language, what)} {_text(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
-    lines = [
-        "% needs \\usepackage{graphicx}; written by mbsym map",
-        r"\begin{figure}",
-        r"\centering",
-        r"\includegraphics[width=\columnwidth]{map.pdf}",
-        rf"\caption{{{caption}}}",
-        r"\end{figure}",
-    ]
+    lines = figure_lines("map.pdf", caption_of(system, found, plane, language))
     items = _zeros(found, names, language) if isinstance(found, LineMap) else _curves(found, names, language)
     if items:
         head = "The points of the map:" if isinstance(found, LineMap) else "The curves of the map:"
@@ -53,24 +43,45 @@ def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> st
     return "\n".join(lines) + "\n"
 
 
+def caption_of(system: System, found: PlaneMap | LineMap | Stack, plane: str, language: Language) -> str:
+    """What is shown, over which axes, and what has a number."""
+    fixed = LatexNames(list(found.section.told))
+    values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
+    what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
+    return f"{say(language, what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
+
+
+def figure_lines(file: str, caption: str) -> list[str]:
+    """A figure with a picture of the same folder."""
+    return [
+        "% needs \\usepackage{graphicx}; written by mbsym map",
+        r"\begin{figure}",
+        r"\centering",
+        rf"\includegraphics[width=\columnwidth]{{{file}}}",
+        rf"\caption{{{caption}}}",
+        r"\end{figure}",
+    ]
+
+
 def _curves(found: PlaneMap, names: LatexNames, language: Language) -> list[str]:
     items = []
     for k, letter in lettered(found).items():
         condition = condition_words(telling(found.boundaries.conditions[k]), found.section, language)
-        polynomial = _polynomial(found.boundaries.factors[k], names, language)
-        items.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({_text(condition)})")
+        polynomial = equation(found.boundaries.factors[k], names, language)
+        items.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({escaped(condition)})")
     return items
 
 
 def _zeros(found: LineMap, names: LatexNames, language: Language) -> list[str]:
     name = names[found.section.axes[0].name]
     return [
-        rf"\item[\textit{{{letter}}}] ${name} = {x:.10g}$ \quad ({_text(words)})"
+        rf"\item[\textit{{{letter}}}] ${name} = {x:.10g}$ \quad ({escaped(words)})"
         for letter, x, words in changes(found, language)
     ]
 
 
-def _polynomial(p: Any, names: LatexNames, language: Language) -> str:
+def equation(p: Any, names: LatexNames, language: Language) -> str:
+    """p = 0, or how long it is."""
     if len(p) > MOST_TERMS:
         symbols = [names[name] for name in p.context().names()]
         degrees = ", ".join(f"{d} ({say(language, 'in')} ${s}$)" for s, d in zip(symbols, p.degrees(), strict=True))
@@ -94,5 +105,6 @@ def _rational(value: Any) -> str:
     return str(value)
 
 
-def _text(plain: str) -> str:
+def escaped(plain: str) -> str:
+    """As LaTeX."""
     return "".join(_ESCAPED.get(c, c) for c in plain)

@@ -4,7 +4,11 @@ Surfaces f(x, y, z) = 0 are projected along y (discriminants, leading coefficien
 that gives along x: between two neighbouring roots of the polynomials in z that are left, the arrangements in the box
 are deformed into each other, and so no topology is missed (McCallum 1988).  f must not vanish identically over a point
 (x, z) away from these roots: unless one of its coefficients in y is a number, all of them are projected, not the
-leading one alone.  Values may be listed at which nothing visible happens.
+leading one alone.
+
+The same holds for the projection along x, then y.  So near a value that only one of the two lists nothing changes,
+and what is left are the roots that they share: most of those at which a projection folds over itself are gone.  Values
+may still be listed at which nothing visible happens.
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.arrangement import Arrangement
 from mbsym.algebra.plane.decomposition import decompose
+from mbsym.algebra.plane.likeness import alike
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
@@ -32,32 +37,13 @@ class Slice:
     """The arrangement at one value of z.
 
     ``critical``: the picture may be another one on its two sides; the arrangement is None at an irrational such value.
-    ``alike``: it has the ``shape`` of the slice at the last value before that is not critical; which is no proof that
-    nothing happens between the two.
+    ``alike``: it corresponds (``likeness``) to the slice at the last value before that is not critical.
     """
 
     z: Number
     critical: bool
     arrangement: Arrangement | None
     alike: bool = False
-
-
-def shape(found: Arrangement) -> tuple[object, ...]:
-    """What two arrangements of one topology have in common: regions, arcs and corners with what they adjoin.
-
-    Each is told by the signs or the positions of the polynomials, not by its place in the plane.
-    """
-    corners = [(corner.kind.value, corner.branches, corner.factors) for corner in found.corners]
-    arcs = [
-        (
-            arc.factors,
-            sorted(() if k is None else found.regions[k].signs for k in arc.regions),
-            sorted(("",) if k is None else corners[k] for k in arc.corners),
-        )
-        for arc in found.arcs
-    ]
-    regions = [(region.signs, sorted(arcs[k] for k in region.arcs)) for region in found.regions]
-    return sorted(regions), sorted(arcs), sorted(corners)
 
 
 def decompose_space(
@@ -72,32 +58,41 @@ def decompose_space(
 
     Raises ValueError for a polynomial that is zero, TooLargeError where the budget does not suffice.
     """
-    line = critical_levels(factors, box, low, high, budget, progress)
-    levels: list[tuple[Number, bool]] = []
-    for at, interval in enumerate(line.intervals):
-        if interval.ends[0] is not None and at == 0:
-            levels.append((line.zeros[interval.ends[0]].number, True))
-        levels.append((interval.sample, False))
-        if interval.ends[1] is not None:
-            levels.append((line.zeros[interval.ends[1]].number, True))
+    levels = levels_of(critical_levels(factors, box, low, high, budget, progress))
     slices = []
-    last: tuple[object, ...] | None = None
+    last: Arrangement | None = None
     for at, (z, critical) in enumerate(levels):
         progress("slices", at, len(levels))
         found = _slice(factors, box, z, budget) if isinstance(z, fmpq) else None
-        own = None if found is None else shape(found)
-        slices.append(Slice(z, critical, found, own is not None and own == last))
-        last = last if critical else own
+        slices.append(Slice(z, critical, found, found is not None and last is not None and alike(found, last)))
+        last = last if critical else found
     progress("slices", len(levels), len(levels))
     return tuple(slices)
+
+
+def levels_of(line: Line) -> list[tuple[Number, bool]]:
+    """The zeros and samples of a line in their order, with whether each is a zero."""
+    found: list[tuple[Number, bool]] = []
+    for at, interval in enumerate(line.intervals):
+        if interval.ends[0] is not None and at == 0:
+            found.append((line.zeros[interval.ends[0]].number, True))
+        found.append((interval.sample, False))
+        if interval.ends[1] is not None:
+            found.append((line.zeros[interval.ends[1]].number, True))
+    return found
+
+
+def flattened(p: Polynomial, z: Any, plane: Any) -> Polynomial:
+    """p(x, y, z) in the context ``plane`` of the first two variables; z is a number or a polynomial of that context."""
+    x, y = plane.gens()[:2]
+    return p.compose(x, y, z if isinstance(z, type(x)) else plane.constant(z), ctx=plane)
 
 
 def _slice(factors: Sequence[Polynomial], box: Box, z: Rational, budget: Budget | None) -> Arrangement:
     """Polynomials that vanish on the whole slice bound nothing in it; in their places stands 1."""
     names = factors[0].context().names() if factors else ("x", "y", "z")
     plane = fmpq_mpoly_ctx.get(names[:2])
-    x, y = plane.gens()
-    flat = [p.compose(x, y, plane.constant(z), ctx=plane) for p in factors]
+    flat = [flattened(p, z, plane) for p in factors]
     return decompose([p if p != 0 else plane.constant(1) for p in flat], box, budget)
 
 
@@ -114,18 +109,41 @@ def critical_levels(
     for p in factors:
         if p == 0:
             raise ValueError("a polynomial that is identically zero bounds nothing")
-    surfaces, rest = _parted(factors, _Y)
-    flat = [*rest, *_projected(surfaces, _Y, (box.y0, box.y1), budget, progress)]
-    curves, levels = _parted(flat, _X)
-    levels += _projected(curves, _X, (box.x0, box.x1), budget, progress)
     line = fmpq_mpoly_ctx.get(("z",))
-    z = line.gens()[0]
-    zero = line.constant(0)
-    wanted = [p.compose(zero, zero, z, ctx=line) for p in _irreducible(levels)]
+    z, zero = line.gens()[0], line.constant(0)
+    wanted = [p.compose(zero, zero, z, ctx=line) for p in _shared(factors, box, budget, progress)]
     found = decompose_line(wanted, low, high)
     if len(found.zeros) > budget.abscissas:
         raise TooLargeError(f"{len(found.zeros)} values at which the picture may change", limit=Limit.WORK)
     return found
+
+
+def _shared(factors: Sequence[Polynomial], box: Box, budget: Budget, progress: Progress) -> list[Polynomial]:
+    """Irreducible polynomials in z that both orders of projection give; those of one where the other is too large."""
+    turned = []
+    for p in factors:
+        x, y, z = p.context().gens()
+        turned.append(p.compose(y, x, z, ctx=p.context()))
+    tables: list[dict[str, Polynomial]] = []
+    refused: TooLargeError | None = None
+    for given, there in ((factors, box), (turned, Box(box.y0, box.y1, box.x0, box.x1))):
+        try:
+            every = _irreducible(_levels(given, there, budget, progress))
+        except TooLargeError as failure:
+            refused = failure
+            continue
+        tables.append({str(p / p.leading_coefficient()): p for p in every})
+    if refused is not None and not tables:
+        raise refused
+    return [p for key, p in tables[0].items() if key in tables[-1]]
+
+
+def _levels(factors: Sequence[Polynomial], box: Box, budget: Budget, progress: Progress) -> list[Polynomial]:
+    """Polynomials in z alone: what is left of a projection along y, then x."""
+    surfaces, rest = _parted(factors, _Y)
+    flat = [*rest, *_projected(surfaces, _Y, (box.y0, box.y1), budget, progress)]
+    curves, levels = _parted(flat, _X)
+    return levels + _projected(curves, _X, (box.x0, box.x1), budget, progress)
 
 
 def _irreducible(polynomials: Iterable[Polynomial]) -> list[Polynomial]:

@@ -1,0 +1,105 @@
+"""What a picture of a map shows, as a graph: areas of one look, the lines drawn between them, points where they meet.
+
+Curves at which nothing changes are no part of it: regions on their two sides are one area where they look alike, and
+lines are one where only such a curve crosses them.
+"""
+
+from __future__ import annotations
+
+from mbsym.algebra.plane.arrangement import CornerKind
+from mbsym.algebra.plane.likeness import Graph
+from mbsym.maps.result import PlaneMap, Stratum
+
+
+class _Joined:
+    """Numbers that are joined to classes; the least stands for each."""
+
+    def __init__(self, count: int) -> None:
+        self._above = list(range(count))
+
+    def __call__(self, k: int) -> int:
+        while self._above[k] != k:
+            self._above[k] = self._above[self._above[k]]
+            k = self._above[k]
+        return k
+
+    def join(self, a: int, b: int) -> None:
+        a, b = self(a), self(b)
+        self._above[max(a, b)] = min(a, b)
+
+
+def seen(found: PlaneMap) -> Graph:
+    """Areas, lines and points with their looks; lines have edges to the areas beside them and to their end points."""
+    there = found.arrangement
+    areas, lines = _Joined(len(there.regions)), _Joined(len(there.arcs))
+    shown = [drawn(found, arc) for arc in found.arcs]
+    for arc, kept in zip(there.arcs, shown, strict=True):
+        below, above = arc.regions
+        if not kept and below is not None and above is not None:
+            areas.join(below, above)
+    told = [_line(found, arc) for arc in found.arcs]
+    points: list[tuple[object, list[int]]] = []
+    for corner, stratum in zip(there.corners, found.corners, strict=True):
+        ends = [k for k in corner.arcs if shown[k] for end in there.arcs[k].corners if end == corner.id]
+        differs = stands_out(found, stratum)
+        plain = not differs and corner.kind is not CornerKind.SINGULAR
+        if plain and len(ends) == 2 and told[ends[0]] == told[ends[1]]:
+            lines.join(*ends)
+        elif ends or differs:
+            points.append((("point", corner.kind is CornerKind.EDGE, found.look(stratum) if differs else None), ends))
+    return _graph(found, areas, lines, [k for k, kept in enumerate(shown) if kept], told, points)
+
+
+def drawn(found: PlaneMap, arc: Stratum) -> bool:
+    """Whether an arc is part of the picture: another look on its two sides, or on it alone."""
+    sides = [one for one in found.beside(arc) if one is not None]
+    if len(sides) < 2:
+        return False
+    return found.separates(arc) or (found.singles_out(arc) and any(one.judged is not None for one in sides))
+
+
+def stands_out(found: PlaneMap, corner: Stratum) -> bool:
+    """Whether an isolated point has another verdict than the region around it."""
+    there = found.arrangement.corners[corner.number]
+    if corner.judged is None or there.kind is not CornerKind.ISOLATED:
+        return False
+    at, j = there.place
+    intervals = found.arrangement.places.intervals
+    around = intervals.get((at, j), intervals.get((at, j - 1)))
+    if around is None or found.regions[around].judged is None:
+        return False
+    return found.look(corner) != found.look(found.regions[around])
+
+
+def _line(found: PlaneMap, arc: Stratum) -> object:
+    """How an arc is drawn."""
+    alone = not found.separates(arc)
+    return found.arrangement.arcs[arc.number].factors, found.look(arc) if alone else None
+
+
+def _graph(
+    found: PlaneMap,
+    areas: _Joined,
+    lines: _Joined,
+    kept: list[int],
+    told: list[object],
+    points: list[tuple[object, list[int]]],
+) -> Graph:
+    labels: list[object] = []
+    nodes: dict[tuple[str, int], int] = {}
+    for k, stratum in enumerate(found.regions):
+        if areas(k) == k:
+            nodes["area", k] = len(labels)
+            labels.append(("area", found.look(stratum)))
+    beside: dict[int, set[int]] = {}
+    for k in kept:
+        if lines(k) not in beside:
+            nodes["line", lines(k)] = len(labels)
+            labels.append(("line", told[lines(k)]))
+        sides = beside.setdefault(lines(k), set())
+        sides |= {areas(r) for r in found.arrangement.arcs[k].regions if r is not None}
+    edges = [(nodes["line", k], nodes["area", r]) for k, sides in beside.items() for r in sorted(sides)]
+    for label, ends in points:
+        edges += [(nodes["line", lines(k)], len(labels)) for k in ends]
+        labels.append(label)
+    return Graph(tuple(labels), tuple(edges))

@@ -1,0 +1,322 @@
+"""A map over three axes: a stack of exact maps of planes, so that no picture between them is missed.
+
+The boundary polynomials of the section of three axes are found once.  At all values of the third axis at which their
+arrangement in the plane of the first two may change (``critical_levels``), and at one rational value between any two,
+the plane is decomposed and judged as any other map.  Between two neighbouring critical values
+
+* regions, arcs and corners of the slices are deformed into each other (McCallum 1988), and
+* a region sweeps an open connected set on which no boundary polynomial vanishes, so that its verdict is one and the
+  same (``maps.boundaries``).
+
+On arcs and at corners verdicts are those of the slice that is looked at.  Another slice between the same two values
+checks both statements: it has to correspond to the first one (``plane.likeness``), verdicts of regions included.
+
+Slices in which the same is shown (``maps.seen``) are one ``Picture``.  A critical value ends it unless the same is
+shown at that value, too; values at which it was not looked at are told with the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
+from typing import Any
+
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+
+from mbsym.algebra.failures import Limit, TooLargeError
+from mbsym.algebra.plane import Arrangement, Point, decompose
+from mbsym.algebra.plane.likeness import alike, corresponding
+from mbsym.algebra.plane.line import Line
+from mbsym.algebra.plane.numbers import Number, between_simply
+from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
+from mbsym.analysis import Analysis
+from mbsym.maps.admissible import Admissibility, Demand, admissibility
+from mbsym.maps.boundaries import Boundaries, boundaries
+from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched
+from mbsym.maps.result import Of, PlaneMap, Shape, Shown
+from mbsym.maps.section import Axis, Complaint, Fault, Law, Section, Unfit, section
+from mbsym.maps.seen import seen
+
+#: Slices take seconds each: with more critical values than this none is begun.
+MOST_LEVELS = 120
+
+
+class Missing(StrEnum):
+    """Why there is no map of a slice."""
+
+    IRRATIONAL = "at an irrational value: not looked at"
+    OUTSIDE = "outside of the assumptions"
+    TOO_LARGE = "too large to be decided"
+    NOT_REACHED = "not reached"
+
+
+@dataclass(frozen=True)
+class Layer:
+    """The slice at one value of the third axis.
+
+    ``critical``: the picture may be another one on its two sides.  ``plane`` is its map, ``missing`` says why there is
+    none; ``broken``: what no point of the slice keeps.  ``second``: of one that is not critical, another value up to
+    the same critical ones, at which the slice was compared; ``confirmed``: whether it corresponds.
+    """
+
+    number: int
+    z: Number
+    critical: bool
+    plane: PlaneMap | None = None
+    missing: Missing | None = None
+    broken: tuple[Demand, ...] = ()
+    second: Any = None
+    confirmed: bool = True
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Neighbouring ``layers`` that show the same, by their numbers; ``unseen`` of them were not looked at.
+
+    ``shown``: the one that stands for all.
+    """
+
+    layers: tuple[int, ...]
+    shown: int
+    unseen: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Stack(Shown):
+    """A map over three axes: ``line`` has the critical values of the third, ``layers`` ascend along it."""
+
+    of: Of
+    section: Section
+    admissibility: Admissibility
+    boundaries: Boundaries
+    line: Line
+    layers: tuple[Layer, ...]
+    pictures: tuple[Picture, ...]
+    interrupted: bool = False
+
+    @property
+    def axis(self) -> Axis:
+        """The third axis."""
+        return self.section.axes[2]
+
+    @property
+    def sound(self) -> bool:
+        """Whether all checks of all slices hold."""
+        return all(one.confirmed and (one.plane is None or _holds(one.plane)) for one in self.layers)
+
+    def ends(self, picture: Picture) -> tuple[Number, bool, Number, bool]:
+        """(from, whether that belongs to it, to, whether that does), values of the third axis."""
+        first, last = self.layers[picture.layers[0]], self.layers[picture.layers[-1]]
+        low, high = first.z, last.z
+        if not first.critical:
+            low = self.layers[first.number - 1].z if first.number else self.line.low
+        if not last.critical:
+            high = self.layers[last.number + 1].z if last.number + 1 < len(self.layers) else self.line.high
+        return low, first.critical or not first.number, high, last.critical or last.number + 1 == len(self.layers)
+
+
+def _holds(plane: PlaneMap) -> bool:
+    return plane.check is None or plane.check.holds
+
+
+def stack(
+    analysis: Analysis,
+    axes: Sequence[Axis],
+    settings: Mapping[str, Fraction],
+    of: Of = Of.STABILITY,
+    watch: Watch = unwatched,
+) -> Stack:
+    """The slices of a description over three axes, at all critical values of the third and between them.
+
+    Raises what ``plane_map`` raises, TooLargeError for more than ``MOST_LEVELS`` critical values, too.
+    KeyboardInterrupt ends the work once slices are judged: what was not reached says so.
+    """
+    watch("first approximation", 0, 1)
+    there = section(analysis, axes, settings)
+    kept = admissibility(analysis, there)
+    if kept.broken:
+        raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
+    watch("boundaries", 0, 1)
+    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+    line = critical_levels(found.factors, box_of(axes), *ends(axes[2]), progress=watch)
+    if len(line.zeros) > MOST_LEVELS:
+        raise TooLargeError(
+            f"{len(line.zeros)} values of {axes[2].name} at which the picture may change, more than {MOST_LEVELS}",
+            limit=Limit.WORK,
+            remedy=f"take a smaller interval of {axes[2].name}",
+        )
+    slicing = _Slicing(there, kept, found, of, watch)
+    levels = levels_of(line)
+    layers: list[Layer] = []
+    interrupted = False
+    for number, (z, critical) in enumerate(levels):
+        if not interrupted:
+            try:
+                layers.append(slicing(number, len(levels), z, critical, line))
+                made = layers[-1].plane
+                interrupted = made is not None and made.interrupted
+                continue
+            except KeyboardInterrupt:
+                interrupted = True
+        layers.append(Layer(number, z, critical, missing=Missing.NOT_REACHED))
+    return Stack(of, there, kept, found, line, tuple(layers), _pictures(layers), interrupted)
+
+
+# --- one slice --------------------------------------------------------------------------------------------------------
+
+
+class _Slicing:
+    """Makes the slices of one section."""
+
+    def __init__(self, there: Section, kept: Admissibility, found: Boundaries, of: Of, watch: Watch) -> None:
+        self.section, self.kept, self.boundaries, self.of, self.watch = there, kept, found, of, watch
+
+    def __call__(self, number: int, whole: int, z: Number, critical: bool, line: Line) -> Layer:
+        def told(text: str, done: int, of: int) -> None:
+            self.watch(f"slice {number + 1} of {whole}, {text}", done, of)
+
+        self.watch(f"slice {number + 1} of {whole}", 0, 1)
+        if not isinstance(z, fmpq):
+            return Layer(number, z, critical, missing=Missing.IRRATIONAL)
+        cut, kept = at_level(self.section, self.kept, z)
+        if kept.broken:
+            return Layer(number, z, critical, missing=Missing.OUTSIDE, broken=kept.broken)
+        try:
+            plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
+            if critical or plane.interrupted:
+                return Layer(number, z, critical, plane)
+            told("another value", 0, 1)
+            second = self._second(z, line)
+            return Layer(number, z, critical, plane, second=second, confirmed=self._confirmed(plane, second))
+        except TooLargeError:
+            return Layer(number, z, critical, missing=Missing.TOO_LARGE)
+
+    def _flat(self, cut: Section, kept: Admissibility, z: Any) -> Boundaries:
+        """The boundary polynomials in the slice, in their old places.
+
+        Where one vanishes on the whole slice, other verdicts are possible in it than near it: what bounds them is
+        looked for in the slice itself.
+        """
+        flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
+        if all(p != 0 for p in flat):
+            return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
+        own = boundaries(cut, [*(one.condition for one in kept.demands), *asked(cut)])
+        here = [p if p != 0 else cut.context.constant(1) for p in flat]
+        further = [
+            (p, conditions)
+            for p, conditions in zip(own.factors, own.conditions, strict=True)
+            if not any(q.gcd(p) == p / p.leading_coefficient() for q in here)
+        ]
+        lying = [one for p, told in zip(flat, self.boundaries.conditions, strict=True) if p == 0 for one in told]
+        return Boundaries(
+            (*here, *(p for p, _ in further)),
+            (*self.boundaries.conditions, *(told for _, told in further)),
+            (*self.boundaries.vanishing, *lying),
+        )
+
+    def _second(self, z: Any, line: Line) -> Any:
+        """Another value between the same critical ones."""
+        interval = next(one for one in line.intervals if one.sample == z)
+        last = line.high if interval.ends[1] is None else line.zeros[interval.ends[1]].number
+        return between_simply(z, last)
+
+    def _confirmed(self, plane: PlaneMap, z: Any) -> bool:
+        """Whether the slice at another value corresponds to a map, with the verdicts of regions."""
+        cut, kept = at_level(self.section, self.kept, z)
+        flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
+        there: Arrangement = decompose([p if p != 0 else cut.context.constant(1) for p in flat], box_of(cut.axes))
+        judge = Judge(cut, kept)
+        kinds = [judge(Shape.REGION, one.id, Point(*one.sample)).kind for one in there.regions]
+        return alike(
+            plane.arrangement,
+            there,
+            lambda shape, k: plane.regions[k].kind if shape == Shape.REGION else None,
+            lambda shape, k: kinds[k] if shape == Shape.REGION else None,
+        )
+
+
+class _Fixed(Law):
+    """The law of a section's energy where its last axis has a number of this sign."""
+
+    def __init__(self, law: Law, sign: int) -> None:
+        self._law, self._sign = law, sign
+        self.everywhere = law.everywhere
+
+    def __call__(self, signs: tuple[int, ...]) -> bool:
+        return self._law((*signs, self._sign))
+
+
+def at_level(there: Section, kept: Admissibility, z: Any) -> tuple[Section, Admissibility]:
+    """A section of three axes where the last is the rational number z, and what its points have to keep."""
+    axes = there.axes[:2]
+    plane = fmpq_mpoly_ctx.get([axis.name for axis in axes], Ordering.lex)
+
+    def flat(p: Any) -> Any:
+        return flattened(p, z, plane)
+
+    parts = []
+    for part in there.parts:
+        m, d, g, k, n = (tuple(tuple(map(flat, row)) for row in matrix) for matrix in part.matrices)
+        parts.append(replace(part, M=m, D=d, G=g, K=k, N=n, turned=tuple(map(flat, part.turned))))
+    value = Fraction(int(z.p), int(z.q))
+    name = there.axes[2].name
+    cut = replace(
+        there,
+        axes=axes,
+        context=plane,
+        parts=tuple(parts),
+        law=_Fixed(there.law, (z > 0) - (z < 0)),
+        undefined=tuple(x for x in map(flat, there.undefined) if x == 0 or not x.is_constant()),
+        numbers={**there.numbers, name: value},
+        told={**there.told, name: value},
+    )
+    demands, broken = [], []
+    for one in kept.demands:
+        polynomial = flat(one.condition.polynomial)
+        told = replace(one, condition=replace(one.condition, polynomial=polynomial))
+        if polynomial != 0 and not polynomial.is_constant():
+            demands.append(told)
+        elif not told.kept(polynomial.leading_coefficient() if polynomial != 0 else fmpq(0)):
+            broken.append(told)
+    return cut, Admissibility(tuple(demands), tuple(broken), kept.left_out)
+
+
+# --- pictures ---------------------------------------------------------------------------------------------------------
+
+
+def _pictures(layers: Sequence[Layer]) -> tuple[Picture, ...]:
+    """Neighbours that show the same, joined."""
+    found: list[Picture] = []
+    open_levels: list[Layer] = []
+    for layer in layers:
+        if layer.critical and layer.missing in (Missing.IRRATIONAL, Missing.TOO_LARGE):
+            open_levels.append(layer)
+            continue
+        between = tuple(one.number for one in open_levels)
+        if found and _same(layers[found[-1].shown], layer):
+            last = found.pop()
+            joined = (*last.layers, *between, layer.number)
+            found.append(Picture(joined, _better(layers, last.shown, layer), (*last.unseen, *between)))
+        else:
+            found += [Picture((k,), k, (k,)) for k in between]
+            found.append(Picture((layer.number,), layer.number))
+        open_levels = []
+    found += [Picture((one.number,), one.number, (one.number,)) for one in open_levels]
+    return tuple(found)
+
+
+def _better(layers: Sequence[Layer], shown: int, layer: Layer) -> int:
+    """A slice between critical values stands for others rather than one at such a value."""
+    return layer.number if layers[shown].critical and not layer.critical else shown
+
+
+def _same(one: Layer, other: Layer) -> bool:
+    """Whether two slices are one picture."""
+    if one.plane is None or other.plane is None:
+        told = [[x.condition.about for x in layer.broken] for layer in (one, other)]
+        return one.missing is other.missing and one.missing is not None and told[0] == told[1]
+    if one.plane.interrupted or other.plane.interrupted or not (one.confirmed and other.confirmed):
+        return False
+    return corresponding(seen(one.plane), seen(other.plane))
