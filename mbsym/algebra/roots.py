@@ -162,9 +162,14 @@ def _sturm_chain(first: Univariate, second: Univariate) -> list[Univariate]:
     while second.degree() >= 0:
         chain.append(second)
         remainder = -(chain[-2] % chain[-1])
-        # A positive factor changes no sign and keeps the numbers small.
-        second = remainder / abs(remainder.leading_coefficient()) if remainder.degree() >= 0 else remainder
+        second = _tidied(remainder) if remainder.degree() >= 0 else remainder
     return chain
+
+
+def _tidied(p: Univariate) -> Univariate:
+    """A positive multiple with small numbers: over the rationals with leading coefficient 1 or -1."""
+    own = getattr(p, "tidied", None)
+    return p / abs(p.leading_coefficient()) if own is None else own()
 
 
 def _variations(chain: Sequence[Univariate], where: int) -> int:

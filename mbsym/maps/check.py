@@ -29,7 +29,7 @@ from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
 from mbsym.algebra.plane.laws import Breach, breaches
 from mbsym.algebra.plane.line import Line
-from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign
+from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign, simplest
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.plane.stacks import column
@@ -144,10 +144,11 @@ class _Checking:
 
     def between(self, below: Any, above: Any, share: Rational) -> Rational:
         """A rational number strictly between two exact ones."""
-        middle = between_simply(below, above)  # their intervals do not touch any more
+        between_simply(below, above)  # their intervals do not touch any more
         a, b = high(below), low(above)
-        x = a + (b - a) * share
-        return middle if x in (a, b) else x
+        # The ends may have thousands of digits, which nothing computed from them should inherit.
+        x, slack = a + (b - a) * share, (b - a) * min(share, 1 - share) / 64
+        return simplest(x - slack, x + slack)
 
     def strip(self, found: Arrangement, strip: int, regions: Verdicts, at: int) -> None:
         """A point in each cell of a strip, over one abscissa, for the time ``at``."""
@@ -203,8 +204,7 @@ class _Checking:
         if piece.vertical:
             below, above = (fibre.points[piece.section + k].y for k in (0, 1))
             return Point(fibre.abscissa.x, self.between(below, above, fmpq(1, 3)))
-        x = between_simply(fibre.abscissa.x, found.fibres[piece.strip + 1].abscissa.x)
-        x = (x + (fibre.abscissa.x if isinstance(fibre.abscissa.x, fmpq) else high(fibre.abscissa.x))) / 2
+        x = self.between(fibre.abscissa.x, found.fibres[piece.strip + 1].abscissa.x, fmpq(1, 4))
         return Point(x, sample_of(column(found.curves, found.box, x).sections[piece.section].y))
 
     def _enclosed(self, point: tuple[Rational, ...], judged: Judged) -> tuple[bool, bool]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 from pathlib import Path
+from random import Random
 
+import numpy as np
 from click.testing import CliRunner, Result
 
 import mbsym
@@ -108,3 +110,31 @@ def test_where_a_squared_determinant_vanishes_the_other_roots_are_looked_at(tmp_
     corner = stratum_at(found, Fraction(0), Fraction(-1))
     assert corner is not None
     assert corner.shape is Shape.CORNER
+
+
+def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path) -> None:
+    """Greatest common divisors over fields of degree 22 made this run for minutes; counts at a third point of each
+    region are those of NumPy's eigenvalues, where these are not near the axis."""
+    rows = "[[-a+2*b+1, a-2*b-b**2], [a-2*b-b**2, 0]]"
+    path = tmp_path / "system.yaml"
+    path.write_text(
+        "mbsym: 1\nname: plane\nparameters: {a: {sign: real}, b: {sign: real}}\nlinear system:\n"
+        f"  coordinates: [x, y]\n  M: [[1, 0], [0, 1]]\n  D: {rows}\n  K: [[a+b, 0], [0, -b-1]]\n"
+    )
+    found = plane_map(mbsym.load(path), [Axis(name, Fraction(-2), Fraction(2)) for name in "ab"], {})
+    assert found.check is not None
+    assert found.check.holds
+    assert all(one.judged is not None for one in (*found.regions, *found.arcs))
+    random, told = Random(3), 0
+    for _ in range(300):
+        a, b = (Fraction(random.randint(-1999, 1999), 1000) for _ in "ab")
+        d, k = [[-a + 2 * b + 1, a - 2 * b - b**2], [a - 2 * b - b**2, 0]], [[a + b, 0], [0, -b - 1]]
+        first = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.array(k, float), -np.array(d, float)]])
+        roots = np.linalg.eigvals(first).real
+        if min(abs(roots)) > 1e-6:
+            there = stratum_at(found, a, b)
+            assert there is not None
+            assert there.judged is not None
+            assert there.judged.right == sum(roots > 0)
+            told += 1
+    assert told > 250

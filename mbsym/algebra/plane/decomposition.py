@@ -173,7 +173,10 @@ class _Assembly:
         if len(curves) > 1:
             return True
         (curve, multiplicity) = curves[0]
-        return multiplicity > 1 and self._point(at, j).sign(self.curves[curve].slope) == 0
+        if multiplicity == 1 or fibre.points[j].singular is not None:
+            return bool(fibre.points[j].singular)
+        # A smooth point has two branches; a cusp does, too.
+        return len(self._branches(at, j)) != 2 or self._point(at, j).sign(self.curves[curve].slope) == 0
 
     def _point(self, at: int, j: int) -> Point:
         y = self.fibres[at].points[j].y

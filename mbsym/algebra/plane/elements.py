@@ -12,6 +12,9 @@ from typing import Any, Protocol
 
 from flint import fmpq
 
+#: Up to this degree remainders are taken without inverses.
+MOST_PSEUDO = 4
+
 
 class OrderedField(Protocol):
     """What is asked of a field: values in a form of its own, signs decided exactly."""
@@ -152,26 +155,56 @@ class ElementPolynomial:
         return ElementPolynomial(product)
 
     def __mod__(self, other: ElementPolynomial) -> ElementPolynomial:
-        return divmod(self, other)[1]
+        """A positive multiple of the remainder, which serves gcds and Sturm's chains alike.
+
+        Of short polynomials without inverses, whose numbers are far longer than those of products.
+        """
+        if self.degree() > MOST_PSEUDO or other.degree() < 0:
+            return divmod(self, other)[1]
+        rest, by = self.coeffs(), other.coeffs()
+        lead, turned = by[-1], False
+        while len(rest) >= len(by):
+            factor, turned = rest.pop(), not turned
+            rest = [lead * c for c in rest]
+            for k, c in enumerate(by[:-1]):
+                at = len(rest) - len(by) + 1 + k
+                rest[at] = rest[at] - factor * c
+        if turned and lead.sign() < 0:
+            rest = [-c for c in rest]
+        return ElementPolynomial(rest)
 
     def __floordiv__(self, other: ElementPolynomial) -> ElementPolynomial:
         return divmod(self, other)[0]
 
+    def tidied(self) -> ElementPolynomial:
+        """A positive multiple with the leading coefficient 1 or -1; itself where that would need long numbers."""
+        return self if self.degree() < MOST_PSEUDO else self / abs(self._coefficients[-1])
+
     def gcd(self, other: ElementPolynomial) -> ElementPolynomial:
         """The monic greatest common divisor; zero where both are."""
         a, b = self, other
-        while b.degree() >= 0:
-            a, b = b, (a % b).monic()
+        while b.degree() > 0:
+            rest = a % b
+            a, b = b, rest if a.degree() <= MOST_PSEUDO else rest.monic()
+        if b.degree() == 0:  # a number
+            return ElementPolynomial([b[0] * 0 + 1])
         return a.monic()
 
     def factor_squarefree(self) -> tuple[Any, list[tuple[ElementPolynomial, int]]]:
-        """(leading coefficient, [(square-free factor, multiplicity), ...]) by Yun's method, none constant."""
+        """(leading coefficient, [(square-free factor, multiplicity), ...]) by Yun's method, none constant.
+
+        A polynomial that is square-free itself is not made monic.
+        """
         if self.degree() < 1:
             return self[0], []
         found = []
-        f = self.monic()
+        f = self
         slope = f.derivative()
         common = f.gcd(slope)
+        if common.degree() == 0:
+            return self.leading_coefficient(), [(f, 1)]
+        f = f.monic()
+        slope = f.derivative()
         b, c = f // common, slope // common
         multiplicity = 1
         while b.degree() > 0:

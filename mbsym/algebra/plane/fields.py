@@ -2,8 +2,8 @@
 
 An element is a ``fmpq_poly`` in alpha of lower degree than alpha's minimal polynomial m, zero exactly where its value
 is; a polynomial is a list of elements, from low to high powers of y, without vanishing leading ones.  Greatest common
-divisors are Euclid's; roots are isolated by balls around the coefficients, after the polynomial is square-free by that
-exact arithmetic, at whatever precision it takes.
+divisors are modular (``modular``); roots are isolated by balls around the coefficients, after the polynomial is
+square-free by that exact arithmetic, at whatever precision it takes.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.failures import Limit, TooLargeError
+from mbsym.algebra.plane.balls import deflated, ends, sharpened
+from mbsym.algebra.plane.modular import common_divisor, proved_coprime
 from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Rational, between, sign
 
 Element = Any  # a flint.fmpq_poly in alpha
@@ -23,6 +25,9 @@ OverField = list[Element]
 
 #: Bits at which roots over a field are given up: such roots would be closer than 2^-20000.
 MOST_BITS = 40_000
+
+#: Bits at which balls are given up as a way to tell which roots are common.
+MOST_BALL_BITS = 1024
 
 ZERO = fmpq_poly([0])
 
@@ -72,12 +77,18 @@ class Extension:
                     rest[shift + k] = (rest[shift + k] - top * x) % self.modulus
         return quotient, self.trimmed(rest)
 
+    def coprime(self, a: OverField, b: OverField) -> bool:
+        """Whether one prime proves that two polynomials have no common root; False says nothing."""
+        return len(a) == 1 or len(b) == 1 or proved_coprime(self.modulus, a, b)
+
     def gcd(self, a: OverField, b: OverField) -> OverField:
-        """The monic greatest common divisor; [1] where there is none."""
-        a, b = self.monic(a), self.monic(b)
-        while b:
-            a, b = b, self.monic(self.divided(a, b)[1])
-        return a
+        """The monic greatest common divisor; [1] where there is none.
+
+        Raises TooLargeError where its coefficients are too long.
+        """
+        if not a or not b:
+            return self.monic(a or b)
+        return common_divisor(self.modulus, a, b)
 
     def derivative(self, p: OverField) -> OverField:
         return self.trimmed([x * k for k, x in enumerate(p)][1:])
@@ -146,40 +157,80 @@ class Extension:
         found.sort(key=lambda root: root.low + root.high)
         return found if all(a.high < b.low for a, b in pairwise(found)) else None
 
-    def double_root(self, p: OverField) -> tuple[Over, list[Over]] | None:
-        """(the double root, the other real roots) of a monic polynomial with one double root and else simple ones.
+    def common_roots(self, p: OverField, q: OverField) -> tuple[list[Over], int] | None:
+        """(the real common roots, the number of all) of polynomials that have at least one; all are simple ones of p.
 
-        The double one is the root of p' that is one of p, and real, as it is its own conjugate.  None where balls of
-        4096 bits do not isolate the roots.
+        Balls show at which roots of p q may vanish.  These are common roots if they are one orbit under conjugation
+        and, where p and q have even or odd powers only, change of sign: with one root every image of it is common.
+        None where balls of ``MOST_BALL_BITS`` do not show that; then there may be several, or p has a multiple root.
         """
-        slope, bits = self.monic(self.derivative(p)), 64
-        while bits <= 4096:
-            found = self._double_root(p, slope, bits)
+        bits = 64
+        while bits <= MOST_BALL_BITS:
+            with ctx.workprec(bits):
+                common = self._orbit(p, q, bits)
+            found = None if common is None else self._real(p, common)
+            if common is not None and found is not None:
+                return found, len(common)
+            bits *= 2
+        return None
+
+    def _orbit(self, p: OverField, q: OverField, bits: int) -> list[Any] | None:
+        whole, other = self.balls(p, bits), self.balls(q, bits)
+        try:
+            balls = whole.complex_roots()
+        except ValueError:
+            return None
+        sharp = acb_poly(whole), acb_poly(whole.derivative())
+        balls = [sharpened(*sharp, ball) for ball in balls]
+        common = [k for k, ball in enumerate(balls) if other(ball).contains(0)]
+        if not common:
+            return None
+        images = [acb.conjugate] if not _one_parity(p) or not _one_parity(q) else [acb.conjugate, acb.__neg__]
+        orbit, pending = {common[0]}, [common[0]]
+        while pending:
+            at = pending.pop()
+            for image in images:
+                met = [k for k, ball in enumerate(balls) if ball.overlaps(image(balls[at]))]
+                if len(met) != 1:
+                    return None
+                if met[0] not in orbit:
+                    orbit.add(met[0])
+                    pending.append(met[0])
+        return [balls[k] for k in common] if orbit == {*common} else None
+
+    def double_roots(self, p: OverField) -> tuple[list[Over], list[Over], int] | None:
+        """(the real double roots, the real simple ones, the number of all double ones) of a polynomial.
+
+        p has a multiple root.  Those of p' that are roots of p are double ones where they are simple ones of p'; the
+        others are what p has after division by them.  None as ``common_roots``.
+        """
+        slope = self.derivative(p)
+        bits = 64
+        while bits <= MOST_BALL_BITS:
+            with ctx.workprec(bits):
+                common = self._orbit(slope, p, bits)
+                found = None if common is None else self._double_roots(p, slope, common, bits)
             if found is not None:
                 return found
             bits *= 2
         return None
 
-    def _double_root(self, p: OverField, slope: OverField, bits: int) -> tuple[Over, list[Over]] | None:
-        with ctx.workprec(bits):
-            try:
-                whole = self.balls(p, bits)
-                common = [ball for ball in self.balls(slope, bits).complex_roots() if whole(ball).contains(0)]
-                if len(common) != 1:
-                    return None
-                twice = common[0].real
-                rest = _deflated(_deflated(whole.coeffs(), twice), twice)
-                balls = arb_poly(rest).complex_roots() if len(rest) > 1 else []
-            except ValueError:
-                return None
-        doubles = [Over(self, slope, *self._around(slope, bits))] if len(slope) == 2 else self._real(slope, common)
-        simple = self._real(p, balls)
-        if doubles is None or simple is None or len(doubles) != 1:
+    def _double_roots(
+        self, p: OverField, slope: OverField, common: Sequence[Any], bits: int
+    ) -> tuple[list[Over], list[Over], int] | None:
+        rest = [acb(c) for c in self.balls(p, bits).coeffs()]
+        for ball in common:
+            rest = deflated(deflated(rest, ball), ball)
+        try:
+            balls = acb_poly(rest).complex_roots() if len(rest) > 1 else []
+        except ValueError:
             return None
-        double = doubles[0]
-        if any(a.low <= double.high and double.low <= a.high for a in simple):
+        doubles, simple = self._real(slope, common), self._real(p, balls)
+        if doubles is None or simple is None:
             return None
-        return double, simple
+        if any(a.low <= b.high and b.low <= a.high for a in simple for b in doubles):
+            return None
+        return doubles, simple, len(common)
 
     def _around(self, p: OverField, bits: int) -> tuple[Rational, Rational]:
         """An interval around the root of y + c."""
@@ -227,9 +278,27 @@ class Over:
             self.low = middle
 
     def narrow(self, width: Rational) -> None:
-        """Halves until the interval is at most this wide."""
+        """Shrinks the interval until it is at most this wide: by Newton's method, by halves where that fails."""
         while self.high - self.low > width:
-            self.halve()
+            if self.high - self.low < width * 64 or not self._sharpened(width):
+                self.halve()
+
+    def _sharpened(self, width: Rational) -> bool:
+        """Takes an interval from Newton's method, if the polynomial changes its sign over it."""
+        size = max(abs(self.low), abs(self.high), fmpq(1))
+        bits = int((size / width).ceil()).bit_length() + 40
+        with ctx.workprec(2 * bits):
+            p = acb_poly(self.over.balls(self.polynomial, bits))
+            slope = p.derivative()
+            ball = sharpened(p, slope, acb(arb(self.low).union(arb(self.high)), arb(0, 1)))
+            low, high = ends(ball.real)
+        if not (self.low <= low < high <= self.high and high - low <= (self.high - self.low) / 4):
+            return False
+        signs = [self.over.sign(self.over.at(self.polynomial, x)) for x in (low, high)]
+        if signs[0] * signs[1] >= 0:
+            return False
+        self.low, self.high = low, high
+        return True
 
     def compare(self, value: Rational) -> int:
         """The sign of (this number - value)."""
@@ -290,21 +359,6 @@ class Over:
         return float(self.enclosure(60).mid())
 
 
-def ends(ball: Ball) -> tuple[Rational, Rational]:
-    """Rational numbers that enclose a ball."""
-
-    def rational(x: Any) -> Rational:
-        mantissa, exponent = x.man_exp()
-        return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
-
-    return rational(arb(ball).lower()), rational(arb(ball).upper())
-
-
-def _deflated(coefficients: Sequence[Ball], root: Ball) -> list[Ball]:
-    """The quotient by (y - root), in balls; coefficients from low to high powers."""
-    quotient: list[Ball] = []
-    carried = arb(0)
-    for c in reversed(coefficients[1:]):
-        carried = carried * root + c
-        quotient.append(carried)
-    return quotient[::-1]
+def _one_parity(p: OverField) -> bool:
+    """Whether all powers are even, or all odd."""
+    return all(x == 0 for x in p[len(p) % 2 :: 2])

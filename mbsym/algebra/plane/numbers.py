@@ -57,9 +57,34 @@ class Root:
             self.low = middle
 
     def narrow(self, width: Rational) -> None:
-        """Halves until the interval is at most this wide."""
+        """Shrinks the interval until it is at most this wide.
+
+        Quadratic refinement (Abbott 2006): the secant tells which of N parts has the zero; where it is right the next
+        N is the square, otherwise the interval is halved and N is the root.
+        """
+        power = 2  # N = 2^power
         while self.high - self.low > width:
-            self.halve()
+            if power > 1 and self._part(power):
+                power = min(2 * power, 1 << 20)
+            else:
+                self.halve()
+                power = max(power // 2, 2)
+
+    def _part(self, power: int) -> bool:
+        """Takes the one of 2^power parts that the secant points to, if the polynomial changes its sign there."""
+        step = (self.high - self.low) / (1 << power)
+        below, above = self.polynomial(self.low), self.polynomial(self.high)
+        at = int((below / (below - above) * (1 << power)).floor())
+        at = min(max(at, 0), (1 << power) - 1)
+        low, high = self.low + at * step, self.low + (at + 1) * step
+        signs = sign(self.polynomial(low)), sign(self.polynomial(high))
+        if 0 in signs:
+            self.low = self.high = low if signs[0] == 0 else high
+        elif signs[0] == signs[1]:
+            return False
+        else:
+            self.low, self.high = low, high
+        return True
 
     def compare(self, value: Rational) -> int:
         """The sign of (this number - value)."""

@@ -16,7 +16,7 @@ from typing import Any
 
 from flint import fmpq
 
-from mbsym.algebra.failures import Defect
+from mbsym.algebra.failures import Defect, Limit, TooLargeError
 from mbsym.algebra.plane.fields import Extension, Over, OverField
 from mbsym.algebra.plane.numbers import (
     Integer,
@@ -31,10 +31,13 @@ from mbsym.algebra.plane.numbers import (
     primitive,
     roots_between,
 )
-from mbsym.algebra.plane.projection import Abscissa, Box, Curve
+from mbsym.algebra.plane.projection import LEADING, Abscissa, Box, Curve
 
 #: In place of the number of a curve: the lower and the upper edge of the box.
 BOTTOM, TOP = -1, -2
+
+#: So often an interval is halved before numbers count as too close together.
+MOST_HALVINGS = 4_000
 
 Ordinate = Any  # a flint.fmpq, an AlgebraicNumber, or an Over
 
@@ -65,6 +68,7 @@ class FibrePoint:
 
     y: Ordinate
     curves: tuple[tuple[int, int], ...]  # (curve, multiplicity of the root; 1 or 2: at least 2)
+    singular: bool | None = None  # whether the curve is, where there is one; None: not known yet
 
 
 @dataclass(frozen=True)
@@ -118,10 +122,14 @@ def _order(a: Ordinate, b: Ordinate) -> int:
     """The order of two different numbers, or of one with itself."""
     if a is b:
         return 0
-    while high(a) >= low(b) and high(b) >= low(a):
+    for _ in range(MOST_HALVINGS):
+        if not (high(a) >= low(b) and high(b) >= low(a)):
+            break
         for x in (a, b):
             if not isinstance(x, fmpq):
                 x.halve()
+    else:
+        raise TooLargeError("points of curves lie too close together", limit=Limit.DIGITS)
     return -1 if high(a) < low(b) else 1
 
 
@@ -146,71 +154,74 @@ class _Node:
 
     root: Over
     through: dict[int, int]
+    singular: bool | None = None  # as in FibrePoint
 
 
 def _over_algebraic(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
     """The points over an algebraic abscissa, by what is known of it.
 
-    Where curves have simple zeros of their discriminant or resultant only, balls find the roots and which of them is
-    the double or the common one; all others are split into pairwise coprime square-free polynomials over QQ(alpha).
+    The roots of every curve first, then which of them are common.  Where a discriminant or resultant vanishes there is
+    a multiple or common root, and balls tell which; only where they may be several do exact divisors decide.
     """
     field = Extension(at.x)
     wholes = {k: p for k, curve in enumerate(curves) if len(p := field.trimmed(curve.in_y)) > 1}
-    hard = _hard(at, wholes)
-    nodes: list[_Node] = []
-    for k, whole in wholes.items():
-        if k in hard:
-            continue
-        if k not in at.degenerate:
-            nodes += [_Node(root, {k: 1}) for root in field.roots(field.monic(whole))]
-            continue
-        found = field.double_root(field.monic(whole))
-        if found is None:
-            hard.add(k)
-            continue
-        nodes += [_Node(found[0], {k: 2}), *(_Node(root, {k: 1}) for root in found[1])]
+    nodes = [node for k, whole in wholes.items() for node in _roots_of(field, k, whole, at.degenerate.get(k, 0))]
     for pair in at.meeting:
-        if not pair & hard and pair <= {*wholes}:
-            _join(nodes, *pair)
-    nodes += _by_basis(field, at, {k: whole for k, whole in wholes.items() if k in hard})
+        if pair <= {*wholes}:
+            _meet(field, at, wholes, nodes, *sorted(pair))
     points = []
     for node in nodes:
         on, root = tuple(sorted(node.through.items())), node.root
         inside = root.compare(box.y0), root.compare(box.y1)
         if inside[0] >= 0 >= inside[1]:
-            points.append(FibrePoint(root if root.exact is None else root.exact, on))
+            points.append(FibrePoint(root if root.exact is None else root.exact, on, node.singular))
     return points
 
 
-def _hard(at: Abscissa, wholes: Mapping[int, OverField]) -> set[int]:
-    """Curves that take part in more than simple zeros.
+def _roots_of(field: Extension, k: int, whole: OverField, order: int) -> list[_Node]:
+    """The real roots of curve k, whose discriminant has a zero of this order.
 
-    A simple zero of the discriminant is one double root.  A simple zero of the resultant of two curves without double
-    roots, whose leading coefficients do not vanish, is one common root.
+    Where the leading coefficient does not vanish, the order is the sum of mu + i - 1 over the points of the curve above
+    alpha, complex ones included (Teissier 1973): mu is Milnor's number, 0 where the curve is smooth, i how often it
+    meets the vertical line.  With one double root it is smooth if and only if the order is 1.
     """
-    found = {k for k in wholes if at.degenerate.get(k, 0) > 1}
-    for pair, order in at.meeting.items():
-        if order > 1 or any(k in at.degenerate for k in pair):
-            found |= {k for k in pair if k in wholes}
-    while more := {k for pair in at.meeting if pair & found for k in pair if k in wholes} - found:
-        found |= more
-    return found
+    if order == 0 or (order >= LEADING and field.coprime(whole, field.derivative(whole))):
+        return [_Node(root, {k: 1}) for root in field.roots(field.monic(whole))]
+    found = field.double_roots(whole) if order < LEADING else None
+    if found is None:
+        pieces = _with_multiplicity(field, whole)
+        return [_Node(root, {k: m}) for piece, m in pieces for root in field.roots(piece)]
+    doubles, simple, count = found
+    singular = False if order == count else True if count == 1 else None
+    return [*(_Node(root, {k: 2}, singular) for root in doubles), *(_Node(root, {k: 1}) for root in simple)]
 
 
-def _join(nodes: list[_Node], j: int, k: int) -> None:
-    """Makes one of the nodes of two curves that have one root in common."""
-    while True:
-        ours, theirs = ([node for node in nodes if one in node.through] for one in (j, k))
-        hits = [
-            (a, b) for a in ours for b in theirs if a is b or (a.root.low <= b.root.high and b.root.low <= a.root.high)
-        ]
-        if not hits:
+def _meet(field: Extension, at: Abscissa, wholes: Mapping[int, OverField], nodes: list[_Node], j: int, k: int) -> None:
+    """Joins the nodes of two curves whose resultant vanishes."""
+    orders = {i: at.degenerate.get(i, 0) for i in (j, k)}
+    first, second = sorted((j, k), key=lambda i: orders[i])
+    a, b = wholes[first], wholes[second]
+    if min(orders.values()) >= LEADING and field.coprime(a, b):
+        return  # both have a root at infinity
+    found = field.common_roots(a, b) if orders[first] == 0 else None
+    common = field.roots(field.squarefree(field.gcd(a, b))) if found is None else found[0]
+    for root in common:
+        _join(nodes, root, j, k)
+
+
+def _join(nodes: list[_Node], common: Over, j: int, k: int) -> None:
+    """Makes one of the nodes of two curves at a common root."""
+    for _ in range(MOST_HALVINGS):
+        hits = [[node for node in nodes if one in node.through and _touch(node.root, common)] for one in (j, k)]
+        if not all(hits):
             raise Defect("curves that meet have no root in common")
-        if len(hits) == 1:
+        if len(hits[0]) == len(hits[1]) == 1:
             break
-        for node in {id(x): x for hit in hits for x in hit}.values():
-            node.root.halve()
-    a, b = hits[0]
+        for root in {id(x): x for x in (common, *(node.root for hit in hits for node in hit))}.values():
+            root.halve()
+    else:
+        raise TooLargeError("points of curves lie too close together", limit=Limit.DIGITS)
+    a, b = hits[0][0], hits[1][0]
     if a is not b:
         keep, drop = (a, b) if len(a.root.polynomial) <= len(b.root.polynomial) else (b, a)
         keep.through.update(drop.through)
@@ -218,14 +229,8 @@ def _join(nodes: list[_Node], j: int, k: int) -> None:
         nodes.remove(drop)
 
 
-def _by_basis(field: Extension, at: Abscissa, wholes: Mapping[int, OverField]) -> list[_Node]:
-    """The roots of pairwise coprime square-free polynomials that the curves' ones are products of."""
-    basis: list[tuple[OverField, dict[int, int]]] = []
-    for k, whole in wholes.items():
-        pieces = _with_multiplicity(field, whole) if k in at.degenerate else [(field.monic(whole), 1)]
-        for piece, multiplicity in pieces:
-            basis = _refined(field, basis, piece, k, multiplicity, at)
-    return [_Node(root, dict(through)) for piece, through in basis for root in field.roots(piece)]
+def _touch(a: Over, b: Over) -> bool:
+    return bool(a.low <= b.high and b.low <= a.high)
 
 
 def _one(field: Extension) -> Any:
@@ -242,32 +247,6 @@ def _with_multiplicity(field: Extension, p: OverField) -> list[tuple[OverField, 
     multiple = field.squarefree(common)
     simple = field.divided(every, multiple)[0]
     return [(q, m) for q, m in ((field.monic(simple), 1), (multiple, 2)) if len(q) > 1]
-
-
-def _refined(
-    field: Extension,
-    basis: list[tuple[OverField, dict[int, int]]],
-    piece: OverField,
-    curve: int,
-    multiplicity: int,
-    at: Abscissa,
-) -> list[tuple[OverField, dict[int, int]]]:
-    """The coprime basis with one more polynomial."""
-    found: list[tuple[OverField, dict[int, int]]] = []
-    for have, through in basis:
-        meet = len(piece) > 1 and any(frozenset((curve, k)) in at.meeting for k in through)
-        common = field.gcd(have, piece) if meet else [_one(field)]
-        if len(common) == 1:
-            found.append((have, through))
-            continue
-        piece = field.monic(field.divided(piece, common)[0])
-        rest = field.monic(field.divided(have, common)[0])
-        found.append((common, through | {curve: multiplicity}))
-        if len(rest) > 1:
-            found.append((rest, through))
-    if len(piece) > 1:
-        found.append((piece, {curve: multiplicity}))
-    return found
 
 
 def connected(
