@@ -86,8 +86,6 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
     large = sum(one.standing is Standing.TOO_LARGE for one in found.strata)
     if large:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
-    if found.section.constant is not None:
-        told.append(f"not checked by another route: {found.section.constant.text} stands among the coefficients")
     if found.check is not None and found.check.holds:
         arcs = f" and {counted(found.check.arcs, 'arc')}" if found.check.arcs else ""
         told.append(

@@ -103,7 +103,7 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     for number, part in enumerate(section.parts):
         found += conditions_of(part, number, section=section)
     if section.constant is not None:
-        found = [replace(x, polynomial=section.norm(section.reduced(x.polynomial))) for x in found]
+        found = [replace(x, polynomial=_norm(section, x.polynomial)) for x in found]
     factors: list[Polynomial] = []
     places: dict[str, int] = {}
     conditions: list[list[Condition]] = []
@@ -124,6 +124,17 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     return Boundaries(tuple(factors), tuple(map(tuple, conditions)), tuple(vanishing))
 
 
+def _norm(section: Section, p: Polynomial) -> Polynomial:
+    """A polynomial in the axes that vanishes wherever p does, from the norms of its factors, each once."""
+    p = section.reduced(p)
+    if p == 0:
+        return p
+    total = p.context().constant(1)
+    for factor, _ in irreducible_factors(p)[1]:
+        total *= section.norm(factor)
+    return total
+
+
 def conditions_of(
     system: LinearSystem, part: int, reduced: bool = False, section: Section | None = None
 ) -> Iterator[Condition]:
@@ -135,22 +146,22 @@ def conditions_of(
 
     yield told(Origin.MASS, determinant(system.kinetic))
     if not is_zero(system.K):
-        for coefficient in deciding_zeros(_coefficients(system.K, constant)):
+        for coefficient in deciding_zeros(_coefficients(system.K, constant), constant):
             yield told(Origin.STIFFNESS, coefficient)
     if not is_zero(system.D):
-        for coefficient in deciding_zeros(_coefficients(system.D, constant)):
+        for coefficient in deciding_zeros(_coefficients(system.D, constant), constant):
             yield told(Origin.DAMPING, coefficient)
     origins = (Origin.UNDAMPED, Origin.NOT_GYROSCOPIC, Origin.POTENTIAL)
     for origin, matrix in zip(origins, (system.D, system.G, system.N), strict=True):
         if not is_zero(matrix):
-            yield told(origin, _common([x for row in matrix for x in row]))
+            yield told(origin, _common([x for row in matrix for x in row], section))
     yield from _of_roots(system, part, reduced) if constant is None else _of_roots_over(system, part, reduced, constant)
     if not system.cyclic or reduced:
         return
     acting = [x for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i]]
     acting += [system.G[i][j] for i in system.cyclic for j in system.cyclic]
     if any(x != 0 for x in acting):
-        yield told(Origin.CYCLIC, _common(acting))
+        yield told(Origin.CYCLIC, _common(acting, section))
     if momenta_are_constant(system):
         yield from conditions_of(ignoring_cyclic(system), part, True, section)
 
@@ -212,7 +223,7 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
         p = p[:-1]
     if len(p) < 2:
         return
-    for coefficient in deciding_zeros(p):
+    for coefficient in deciding_zeros(p, constant):
         yield told(Origin.CONSTANT, coefficient)
     yield told(Origin.LEADING, p[-1])
     if any(c != 0 for c in p[1::2]):
@@ -223,7 +234,7 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
         yield told(Origin.DISCRIMINANT, discriminant(p[::2]))
 
 
-def deciding_zeros(coefficients: Sequence[Polynomial]) -> Iterator[Polynomial]:
+def deciding_zeros(coefficients: Sequence[Polynomial], constant: Constant | None = None) -> Iterator[Polynomial]:
     """The lowest coefficient that is not identically zero, and so many further ones as a factor divides it more often.
 
     On a curve f = 0 where f divides the lowest coefficient once one root is zero, and another one only where the curve
@@ -234,7 +245,8 @@ def deciding_zeros(coefficients: Sequence[Polynomial]) -> Iterator[Polynomial]:
     if not kept:
         return
     yield kept[0]
-    most = max((int(exponent) for _, exponent in irreducible_factors(kept[0])[1]), default=1)
+    lowest = kept[0] if constant is None else constant.norm(kept[0])  # over its field factors may be multiple, too
+    most = max((int(exponent) for _, exponent in irreducible_factors(lowest)[1]), default=1)
     if most > 1:
         yield from kept[1 : 1 + most]
 
@@ -248,9 +260,13 @@ def _coefficients(matrix: Matrix, constant: Constant | None = None) -> Coefficie
     return tuple(found) if constant is None else tuple(map(constant.reduced, found))
 
 
-def _common(entries: Sequence[Polynomial]) -> Polynomial:
-    """The greatest common divisor: where it vanishes all entries do, but for single points."""
+def _common(entries: Sequence[Polynomial], section: Section | None) -> Polynomial:
+    """The greatest common divisor: where it vanishes all entries do, but for single points.
+
+    With a constant it is that of the norms, which vanishes there and perhaps elsewhere: x - sqrt(2) and x^2 - 2 have no
+    common factor with rational coefficients.
+    """
     found = entries[0] * 0
     for x in entries:
-        found = found.gcd(x)
+        found = found.gcd(x if section is None else section.norm(section.reduced(x)))
     return found

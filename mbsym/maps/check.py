@@ -20,10 +20,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 from random import Random
 from typing import Any
 
-from flint import acb_mat, arb_mat, ctx, fmpq
+from flint import acb_mat, arb, arb_mat, arb_poly, ctx, fmpq
 
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
@@ -33,12 +34,14 @@ from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sig
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.plane.stacks import column
+from mbsym.maps.constant import Constant
+from mbsym.maps.constant_points import beside
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged, verdict_at
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis
 from mbsym.problems.stability.exact import RationalPoint, evaluated
-from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.linear_form import LinearSystem, Matrix
 
 #: In maps of few cells every cell is tried more than once, until so many points are.
 FEWEST = 96
@@ -126,7 +129,6 @@ class _Checking:
         self.section, self.source = section, source
         self.findings: list[Finding] = []
         self.points = self.arcs = self.enclosed = 0
-        self._exact: ExactVerdicts | None = None
         self._starts: dict[tuple[int, int, int], int] = {}
 
     def result(self) -> Check:
@@ -178,7 +180,7 @@ class _Checking:
         if tuple(sign(p(*point)) for p in factors) != signs:
             wrong.append(Mistake.SIGNS)
         if judged is not None:
-            wrong += _differences(verdict_at(self.section, point), judged)
+            wrong += _differences(self._judged(point), judged)
             agrees, decided = self._enclosed(point, judged)
             self.enclosed += decided
             if not agrees:
@@ -189,15 +191,24 @@ class _Checking:
     def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:
         """A second exact point of an arc."""
         point = self._second(found, arc, self.source.choice(arc.pieces))
-        if self._exact is None:
-            self._exact = ExactVerdicts(self.section)
         try:
-            there = self._exact(point)
+            there = self._exact(beside(point, self.section.constant))
         except TooLargeError:  # not counted among those tried
             return
         self.arcs += 1
         wrong = _differences(there, judged)
         self.findings += [Finding(mistake, arc=arc.id, near=point.floats()) for mistake in wrong]
+
+    @cached_property
+    def _exact(self) -> ExactVerdicts:
+        return ExactVerdicts(self.section)
+
+    def _judged(self, point: tuple[Rational, ...]) -> Judged:
+        """The exact verdict at a rational point."""
+        constant = self.section.constant
+        if constant is None:
+            return verdict_at(self.section, point)
+        return self._exact(beside(Point(*point) if len(point) > 1 else point[0], constant))
 
     def _second(self, found: Arrangement, arc: Arc, piece: Piece) -> Point:
         fibre = found.fibres[piece.strip]
@@ -215,7 +226,7 @@ class _Checking:
             if bits > MOST_BITS:
                 return True, False
             with ctx.workprec(bits):
-                ranges = [_counted(part, point) for part in self.section.parts]
+                ranges = [_counted(part, point, self.section.constant, bits) for part in self.section.parts]
             known = [one for one in ranges if one is not None]
             bits *= 2
         agrees, decided = True, True
@@ -240,27 +251,38 @@ def _differences(there: Judged, judged: Judged) -> list[Mistake]:
 Range = tuple[int, int]
 
 
-def _counted(part: LinearSystem, point: Sequence[Rational]) -> tuple[Range, Range] | None:
+def _counted(
+    part: LinearSystem, point: Sequence[Rational], constant: Constant | None, bits: int
+) -> tuple[Range, Range] | None:
     """((least, most) roots to the right, the same of negative eigenvalues of K) of a part, by balls.
 
     None where eigenvalues cannot be enclosed.
     """
-    at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
-    m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
+    m, d, g, k, n = (_in_balls(matrix, point, constant, bits) for matrix in part.matrices)
     try:
-        roots, simple = eigenvalues(
-            arb_mat(m).tolist(), arb_mat(d + g).tolist(), arb_mat(k + n).tolist(), part.following
-        )
+        roots, simple = eigenvalues(m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
     except ZeroDivisionError:
         return None
     stiffness = _spectrum(k)
     if roots is None or stiffness is None:
         return None
     least, most = sum(bool(x.real > 0) for x in roots), sum(not x.real < 0 for x in roots)
-    symmetric = part.nonholonomic is None and all(x == 0 for rows in (d, n) for x in rows.entries())
+    symmetric = part.nonholonomic is None and all(x == 0 for rows in (d, n) for x in rows.entries())  # exactly zero
     if symmetric and simple:
         most -= sum(1 for x in roots if x.real.contains(0) and on_axis(x, roots))
     return (least, most), (sum(bool(x < 0) for x in stiffness), sum(not x > 0 for x in stiffness))
+
+
+def _in_balls(matrix: Matrix, point: Sequence[Rational], constant: Constant | None, bits: int) -> Any:
+    """A matrix of polynomials in the axes, and perhaps a constant, as balls."""
+    n = len(matrix)
+    if constant is None:
+        at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
+        return arb_mat(evaluated(matrix, at))
+    flat = [[constant.polynomial_at(entry, point) for entry in row] for row in matrix]
+    c = constant.number.enclosure(bits)
+    values: list[Any] = [arb_poly(entry)(c) if entry != 0 else arb(0) for row in flat for entry in row]
+    return arb_mat(n, n, values)
 
 
 def _spectrum(matrix: Any) -> list[Any] | None:

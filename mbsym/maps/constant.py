@@ -17,6 +17,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.factors import Polynomial
+from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.fields import Extension, Over
 from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between
 from mbsym.algebra.plane.points import Point
@@ -26,6 +27,8 @@ from mbsym.model.system import System
 
 #: Of cos(pi/D), D is at most this.
 MOST_PARTS = 60
+#: Of the discriminant of a norm in two variables.
+MOST_IN_A_PLANE = 600
 #: Roots of larger numbers are not taken.
 MOST_DIGITS = 40
 
@@ -43,10 +46,28 @@ class Constant:
         return divmod(p, self._modulus(p.context()))[1] if p != 0 else p
 
     def norm(self, p: Polynomial) -> Polynomial:
-        """The product of p over all conjugates of the number: rational coefficients, zero wherever p is."""
+        """The product of p over all conjugates of the number: rational coefficients, zero wherever p is.
+
+        Raises TooLargeError where nothing could be done with it in a plane.
+        """
         context = p.context()
-        name = context.names()[-1]
-        return self._modulus(context).resultant(p, name) if p.degrees()[-1] > 0 else p
+        if p == 0 or p.degrees()[-1] == 0:
+            return p
+        *axes, _ = (int(degree) for degree in p.degrees())
+        if len(axes) == 2:
+            worst = 2 * axes[0] * axes[1] * int(self.number.polynomial.degree()) ** 2
+            if worst > MOST_IN_A_PLANE:
+                raise TooLargeError(f"a resultant of degree up to {worst}, more than {MOST_IN_A_PLANE}")
+        return self._modulus(context).resultant(p, context.names()[-1])
+
+    def polynomial_at(self, p: Polynomial, point: Sequence[Any]) -> Any:
+        """p(point, .) modulo the minimal polynomial: with the axes put in, a polynomial in the number."""
+        total = fmpq_poly([0])
+        for powers, value in p.to_dict().items():
+            for x, power in zip(point, powers, strict=False):
+                value *= x ** int(power)
+            total += fmpq_poly([0] * int(powers[-1]) + [value])
+        return total % self.number.modulus
 
     def _modulus(self, context: Any) -> Polynomial:
         c = context.gen(context.nvars() - 1)

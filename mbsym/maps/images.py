@@ -57,7 +57,7 @@ class Images:
         for name, value in given.items():
             number = context.constant(fmpq(value.numerator, value.denominator))
             self._found.setdefault(self.ring.index("parameter", name), (number, self._one))
-        self._constant = constant
+        self.constant = constant
         #: Generators that stand for irrational numbers.
         self.irrational: list[int] = []
         self._solved = {self.ring.index("parameter", name): value for name, value in solved.items()}
@@ -99,9 +99,9 @@ class Images:
         return self._found[k]
 
     def _image_of(self, k: int) -> Image:
-        if self._constant is not None and k in self._constant.images:
+        if self.constant is not None and k in self.constant.images:
             c = self.context.gen(self.context.nvars() - 1)
-            powers = enumerate(self._constant.images[k].coeffs())
+            powers = enumerate(self.constant.images[k].coeffs())
             return sum((c**i * x for i, x in powers), self.context.constant(0)), self._one
         try:
             return self._plain_image_of(k)

@@ -19,13 +19,11 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import check
+from mbsym.maps.constant_points import beside
 from mbsym.maps.mapping import Watch, asked, ends, unwatched
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import LineMap, Of, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
-
-#: The degree of the field of an algebraic point and a constant, beyond which no verdict is sought there.
-MOST_DEGREE = 16
 
 
 def line_map(
@@ -35,10 +33,7 @@ def line_map(
     of: Of = Of.STABILITY,
     watch: Watch = unwatched,
 ) -> LineMap:
-    """The map of a description over one axis; failures as those of ``plane_map``.
-
-    Where an irrational constant stands among the coefficients it is not checked by another route.
-    """
+    """The map of a description over one axis; failures as those of ``plane_map``."""
     watch("first approximation", 0, 1)
     there = section(analysis, [axis], settings)
     kept = admissibility(analysis, there)
@@ -65,7 +60,7 @@ def line_map(
             strata.append(Stratum(shape, number, Standing.NOT_REACHED))
     regions, zeros = strata[: len(line.intervals)], strata[len(line.intervals) :]
     checked = None
-    if there.constant is None and not interrupted:
+    if not interrupted:
         checked = check(there, line, [one.judged for one in regions], progress=watch)
         wrong = {one.region for one in checked.findings}
         regions = [
@@ -105,14 +100,8 @@ class LineJudge:
             return Stratum(shape, number, Standing.UNDEFINED)
         if not all(self.sign(minor, at) > 0 for minors in self._minors for minor in minors):
             return Stratum(shape, number, Standing.MASSLESS)
-        constant = self.section.constant
-        degrees = [
-            int(x.polynomial.degree()) for x in (at, constant and constant.number) if isinstance(x, AlgebraicNumber)
-        ]
-        if len(degrees) == 2 and degrees[0] * degrees[1] > MOST_DEGREE:
-            return Stratum(shape, number, Standing.TOO_LARGE)
         try:
-            judged = self.verdicts(at if constant is None else constant.beside(at))
+            judged = self.verdicts(beside(at, self.section.constant))
         except TooLargeError:
             return Stratum(shape, number, Standing.TOO_LARGE)
         return Stratum(shape, number, Standing.JUDGED, judged)

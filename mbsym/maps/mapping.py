@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from flint import fmpq
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import TooLargeError
@@ -18,6 +18,7 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, check
+from mbsym.maps.constant_points import beside
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
@@ -59,6 +60,9 @@ def mapped(
     there: Section, kept: Admissibility, found: Boundaries, of: Of = Of.STABILITY, watch: Watch = unwatched
 ) -> PlaneMap:
     """The map of a section of two axes with these boundaries, judged and checked; fails as ``plane_map`` does."""
+    if there.constant is not None:
+        plane = fmpq_mpoly_ctx.get([axis.name for axis in there.axes], Ordering.lex)
+        found = replace(found, factors=tuple(x.project_to_context(plane) for x in found.factors))
     made = decompose(found.factors, box_of(there.axes), progress=watch)
     judge = Judge(there, kept)
     places = _places(made)
@@ -142,33 +146,40 @@ class Judge:
 
     def __call__(self, shape: Shape, number: int, point: Point) -> Stratum:
         """What is proved at a point."""
-        broken = tuple(one for one in self.kept.demands if not one.kept(point.sign(one.condition.polynomial)))
-        if broken:
-            return Stratum(shape, number, Standing.OUTSIDE, None, broken)
-        if any(point.sign(x) == 0 for x in self.section.undefined):
-            return Stratum(shape, number, Standing.UNDEFINED)
-        if not self.positive(point):
-            return Stratum(shape, number, Standing.MASSLESS)
         try:
-            return Stratum(shape, number, Standing.JUDGED, self.judged(shape, point))
+            return self._at(shape, number, point)
         except TooLargeError:
             return Stratum(shape, number, Standing.TOO_LARGE)
 
-    def judged(self, shape: Shape, point: Point) -> Judged:
-        if shape is Shape.REGION:
+    def _at(self, shape: Shape, number: int, point: Point) -> Stratum:
+        place = beside(point, self.section.constant)
+        broken = tuple(one for one in self.kept.demands if not one.kept(place.sign(one.condition.polynomial)))
+        if broken:
+            return Stratum(shape, number, Standing.OUTSIDE, None, broken)
+        if any(place.sign(x) == 0 for x in self.section.undefined):
+            return Stratum(shape, number, Standing.UNDEFINED)
+        if not self.positive(point, place):
+            return Stratum(shape, number, Standing.MASSLESS)
+        return Stratum(shape, number, Standing.JUDGED, self.judged(shape, point, place))
+
+    def judged(self, shape: Shape, point: Point, place: Any) -> Judged:
+        """The verdict at a point, ``place`` being the same with the section's constant."""
+        if shape is not Shape.REGION:
+            return self._on_curves(place)
+        if self.section.constant is None:
             return verdict_at(self.section, (point.x, point.y))
-        return self._on_curves(point)
+        return replace(self._on_curves(place), border=None)
 
     @cached_property
     def _on_curves(self) -> ExactVerdicts:
         return ExactVerdicts(self.section)
 
-    def positive(self, point: Point) -> bool:
+    def positive(self, point: Point, place: Any) -> bool:
         """Whether M of every part is positive definite: its leading minors are."""
-        if point.rational:
+        if point.rational and self.section.constant is None:
             place = (point.x, point.y)
             return all(inertia(matrix_at(m, place))[0] == len(m) for m in (x.kinetic for x in self.section.parts))
-        return all(point.sign(minor) > 0 for minors in self._minors for minor in minors)
+        return all(place.sign(minor) > 0 for minors in self._minors for minor in minors)
 
     @cached_property
     def _minors(self) -> list[tuple[Any, ...]]:

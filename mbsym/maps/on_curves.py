@@ -17,6 +17,7 @@ from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.point_field import LineField, PointField
 from mbsym.algebra.roots import RootCount, counted, counted_real
+from mbsym.maps.constant_points import ConstantPoint
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.exact import ExactPoint, PointVerdict, RationalPoint, evaluated, inertia, verdict_over
@@ -28,7 +29,8 @@ from mbsym.problems.stability.verdict import combine
 #: Random points at which roots are counted to know how many imaginary ones a part has everywhere.
 _TRIALS = 3
 
-Place = Any  # a Point (two axes), or a flint.fmpq or an AlgebraicNumber (one axis)
+#: A Point (two axes), a flint.fmpq or an AlgebraicNumber (one axis); with a constant what ``constant_points`` makes.
+Place = Any
 
 #: Which kind is told of a point where parts, or roots of one, are of several.
 _ORDER = (Border.MASS, Border.ZERO, Border.JORDAN, Border.SEMISIMPLE, Border.IMAGINARY)
@@ -64,6 +66,8 @@ def verdict_on(section: Section, place: Place) -> Judged:
 
 
 def _field(place: Place) -> ExactPoint:
+    if isinstance(place, ConstantPoint):
+        return place
     if isinstance(place, Point):
         if not place.rational:
             return PointField(place)
@@ -76,6 +80,8 @@ def _fraction(x: Any) -> Fraction:
 
 
 def _signs(place: Place) -> tuple[int, ...]:
+    if isinstance(place, ConstantPoint):
+        return place.signs
     numbers = (place.x, place.y) if isinstance(place, Point) else (place,)
     return tuple(sign(x) if isinstance(x, fmpq) else x.compare(fmpq(0)) for x in numbers)
 

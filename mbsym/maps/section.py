@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from mbsym.problems.equilibrium import Equilibrium
 
 
+#: With so many axes an irrational constant may stand among the coefficients.
+MOST_BESIDE = 2
 #: Of so many axes all signs are tried.
 MOST_TRIED = 3
 
@@ -187,7 +189,8 @@ def usable(system: System) -> tuple[str, ...]:
 def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction]) -> Section:
     """The section of an analysis with one to three ``axes`` at the values of ``settings``, names as in ``usable``.
 
-    With one axis, the other numbers may hold one root, or the sine and cosine of a fraction of pi (``constant``).
+    With one or two axes, the other numbers may hold one root, or the sine and cosine of a fraction of pi
+    (``constant``).
     Raises Unfit with all complaints, Unavailable where there is no first approximation to judge.
     """
     found: list[int] = []
@@ -195,7 +198,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         return _section(analysis, axes, settings, None, found)
     except Unfit as unfit:
         constant = None
-        if len(axes) == 1 and {one.fault for one in unfit.complaints} == {Fault.IRRATIONAL}:
+        if len(axes) <= MOST_BESIDE and {one.fault for one in unfit.complaints} == {Fault.IRRATIONAL}:
             constant = constant_of(analysis.system, analysis.ring, found)
         if constant is None:
             raise
@@ -359,7 +362,8 @@ def _in_axes(
 
     def cleared(image: Image | None, by: Polynomial) -> Polynomial:
         assert image is not None
-        return image[0] * (by / image[1])
+        whole = image[0] * (by / image[1])
+        return whole if images.constant is None else images.constant.reduced(whole)
 
     m, d, g, k, n = (tuple(tuple(cleared(x, square) for x in row) for row in matrix) for matrix in entries)
     bottom = common_denominator([x for x in turned if x is not None]) if turned else below
