@@ -23,6 +23,7 @@ from mbsym.algebra.plane import (
 )
 from mbsym.algebra.plane.laws import Law, breaches, euler
 from mbsym.algebra.plane.numbers import sign
+from mbsym.algebra.plane.point_field import PointField
 from mbsym.algebra.plane.stacks import Fibre
 
 X, Y = (CONTEXT := fmpq_mpoly_ctx.get(["x", "y"])).gens()
@@ -249,3 +250,14 @@ def test_dense_curves_of_high_degree() -> None:
         found = decompose([dense, X**2 + Y**2 - 2], BOX)
         assert not breaches(found)
         assert agrees(found, points(source, 30))
+
+
+def test_arithmetic_at_a_cusp_whose_polynomials_are_not_monic() -> None:
+    """At the cusps (+-2^(1/2), 2^(1/3)) of (y^3 - 2)^2 = (x^2 - 2)^3, stretched by 3 x: y^3 is 2 there."""
+    found = decompose([3 * (X + 3) * ((Y**3 - 2) ** 2 - (X**2 - 2) ** 3) + (X**2 - 2) ** 4], BOX)
+    cusps = [one for one in found.corners if one.kind is CornerKind.SINGULAR]
+    assert [[round(x, 6) for x in one.point.floats()] for one in cusps] == [[-1.414214, 1.259921], [1.414214, 1.259921]]
+    for one in cusps:
+        at = PointField(one.point)
+        assert at.value(Y**3 - 2).sign() == 0
+        assert at.value(Y).inverse() * 2 == at.value(Y**2)

@@ -244,7 +244,7 @@ class Extension:
 class Over:
     """The only root in [low, high] of a polynomial over QQ(alpha), a simple one; low = high where it is rational.
 
-    ``shared``: further polynomials with this root.
+    The polynomial need not be monic.  ``shared``: further polynomials with this root.
     """
 
     over: Extension

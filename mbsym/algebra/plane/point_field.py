@@ -134,6 +134,7 @@ class PointField:
         _affordable(_degree(x))
         if isinstance(y, Over):
             y.shrink()
+            y.restrict(y.over.monic(y.polynomial))
         _affordable(_degree(x) * (len(y.polynomial) - 1 if isinstance(y, Over) else _degree(y)))
         self._field: SimpleField | TowerField
         if isinstance(y, Over) and len(y.polynomial) > 2:
