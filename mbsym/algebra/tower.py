@@ -22,6 +22,8 @@ from mbsym.expressions.angles import LinearForm
 
 #: As many roots can be adjoined, and so many terms may an element have.
 MOST_ROOTS, MOST_TERMS = 8, 20_000
+#: So many products of terms may be formed in all: some ten seconds.
+MOST_WORK = 20_000_000
 
 
 class Element:
@@ -51,6 +53,7 @@ class Element:
 
     def __mul__(self, other: Any) -> Element:
         other = self.tower.element(other)
+        self.tower.spend(len(self.top) * len(other.top))
         return self.tower.made(self.tower.reduced(self.top * other.top), self.bottom * other.bottom)
 
     __rmul__ = __mul__
@@ -82,8 +85,14 @@ class Tower(Algebra[Element]):
         #: s_i^2, polynomials in what stands before them, and what each s_i is divided by to give the root asked for.
         self.squares: list[fmpq_mpoly] = []
         self._asked: list[tuple[Element, Element]] = []
-        self._unit = self.context.constant(1)
+        self._unit, self.work = self.context.constant(1), 0
         self.zero, self.one = self.element(0), self.element(1)
+
+    def spend(self, work: int) -> None:
+        """Counts products of terms.  Raises NoClosedForm where they are too many."""
+        self.work += 8 + work
+        if self.work > MOST_WORK:
+            raise NoClosedForm(f"more than {MOST_WORK} products of terms", limit=Limit.WORK)
 
     def element(self, x: Any) -> Element:
         if isinstance(x, Element):
@@ -167,6 +176,16 @@ class Tower(Algebra[Element]):
         if not (x.top.is_constant() and x.bottom.is_constant()):
             return None
         return fmpq(0) if x.is_zero() else x.top.leading_coefficient() / x.bottom.leading_coefficient()
+
+    def kind(self, index: int) -> str | fmpq_mpoly:
+        """What a generator of ``context`` is: the name of a parameter, or the square s^2 of a root."""
+        if index >= MOST_ROOTS:
+            return self.parameters[index - MOST_ROOTS]
+        return self.squares[MOST_ROOTS - 1 - index]
+
+    def place(self, root: Element) -> int:
+        """Which s_k a root that was adjoined is a multiple of."""
+        return next(k for k in range(len(self.squares)) if root.top.degrees()[MOST_ROOTS - 1 - k])
 
     def sin_cos(self, angle: LinearForm) -> tuple[Element, Element]:
         raise NoClosedForm("sines of parameters: give numbers for them")

@@ -1,0 +1,126 @@
+"""Critical cases with dissipation: the motion on the centre manifold, over any scalars.
+
+For x' = A x + f(x), f of second order, with one pair +-i w of imaginary roots (lambda = i w), A q = lambda q,
+p A = lambda p, p q = 1, the centre manifold is
+
+    x = q z + q* z* + h20 z^2/2 + h11 z z* + h02 z*^2/2 + ...
+    (2 lambda - A) h20/2 = f_2's coefficient of z^2,      -A h11 = that of z z*,      z' = lambda z + c z^2 z* + ...
+
+with c = p.(coefficient of z^2 z* in f).  With r = 2 |q_j z|, the amplitude of x_j in first approximation,
+
+    r' = a r^3 + ...,      a = Re c / (4 q_j q_j*)
+
+which is a of r' = d r + a r^3 (Guckenheimer & Holmes (3.4.11)) where a parameter moves the roots by d.  a < 0: soft
+(asymptotically stable where all other roots are to the left), a > 0: hard (unstable).  With one root zero instead
+
+    u' = a2 u^2 + a3 u^3 + ...,      x = q u + h u^2 + ...
+
+a2 != 0: unstable; a2 = 0: asymptotically stable for a3 < 0, unstable for a3 > 0.
+
+Sources: A. M. Lyapunov, The General Problem of the Stability of Motion (1892), sections 28-41; V. A. Pliss (1964);
+J. Guckenheimer & P. Holmes, Nonlinear Oscillations (1983), sections 3.2 and 3.4; Yu. A. Kuznetsov, Elements of Applied
+Bifurcation Theory, section 5.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mbsym.algebra.truncated import Space, Truncated
+from mbsym.problems.normal_forms.expansion import faddeev, inverted
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state."""
+
+    quadratic: Any
+    cubic: Any
+    lengths: tuple[Any, ...]
+
+
+def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
+    """A of x' = A x + ..."""
+    m = len(field)
+    return [[row[tuple(int(k == j) for k in range(m))] for j in range(m)] for row in field]
+
+
+def on_pair(
+    field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
+) -> Reduced:
+    """The pair ``root``, -root, simple.  Raises what ``inverse`` raises where the root is not simple, or 0 or 2 root is
+    one."""
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix = matrix_of(field)
+    q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
+    conjugate = [row[column] for row in _adjugate(matrix, -root, zero, one)]
+    space = Space(2, 3, zero, one)
+    plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
+    second = [row.beyond(1).composed(plane) for row in field]
+    doubled = [[(root * 2 if i == j else zero) - matrix[i][j] for j in range(m)] for i in range(m)]
+    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second], zero)
+    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second], zero)]
+    bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
+    third = [row.beyond(1).composed(bent)[2, 1] for row in field]
+    return Reduced(zero, _dot(p, third, zero), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+
+
+def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Callable[[Any], float]) -> Reduced:
+    """One simple zero root.  Raises what ``inverse`` raises where it is not simple."""
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix = matrix_of(field)
+    q, p, _ = _eigenvectors(matrix, zero, zero, one, inverse, size)
+    space = Space(1, 3, zero, one)
+    line = [space.linear((q[i],)) for i in range(m)]
+    second = [row.beyond(1).composed(line)[2,] for row in field]
+    quadratic = _dot(p, second, zero)
+    # (q p - A) h = second - quadratic q: regular, and p h = 0
+    moved = [[q[i] * p[j] - matrix[i][j] for j in range(m)] for i in range(m)]
+    right = [x - quadratic * y for x, y in zip(second, q, strict=True)]
+    h = _applied(inverted(moved, inverse, zero, one), right, zero)
+    bent = [row + Truncated(space, {(2,): x}) for row, x in zip(line, h, strict=True)]
+    third = [row.beyond(1).composed(bent)[3,] for row in field]
+    return Reduced(quadratic, _dot(p, third, zero), tuple(q))
+
+
+def _eigenvectors(
+    matrix: Sequence[Sequence[Any]],
+    root: Any,
+    zero: Any,
+    one: Any,
+    inverse: Callable[[Any], Any],
+    size: Callable[[Any], float],
+) -> tuple[list[Any], list[Any], int]:
+    """q and p with p q = 1: a column and a row of adj(root - A), those whose common entry is largest; which column.
+
+    adj(root - A) is q p times a number, for a simple root.
+    """
+    whole, places = _adjugate(matrix, root, zero, one), range(len(matrix))
+    i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
+    q, p = [row[j] for row in whole], whole[i]
+    factor = inverse(_dot(p, q, zero))
+    return q, [x * factor for x in p], j
+
+
+def _adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+    """adj(root - A)."""
+    adjugates, _ = faddeev(matrix, zero, one)
+    whole = adjugates[0]
+    for further in adjugates[1:]:
+        whole = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(whole, further, strict=True)]
+    return whole
+
+
+def _applied(matrix: Sequence[Sequence[Any]], vector: Sequence[Any], zero: Any) -> list[Any]:
+    return [_dot(row, vector, zero) for row in matrix]
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any], zero: Any) -> Any:
+    total = zero
+    for x, y in zip(a, b, strict=True):
+        total = total + x * y
+    return total

@@ -1,0 +1,160 @@
+"""Equilibria of systems with applied forces: the roots exactly, then the critical cases on the centre manifold.
+
+The state is x without the cyclic coordinates, and all velocities.  With det(lambda - A) = E(lambda^2) + lambda
+O(lambda^2) the roots +-i w are those of the common factor of E and O: exact arithmetic tells them, and their number, from
+roots near the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
+
+from mbsym.algebra.tower import Element, Tower
+from mbsym.algebra.truncated import Space, Truncated
+from mbsym.formulas.formula import Formula
+from mbsym.problems.normal_forms.centre import Reduced, matrix_of, on_pair, on_zero
+from mbsym.problems.normal_forms.exact import (
+    common_factor,
+    in_ring,
+
+    occurring_parameters,
+    over_tower,
+    rational_values,
+)
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers, faddeev
+from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, Why
+
+
+def state_field(numbers: Numbers) -> tuple[list[Truncated], tuple[str, ...]]:
+    """x' and v' in the state, to third order, and the coordinates in it."""
+    found, n = numbers.found, numbers.n
+    rates = numbers.field()
+    places = [*(i for i in range(n) if i not in found.cyclic), *range(n, 2 * n)]
+    space = Space(len(places), 3, numbers.zero, numbers.one)
+
+    def cut(row: Truncated) -> Truncated:
+        return Truncated(space, {tuple(key[k] for k in places): value for key, value in row.coefficients.items()})
+
+    positions = tuple(found.coordinates[i] for i in places if i < n)
+    velocities = [space.variable(places.index(n + found.coordinates.index(name))) for name in positions]
+    return [*velocities, *map(cut, rates)], positions
+
+
+def judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
+    """What is decided at rational values."""
+    exact = rational_values(values)
+    if len(exact) < len(values):
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
+    tower = Tower()
+    field, positions = state_field(over_tower(found, tower, exact))
+    coefficients = [tower.rational(x) for x in faddeev(matrix_of(field), tower.zero, tower.one)[1]]
+    if any(x is None for x in coefficients):
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
+    whole = fmpq_poly(coefficients)
+    zeros = next(k for k in range(whole.degree() + 1) if whole[k] != 0)
+    whole = fmpq_poly(whole.coeffs()[zeros:])
+    square = fmpq_poly(whole.coeffs()[::2]).gcd(fmpq_poly(whole.coeffs()[1::2]))
+    pairs = _negative_roots(square)
+    beside = whole // _even(square)
+    if pairs < square.degree() or _to_the_right(beside):
+        return Judged(Outcome.UNSTABLE, Theorem.FIRST)
+    if not pairs and not zeros:
+        return Judged(Outcome.ASYMPTOTIC, Theorem.FIRST)
+    if pairs == 1 and not zeros:
+        return _pair(tower, field, positions, tower.element(square[0] / square[1]))
+    if zeros == 1 and not pairs:
+        return _zero(tower, field)
+    why = Why.MIXED_ROOTS if pairs and zeros else Why.MORE_PAIRS if pairs else Why.TWO_ZERO_ROOTS
+    return Judged(Outcome.UNDECIDED, Theorem.NONE, why)
+
+
+def _even(square: fmpq_poly) -> fmpq_poly:
+    """g(lambda^2)."""
+    found = [fmpq(0)] * (2 * square.degree() + 1)
+    found[::2] = square.coeffs()
+    return fmpq_poly(found)
+
+
+def _square_free(x: fmpq_poly) -> list[fmpq_poly]:
+    return [factor for factor, _ in x.factor()[1]]
+
+
+def _roots(factor: fmpq_poly) -> list[Any]:
+    return list(acb_poly(factor).roots(tol=arb(2) ** (-(ctx.prec // 2))))
+
+
+def _negative_roots(x: fmpq_poly) -> int:
+    """How many roots are real and negative, each as often as it is one; zero is none."""
+    count = 0
+    for factor, times in x.factor()[1]:
+        count += times * sum(1 for root in _roots(factor) if root.imag.contains(0) and root.real < 0)
+    return count
+
+
+def _to_the_right(x: fmpq_poly) -> bool:
+    """Whether a root has a positive real part; none has the real part 0, so that enclosures tell."""
+    return any(root.real > 0 for factor in _square_free(x) for root in _roots(factor))
+
+
+def _size(x: Element) -> float:
+    return float(not x.is_zero())
+
+
+def _pair(tower: Tower, field: Sequence[Truncated], positions: Sequence[str], square: Element) -> Judged:
+    coefficient, amplitude_of = _coefficient(tower, field, positions, square)
+    number = tower.rational(coefficient)
+    w = arb(tower.rational(square)).sqrt()
+    value: Any = tower.enclosed(coefficient, {}).real if number is None else number
+    outcome, theorem, why = _sign(value)
+    return Judged(outcome, theorem, why, frequencies=(w,), coefficient=value, amplitude_of=amplitude_of)
+
+
+def _sign(value: Any) -> tuple[Outcome, Theorem, Why]:
+    if value < 0:
+        return Outcome.ASYMPTOTIC, Theorem.REDUCTION, Why.NONE
+    if value > 0:
+        return Outcome.UNSTABLE, Theorem.REDUCTION, Why.NONE
+    return Outcome.UNDECIDED, Theorem.NONE, Why.COEFFICIENT_OPEN
+
+
+def _coefficient(
+    tower: Tower, field: Sequence[Truncated], positions: Sequence[str], square: Element
+) -> tuple[Element, str]:
+    """a of r' = a r^3, and the coordinate whose amplitude r is."""
+    root = tower.square_root(-square)
+    found: Reduced = on_pair(field, root, tower.reciprocal, _size)
+    j = next(j for j in range(len(positions)) if not found.lengths[j].is_zero())
+    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
+    return real / (found.lengths[j] * 4), positions[j]
+
+
+def _zero(tower: Tower, field: Sequence[Truncated]) -> Judged:
+    found = on_zero(field, tower.reciprocal, _size)
+    if not found.quadratic.is_zero():
+        return Judged(Outcome.UNSTABLE, Theorem.REDUCTION, coefficient=tower.rational(found.quadratic))
+    value = tower.rational(found.cubic)
+    if value is None:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.COEFFICIENT_OPEN)
+    outcome, theorem, why = _sign(value)
+    return Judged(outcome, theorem, why, coefficient=value)
+
+
+def focus(found: Expansion) -> Focus | None:
+    """Where +-i w is a pair of roots for all parameters: w^2 and a.  None where there is none, or more than one."""
+    ring = found.scene.ring
+    tower = Tower(occurring_parameters(found))
+    field, positions = state_field(over_tower(found, tower, {}))
+    coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1]
+    if coefficients[0].is_zero():
+        return None
+    factor = common_factor(tower, coefficients[::2], coefficients[1::2])
+    if len(factor) != 2:
+        return None
+    coefficient, amplitude_of = _coefficient(tower, field, positions, factor[0])
+    told = [Formula(ring, in_ring(tower, ring, x)) for x in (factor[0], coefficient)]
+    return Focus(told[0], told[1], amplitude_of)
+
+

@@ -1,0 +1,140 @@
+"""Problem 11 on a scene: which theorem is asked, at numbers and in symbols."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+from flint import acb, arb, ctx
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Balls
+from mbsym.algebra.tower import Element, Tower
+from mbsym.algebra.truncated import Truncated
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.normal_forms.birkhoff import diagonalised, matrix_of, normal_form
+from mbsym.problems.normal_forms.dissipative import focus, judged_field
+from mbsym.problems.normal_forms.exact import (
+    Resonant,
+    even_part,
+    in_ring,
+    known,
+    occurring_parameters,
+    over_tower,
+    rational_values,
+    resonance,
+)
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
+from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
+from mbsym.problems.normal_forms.twist import judged
+
+#: Working precision of enclosures, in bits.
+PRECISION = 320
+#: Resonances are looked for to this order, and Birkhoff's form goes so far where it has to.
+ORDER = 6
+
+
+def normal_forms(
+    scene: Scene, whole: Any, equilibrium: Equilibrium | None, values: Mapping[str, Any] | None
+) -> NormalForms:
+    """What terms of higher order decide of the motion of the system ``whole``; ``scene`` is over the ring.
+
+    ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
+    NoClosedForm.
+    """
+
+    @cache
+    def to(order: int) -> Expansion:
+        return expansion(scene, whole, equilibrium, order)
+
+    found = to(4)
+    coordinates = tuple(name for i, name in enumerate(found.coordinates) if i not in found.cyclic)
+    with ctx.workprec(PRECISION):
+        if found.conservative:
+            at_values = None if values is None else at_numbers(to, values, None)
+            symbols: Any = lambda: _in_symbols(found)  # noqa: E731
+        else:
+            at_values = None if values is None else judged_field(found, values)
+            symbols = lambda: focus(found)  # noqa: E731
+        in_symbols, why = known(symbols)
+    return NormalForms(
+        coordinates=coordinates,
+        cyclic=tuple(found.coordinates[i] for i in found.cyclic),
+        conservative=found.conservative,
+        order=ORDER,
+        at_values=at_values,
+        in_symbols=in_symbols,
+        no_symbols=why,
+    )
+
+
+def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resonant: Any) -> Judged:
+    """A conservative system at numbers; ``resonant`` decides k.w = 0 where the values are not rational."""
+
+    def lowered(order: int) -> Truncated:
+        return enclosed(to(order), values).hamiltonian()
+
+    if resonant is None:
+        resonant = _exactly(to(4), values)
+    return judged(lowered, resonant, ORDER)
+
+
+def enclosed(found: Expansion, values: Mapping[str, Any]) -> Numbers:
+    """The expansion over enclosures."""
+    balls = {"pi": arb.pi()} | {name: ball(value) for name, value in values.items()}
+    carry = Carrier(found.scene.ring, Balls(balls), balls)
+    return Numbers(found, lambda x: acb(carry(x)), lambda x: 1 / x, acb(0), acb(1))
+
+
+def ball(value: Any) -> arb:
+    """A number or an enclosure as an enclosure."""
+    return value if isinstance(value, arb) else arb(value.numerator) / value.denominator
+
+
+def _exactly(found: Expansion, values: Mapping[str, Any]) -> Resonant:
+    """Exact resonances, where all values are rational and the coefficients hold nothing but square roots."""
+    exact = rational_values(values)
+    if len(exact) < len(values):
+        return Resonant(None, None)
+    tower = Tower()
+
+    def coefficients() -> list[Element]:
+        quadratic = over_tower(found, tower, exact).hamiltonian()
+        return even_part(matrix_of(quadratic), tower.zero, tower.one)
+
+    q, _ = known(coefficients)
+    return Resonant(None, None) if q is None else Resonant(tower, q)
+
+
+def _in_symbols(found: Expansion) -> InSymbols | None:
+    """Of two degrees of freedom; None of others.  Raises Failure where formulas outgrow their budgets."""
+    if len(found.coordinates) - len(found.cyclic) != 2:
+        return None
+    return twist(found, {})[0]
+
+
+def twist(found: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower, dict[str, Element]]:
+    """D_4 and what it stands on, with ``values`` put in; the same as elements of the tower."""
+    ring = found.scene.ring
+    tower = Tower([name for name in occurring_parameters(found) if name not in values])
+    hamiltonian = over_tower(found, tower, rational_values(values)).hamiltonian()
+    constant, trace = even_part(matrix_of(hamiltonian), tower.zero, tower.one)[:2]
+    discriminant = trace * trace - constant * 4
+    difference = tower.square_root(discriminant)
+    roots = [tower.square_root((difference * sign - trace) / 2) for sign in (-1, 1)]
+    linear = diagonalised(hamiltonian, roots, tower.reciprocal, lambda d: float(not d.is_zero()))
+    at = normal_form(hamiltonian, linear, tower.reciprocal).actions(2)
+    one, other = roots
+    zero = tower.zero
+    determinant = at.get((2, 0), zero) * other * other - at.get((1, 1), zero) * one * other
+    determinant = determinant + at.get((0, 2), zero) * one * one
+    named = {"trace": trace, "product": constant, "discriminant": discriminant, "determinant": determinant}
+    resonances = {vector: resonance(tower, (constant, trace), vector) for vector in ((1, 2), (1, 3))}
+    told = {name: Formula(ring, in_ring(tower, ring, x)) for name, x in named.items()}
+    result = InSymbols(
+        **told, resonances=tuple((k, Formula(ring, in_ring(tower, ring, x))) for k, x in resonances.items())
+    )
+    return result, tower, named | {f"{a}:{b}": x for (a, b), x in resonances.items()}

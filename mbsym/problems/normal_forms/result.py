@@ -1,0 +1,149 @@
+"""What problem 11 finds, as values: a word, the theorem behind it, and the numbers that it rests on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
+
+
+class Outcome(StrEnum):
+    """What is said of the nonlinear system."""
+
+    ASYMPTOTIC = "asymptotically stable"
+    STABLE = "stable"
+    #: No formal power series in the deviations shows a drift: it would be slower than any power of them.
+    FORMAL = "formally stable"
+    #: Invariant tori fill most of a neighbourhood: stability for most initial states, in Lyapunov's sense open.
+    MOST = "stable for most initial states"
+    UNSTABLE = "unstable"
+    UNDECIDED = "undecided"
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+
+class Theorem(StrEnum):
+    """The theorems of problem 11."""
+
+    DEFINITE = "Dirichlet"
+    FIRST = "Lyapunov's first method"
+    ARNOLD_MOSER = "Arnold-Moser"
+    ARNOLD_MOSER_6 = "Arnold-Moser, order 6"
+    THIRD = "Markeev, resonance of third order"
+    FOURTH = "Markeev, resonance of fourth order"
+    BRUNO = "Bruno"
+    ARNOLD = "Arnold"
+    REDUCTION = "Lyapunov, Pliss: centre manifold"
+    NONE = ""
+
+
+class Why(StrEnum):
+    """Why nothing, or no more, is decided."""
+
+    NONE = ""
+    #: A root that is zero, or is not told from zero.
+    ZERO_ROOT = "zero-root"
+    TWO_ZERO_ROOTS = "two-zero-roots"
+    EQUAL_FREQUENCIES = "equal-frequencies"
+    #: Frequencies whose ratio is not told from a resonance.
+    RESONANCE_OPEN = "resonance-open"
+    #: A resonance that the theorems for non-resonant frequencies exclude.
+    RESONANCE = "resonance"
+    #: The resonant term is not told from zero.
+    RESONANT_TERM_OPEN = "resonant-term-open"
+    #: The two sides of Markeev's inequality are not told apart.
+    EQUALITY = "equality"
+    DETERMINANT_OPEN = "determinant-open"
+    #: The form of order 4 vanishes in the cone of actions, or is not told from one that does.
+    FORM_OPEN = "form-open"
+    COEFFICIENT_OPEN = "coefficient-open"
+    #: More than one pair of imaginary roots in a system that is not Hamiltonian.
+    MORE_PAIRS = "more-pairs"
+    MIXED_ROOTS = "mixed-roots"
+    #: Roots on the imaginary axis are proved at rational numbers only.
+    IRRATIONAL = "irrational"
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """k.w = 0 exactly, |k_1| + |k_2| + ... = ``order``; frequencies in the order of the result."""
+
+    vector: tuple[int, ...]
+
+    @property
+    def order(self) -> int:
+        return sum(map(abs, self.vector))
+
+
+@dataclass(frozen=True, repr=False)
+class Judged(Shown):
+    """At numbers.  ``frequencies`` Omega_k with the sign of their energies (enclosures), largest first.
+
+    ``quadratic`` are the coefficients of I_j I_k (j <= k) of the normal form of order 4, where it was formed.
+    ``determinants`` are D_4 and D_6 as far as they were needed; ``resonances`` those that hold exactly up to the order
+    that was looked at.  Of one pair of imaginary roots: ``coefficient`` a of r' = d r + a r^3, r the amplitude of
+    ``amplitude_of`` in first approximation, ``frequencies`` its w.  ``checked``: the normal form, substituted.
+    """
+
+    outcome: Outcome
+    theorem: Theorem
+    why: Why = Why.NONE
+    frequencies: tuple[Any, ...] = ()
+    quadratic: tuple[tuple[tuple[int, int], Any], ...] = ()
+    determinants: tuple[tuple[int, Any], ...] = ()
+    resonances: tuple[Resonance, ...] = ()
+    coefficient: Any = None
+    amplitude_of: str = ""
+    #: The two sides of Markeev's inequality of the resonance of fourth order: |H_4(k)| and what it is compared with.
+    sides: tuple[Any, Any] | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class InSymbols(Shown):
+    """Of two degrees of freedom, for almost all parameters.
+
+    ``trace`` and ``product`` are w1^2 + w2^2 and w1^2 w2^2; where both and ``discriminant`` (trace^2 - 4 product) are
+    positive the first approximation is stable.  ``determinant`` is D_4; where it vanishes order 6 has to be looked at.
+    ``resonances`` vanish where w1 : w2 or w2 : w1 is that of the vector, orders 3 and 4.
+    ``definite``: where every formula is positive H_2 is definite and nothing else is needed.
+    """
+
+    trace: Formula
+    product: Formula
+    discriminant: Formula
+    determinant: Formula
+    resonances: tuple[tuple[tuple[int, int], Formula], ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Focus(Shown):
+    """Of one pair of imaginary roots +-i w that is one for all parameters: ``square`` is w^2, ``coefficient`` a."""
+
+    square: Formula
+    coefficient: Formula
+    amplitude_of: str
+
+
+@dataclass(frozen=True, repr=False)
+class NormalForms(Shown):
+    """Problem 11.  ``coordinates`` without the ``cyclic`` ones, whose momenta keep their unperturbed values.
+
+    ``at_values`` is None without numbers; ``in_symbols`` where there is no such formula, ``no_symbols`` says why.
+    """
+
+    coordinates: tuple[str, ...]
+    cyclic: tuple[str, ...]
+    conservative: bool
+    order: int
+    at_values: Judged | None
+    in_symbols: InSymbols | Focus | None
+    no_symbols: str = ""
+
+    @property
+    def terms(self) -> int:
+        """None are counted: the statements are short."""
+        return 0
