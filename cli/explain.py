@@ -7,6 +7,7 @@ from difflib import get_close_matches
 
 import click
 
+from mbsym.problems import NUMBERS, ranges
 from mbsym_cli.completion import among
 from mbsym_cli.console import BAD_INPUT
 
@@ -19,9 +20,9 @@ TOPICS = {
 
 
 @click.command("explain")
-@click.argument("topic", required=False, shell_complete=among(lambda: [*"12345678", *TOPICS]))
+@click.argument("topic", required=False, shell_complete=among(lambda: [*map(str, NUMBERS), *TOPICS]))
 def command(topic: str | None) -> None:
-    """Print what problem TOPIC (1 to 8) does and the formula it uses; without TOPIC, the list of problems and topics.
+    """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
     The topics description, loads, expressions and claims tell what may stand in a description.
 
@@ -44,7 +45,7 @@ def command(topic: str | None) -> None:
         click.echo(PROBLEMS[int(topic)].explanation)
     else:
         near = get_close_matches(topic, TOPICS, 1)
-        known = f"did you mean {near[0]}?" if near else f"problems are numbered 1 to {len(PROBLEMS)}"
+        known = f"did you mean {near[0]}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
         click.echo(f"there is no problem or topic {topic}; {known}", err=True)
         sys.exit(BAD_INPUT)

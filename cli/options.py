@@ -13,7 +13,7 @@ from pathlib import Path
 from mbsym.expressions.counting import counted
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
-from mbsym.problems import NUMBERS
+from mbsym.problems import NUMBERS, ranges
 from mbsym.source import render_option
 from mbsym_cli.console import printable
 
@@ -98,9 +98,9 @@ class Options:
             wrong = [n for n in dict.fromkeys((low, high)) if n not in NUMBERS]
             if wrong:
                 message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
-                self.complain("--problems", "unknown-problem", message, f"problems are numbered 1 to {max(NUMBERS)}")
+                self.complain("--problems", "unknown-problem", message, f"problems are numbered {ranges()}")
                 continue
-            found.update(range(low, high + 1))
+            found.update(number for number in NUMBERS if low <= number <= high)
         return tuple(sorted(found))
 
     def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, constrained, deriving, forms, given, judging, second_routes
+from mbsym.analysis import approximation, conserved, constrained, deriving, forms, given, higher, judging, second_routes
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
@@ -36,6 +36,7 @@ from mbsym.problems import (
     kinematics,
     knowledge,
     linearisation,
+    normal_forms,
     stabilisation,
     stability,
 )
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
+    from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -107,7 +109,7 @@ KNOW_SPEEDS = frozenset(
 IN_COORDINATES = frozenset(
     (
         *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
-        *("stability", "trials", "equilibria", *FORMS, forms.BRACKETS),
+        *("stability", "normal_forms", "trials", "equilibria", *FORMS, forms.BRACKETS),
     )
 )
 #: The checks of these, and the stage that each is about.
@@ -310,6 +312,10 @@ class Analysis(Stages):
 
     stabilisation: Problem[Stabilisation] = Problem(
         8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+    )
+
+    normal_forms: Problem[NormalForms] = Problem(
+        11, "terms of higher order", normal_forms, higher.normal_forms_of, (*JUDGED, "normal forms"), says=True
     )
 
     # --- problem 5 in speeds, of a system that has some ---

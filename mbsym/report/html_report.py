@@ -43,6 +43,8 @@ from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.latex_description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.normal_form_words import Medium as HigherMedium
+from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
 from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
@@ -55,11 +57,12 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.reduction import Reduction
     from mbsym.problems.stabilisation import Stabilisation
 
 #: The order of the sections: as a reader wants them, as in report.tex.
-ORDER = (1, 2, 3, 4, 5, 6, 7)
+ORDER = tuple(range(1, 13))
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -103,6 +106,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "constraint": lambda value: constraint_in_words(value, names),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
+        "normal_form_sentences": lambda one: list(_of_normal_forms(one, names)),
         "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
@@ -171,6 +175,18 @@ def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
         nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
     )
     yield from _filled(reduction_sentences(about, write))
+
+
+def _of_normal_forms(found: NormalForms, names: MathNames) -> Iterator[Markup]:
+    """The sentences of problem 11, names and formulas in MathML."""
+    write = HigherMedium(
+        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        formula=lambda x: shown.math(shown.inline(x)),
+        math=lambda plain, _: escape(plain),
+        word=lambda text: escape(text),
+    )
+    for text, values in higher_sentences(found, write):
+        yield from _filled([(text, {name: Markup(value) for name, value in values.items()})])
 
 
 def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup]:

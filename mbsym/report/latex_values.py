@@ -56,6 +56,7 @@ from mbsym.report.latex_formulas import (
     tensor,
 )
 from mbsym.report.latex_labels import Labels, prefix_of
+from mbsym.report.latex_normal_forms import of_normal_forms
 from mbsym.report.latex_references import keys_of, references, theorems_named
 from mbsym.report.latex_stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex_told import packed, paragraphs
@@ -140,6 +141,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
+        "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),

@@ -7,11 +7,16 @@ plain substitution, is the normal form to the order.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from flint import arb, ctx
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.point import Balls
 from mbsym.algebra.truncated import Truncated, bracket, flow
 from mbsym.problems.normal_forms.birkhoff import NormalForm
+from mbsym.problems.normal_forms.result import InSymbols, NormalForms
 
 
 def transformation(found: NormalForm) -> list[Truncated]:
@@ -34,3 +39,22 @@ def defects(hamiltonian: Truncated, found: NormalForm) -> Iterator[Any]:
             yield from (value for key, value in rest.coefficients.items() if sum(key) < space.order)
     difference = hamiltonian.composed(rows) - found.hamiltonian
     yield from difference.coefficients.values()
+
+
+def symbols_agree(found: NormalForms, values: Mapping[str, Any]) -> bool | None:
+    """Whether D_4 and w_1^2 w_2^2 in parameters are at the values what enclosures of the normal form there are.
+
+    Roots of polynomials and floating balls on one side, a tower of square roots over the parameters on the other.  None
+    where one of them is not there.
+    """
+    symbols, judged = found.in_symbols, found.at_values
+    if not isinstance(symbols, InSymbols) or judged is None or len(judged.frequencies) != 2:
+        return None
+    with ctx.workprec(320):
+        balls = {"pi": arb.pi()}
+        balls |= {k: x if isinstance(x, arb) else arb(x.numerator) / x.denominator for k, x in values.items()}
+        carry = Carrier(symbols.determinant.ring, Balls(balls), balls)
+        one, other = judged.frequencies
+        pairs = [(carry(symbols.product.polynomial), (one * other) ** 2)]
+        pairs += [(carry(symbols.determinant.polynomial), x) for order, x in judged.determinants if order == 4]
+        return all((a - b).contains(0) for a, b in pairs)

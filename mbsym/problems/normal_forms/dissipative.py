@@ -1,8 +1,8 @@
 """Equilibria of systems with applied forces: the roots exactly, then the critical cases on the centre manifold.
 
 The state is x without the cyclic coordinates, and all velocities.  With det(lambda - A) = E(lambda^2) + lambda
-O(lambda^2) the roots +-i w are those of the common factor of E and O: exact arithmetic tells them, and their number, from
-roots near the axis.
+O(lambda^2) the roots +-i w are those of the common factor of E and O: exact arithmetic tells them, and their number,
+from roots near the axis.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from mbsym.problems.normal_forms.centre import Reduced, matrix_of, on_pair, on_z
 from mbsym.problems.normal_forms.exact import (
     common_factor,
     in_ring,
-
     occurring_parameters,
     over_tower,
     rational_values,
@@ -50,8 +49,9 @@ def judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     tower = Tower()
     field, positions = state_field(over_tower(found, tower, exact))
-    coefficients = [tower.rational(x) for x in faddeev(matrix_of(field), tower.zero, tower.one)[1]]
-    if any(x is None for x in coefficients):
+    whole_ones = faddeev(matrix_of(field), tower.zero, tower.one)[1]
+    coefficients = [x for one in whole_ones if (x := tower.rational(one)) is not None]
+    if len(coefficients) < len(whole_ones):
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     whole = fmpq_poly(coefficients)
     zeros = next(k for k in range(whole.degree() + 1) if whole[k] != 0)
@@ -156,5 +156,3 @@ def focus(found: Expansion) -> Focus | None:
     coefficient, amplitude_of = _coefficient(tower, field, positions, factor[0])
     told = [Formula(ring, in_ring(tower, ring, x)) for x in (factor[0], coefficient)]
     return Focus(told[0], told[1], amplitude_of)
-
-

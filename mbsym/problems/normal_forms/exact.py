@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from math import gcd, lcm
 from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
@@ -85,8 +86,8 @@ class Resonant:
 def _rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:
     """w^2 for all roots, if all of them are rational numbers."""
     assert tower is not None
-    numbers = [tower.rational(x) for x in coefficients]
-    if any(x is None for x in numbers):
+    numbers = [x for one in coefficients if (x := tower.rational(one)) is not None]
+    if len(numbers) < len(coefficients):
         return None
     _, factors = fmpq_poly(numbers).factor()
     if any(factor.degree() != 1 for factor, _ in factors):
@@ -160,3 +161,18 @@ def known(compute: Any) -> tuple[Any, str]:
         return None, "a divisor vanishes for all parameters"
     except (Failure, NoClosedForm) as reason:
         return None, str(reason)
+
+
+def primitive(tower: Tower, x: Element) -> Element:
+    """The numerator, with whole coefficients that have no common divisor; repeated factors once."""
+    if x.is_zero():
+        return x
+    _, factors = x.top.factor()
+    product = tower.one.top
+    for factor, _ in factors:
+        product = product * factor
+    common, denominator = 0, 1
+    for coefficient in product.coeffs():
+        common = gcd(common, int(coefficient.p))
+        denominator = lcm(denominator, int(coefficient.q))
+    return tower.element(Element(tower, tower.reduced(product * fmpq(denominator, common)), tower.one.bottom))

@@ -11,7 +11,7 @@ and the field x' = v, v' = M(x, v)^-1 (dL/dx + Q - (d^2 L/dv dx) v), both by ser
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,7 +38,7 @@ class NotExpanded(Failure):
 class Expansion:
     """``lagrangian`` holds the terms of degree 1, 2, ... in x_i (i) and v_i (n + i); ``forces`` those of each Q_i.
 
-    ``cyclic`` are the places of coordinates that occur in none of them and on which no force acts.
+    ``cyclic`` are the places of the coordinates that are left out.
     """
 
     scene: Scene
@@ -48,14 +48,11 @@ class Expansion:
     forces: tuple[tuple[Terms, ...], ...]
     cyclic: tuple[int, ...]
 
-    @property
-    def conservative(self) -> bool:
-        """No applied force is left beside the force function."""
-        return not any(part for one in self.forces for part in one)
 
-
-def expansion(scene: Scene, whole: Any, equilibrium: Equilibrium | None, order: int) -> Expansion:
-    """The system ``whole`` about its motion; ``scene`` is over the ring.
+def expansion(
+    scene: Scene, whole: Any, equilibrium: Equilibrium | None, order: int, ignored: Collection[str]
+) -> Expansion:
+    """The system ``whole`` about its motion; ``scene`` is over the ring.  The coordinates ``ignored`` are cyclic.
 
     Raises NotExpanded where a coefficient varies with time, NoClosedForm where coefficients outgrow the budget.
     """
@@ -81,10 +78,7 @@ def expansion(scene: Scene, whole: Any, equilibrium: Equilibrium | None, order: 
     lagrangian = parts(kinetic_energy(expanded) + force_function(expanded))
     applied = applied_forces(expanded)
     forces = tuple(parts(applied[name]) for name in scene.system.coordinates)
-    felt = {i for part in lagrangian for key in part for i in key}
-    felt |= {i for one in forces for part in one for key in part for i in key}
-    pushed = {i for i, one in enumerate(forces) if any(one)}
-    cyclic = tuple(i for i in range(n) if i not in felt and i not in pushed)
+    cyclic = tuple(i for i, name in enumerate(scene.system.coordinates) if name in ignored)
     return Expansion(scene, scene.system.coordinates, order, lagrangian, forces, cyclic)
 
 

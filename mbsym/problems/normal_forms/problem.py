@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from typing import Any
 
@@ -24,6 +24,7 @@ from mbsym.problems.normal_forms.exact import (
     known,
     occurring_parameters,
     over_tower,
+    primitive,
     rational_values,
     resonance,
 )
@@ -38,22 +39,28 @@ ORDER = 6
 
 
 def normal_forms(
-    scene: Scene, whole: Any, equilibrium: Equilibrium | None, values: Mapping[str, Any] | None
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium | None,
+    values: Mapping[str, Any] | None,
+    conservative: bool,
+    cyclic: Collection[str],
 ) -> NormalForms:
     """What terms of higher order decide of the motion of the system ``whole``; ``scene`` is over the ring.
 
+    ``conservative``: no force is applied beside the force function; ``cyclic`` coordinates are in neither.
     ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
     NoClosedForm.
     """
 
     @cache
     def to(order: int) -> Expansion:
-        return expansion(scene, whole, equilibrium, order)
+        return expansion(scene, whole, equilibrium, order, cyclic)
 
     found = to(4)
     coordinates = tuple(name for i, name in enumerate(found.coordinates) if i not in found.cyclic)
     with ctx.workprec(PRECISION):
-        if found.conservative:
+        if conservative:
             at_values = None if values is None else at_numbers(to, values, None)
             symbols: Any = lambda: _in_symbols(found)  # noqa: E731
         else:
@@ -63,7 +70,7 @@ def normal_forms(
     return NormalForms(
         coordinates=coordinates,
         cyclic=tuple(found.coordinates[i] for i in found.cyclic),
-        conservative=found.conservative,
+        conservative=conservative,
         order=ORDER,
         at_values=at_values,
         in_symbols=in_symbols,
@@ -134,6 +141,7 @@ def twist(found: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower
     named = {"trace": trace, "product": constant, "discriminant": discriminant, "determinant": determinant}
     resonances = {vector: resonance(tower, (constant, trace), vector) for vector in ((1, 2), (1, 3))}
     told = {name: Formula(ring, in_ring(tower, ring, x)) for name, x in named.items()}
+    told["zero"] = Formula(ring, in_ring(tower, ring, primitive(tower, determinant)))
     result = InSymbols(
         **told, resonances=tuple((k, Formula(ring, in_ring(tower, ring, x))) for k, x in resonances.items())
     )

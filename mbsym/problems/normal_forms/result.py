@@ -8,6 +8,7 @@ from typing import Any
 
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
+from mbsym.problems.stability.word import Word
 
 
 class Outcome(StrEnum):
@@ -107,15 +108,16 @@ class InSymbols(Shown):
     """Of two degrees of freedom, for almost all parameters.
 
     ``trace`` and ``product`` are w1^2 + w2^2 and w1^2 w2^2; where both and ``discriminant`` (trace^2 - 4 product) are
-    positive the first approximation is stable.  ``determinant`` is D_4; where it vanishes order 6 has to be looked at.
+    positive the first approximation is stable.  ``determinant`` is D_4, ``zero`` its
+    numerator: where that vanishes order 6 has to be looked at.
     ``resonances`` vanish where w1 : w2 or w2 : w1 is that of the vector, orders 3 and 4.
-    ``definite``: where every formula is positive H_2 is definite and nothing else is needed.
     """
 
     trace: Formula
     product: Formula
     discriminant: Formula
     determinant: Formula
+    zero: Formula
     resonances: tuple[tuple[tuple[int, int], Formula], ...]
 
 
@@ -142,6 +144,8 @@ class NormalForms(Shown):
     at_values: Judged | None
     in_symbols: InSymbols | Focus | None
     no_symbols: str = ""
+    #: What problem 6 says at the same values.
+    first: Word | None = None
 
     @property
     def terms(self) -> int:

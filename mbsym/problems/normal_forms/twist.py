@@ -7,7 +7,7 @@ Frequencies are enclosed; whatever is said to be different from zero is so by it
 * two degrees of freedom, no resonance up to order 4, D_4 = H_4(Omega_2, -Omega_1) != 0: stable (Arnold-Moser); where
   D_4 is not told from zero, no resonance up to order 6 and D_6 != 0: stable, whether D_4 vanishes or not;
 * |Omega_1| = 2 |Omega_2|: unstable if the resonant term of H_3 is not zero (Markeev);
-* |Omega_1| = 3 |Omega_2|: with the resonant part h xi^k + h' eta^k of H_4, k = (1, 3), on the level Omega.I = 0, I = t k
+* |Omega_1| = 3 |Omega_2|: with the resonant part h xi^k + h' eta^k of H_4, k = (1, 3), for Omega.I = 0, I = t k
 
       H_4 = t^2 (H_4(k) + 2 sqrt(h h' 27) cos psi)
 
@@ -15,9 +15,9 @@ Frequencies are enclosed; whatever is said to be different from zero is so by it
 * more degrees of freedom, no resonance up to order 4: if H_4 does not vanish in the cone Omega.I = 0, I >= 0: formally
   stable (Bruno); if det d^2 H_4/dI^2 or the determinant bordered by Omega is not zero: stable for most initial states.
 
-Sources: V. I. Arnold, Russ. Math. Surveys 18 (1963) 85; J. Moser, Lectures on Hamiltonian Systems (1968); A. P. Markeev,
-J. Appl. Math. Mech. 32 (1968) 766; A. D. Bruno, Math. Notes 1 (1967) 216; K. R. Meyer & D. S. Schmidt, J. Diff. Eq. 62
-(1986) 222 (order 6).
+Sources: V. I. Arnold, Russ. Math. Surveys 18 (1963) 85; J. Moser, Lectures on Hamiltonian Systems (1968);
+A. P. Markeev, J. Appl. Math. Mech. 32 (1968) 766; A. D. Bruno, Math. Notes 1 (1967) 216; K. R. Meyer
+& D. S. Schmidt, J. Diff. Eq. 62 (1986) 222 (order 6).
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 
     if isinstance(found, Judged):
         return found
     omega = signed(quadratic, found)
-    known = {"frequencies": tuple(omega)}
+    known: dict[str, Any] = {"frequencies": tuple(omega)}
     if all(x > 0 for x in omega) or all(x < 0 for x in omega):
         return Judged(Outcome.STABLE, Theorem.DEFINITE, **known)
     exact: list[Resonance] = []
@@ -251,9 +251,7 @@ def _many(
 
 
 def _matrix(quadratic: dict[tuple[int, int], arb], n: int) -> list[list[arb]]:
-    return [
-        [quadratic.get((min(i, j), max(i, j)), arb(0)) / (1 if i == j else 2) for j in range(n)] for i in range(n)
-    ]
+    return [[quadratic.get((min(i, j), max(i, j)), arb(0)) / (1 if i == j else 2) for j in range(n)] for i in range(n)]
 
 
 def _nonzero_in_cone(quadratic: dict[tuple[int, int], arb], omega: Sequence[arb]) -> bool:

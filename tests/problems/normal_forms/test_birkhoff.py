@@ -23,7 +23,7 @@ SYSTEMS = Path(__file__).parents[3] / "systems"
 def _exactly(order: int, mu: fmpq | None) -> tuple[Tower, Truncated, NormalForm]:
     """The triangular point at a rational mu, or in mu."""
     analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
-    found = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order)
+    found = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order, ())
     tower = Tower(("mu",))
     values = {"mu": tower.parameter("mu") if mu is None else tower.element(mu), **dict.fromkeys("anm", tower.one)}
     carry = Carrier(found.scene.ring, tower, values)

@@ -1,0 +1,74 @@
+"""Problem 11 in the pipeline: of which systems it can be, and what it is told of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.problems import stability
+from mbsym.problems.checks import FAILED, NUMERICAL, Check
+from mbsym.problems.stability.word import Word
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.normal_forms import NormalForms
+
+
+def normal_forms_of(analysis: Analysis) -> NormalForms:
+    """What terms of higher order decide; with numbers where the description gives all of them."""
+    from mbsym.problems.normal_forms import problem  # few ask for it
+    from mbsym.problems.stabilisation.problem import on_motion
+
+    found, scene = analysis.equilibrium, analysis.parameters_scene
+    if len(found.conditions) > len(found.solved):
+        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
+        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
+    values = stability.parameter_values(scene, found)
+    if values is not None and not on_motion(scene, found, values):
+        values = None
+    conservative, cyclic = ignorable(analysis)
+    result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)
+    judged = analysis.optional("stability")
+    first = None if judged is None or judged.numerical is None else judged.numerical.word
+    return replace(result, first=first)
+
+
+def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
+    """Whether no force is applied beside the force function, in all orders; the cyclic coordinates, on which none acts.
+
+    Both of the nonlinear system: what only terms of high order hold is not overlooked.
+    """
+    energies = analysis.energy
+    applied = generalized_forces(analysis.held_scene)
+    ring, names = analysis.ring, analysis.system.coordinates
+    conservative = all(ring.vanishes(applied[name]) for name in names)
+    cyclic = [name for name in names if name in energies.cyclic and ring.vanishes(applied[name])]
+    held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
+    return conservative, frozenset(cyclic) - held
+
+
+#: What problem 6 and problem 11 cannot both say of one motion.
+_STABLE = ("asymptotically stable", "stable", "formally stable")
+
+
+def check(analysis: Analysis) -> Check | None:
+    """Only where somebody has asked for it: D_4 in symbols against that of enclosures, and problem 6's verdict."""
+    found = analysis.optional("normal_forms") if "normal_forms" in analysis.derived else None
+    if found is None or found.at_values is None:
+        return None
+    from mbsym.problems.normal_forms.checks import symbols_agree
+
+    if analysis.speed_form is not None:
+        analysis = analysis.in_coordinates
+    routes = ("normal form at the given values", "its formula in parameters, and problem 6")
+    word, said = found.first, found.at_values.outcome.value
+    if word is not None and ((word is Word.UNSTABLE and said in _STABLE) or (word.stable and said == "unstable")):
+        return Check("normal forms", *routes, FAILED, f"problem 6 says {word.value}, terms of higher order {said}")
+    values = stability.parameter_values(analysis.parameters_scene, analysis.equilibrium)
+    agree = symbols_agree(found, values or {})
+    if agree is None:
+        return None
+    return Check("normal forms", *routes, NUMERICAL if agree else FAILED, "D4 in both" if agree else "D4 differs")

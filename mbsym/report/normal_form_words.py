@@ -1,0 +1,250 @@
+"""What is said of problem 11: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb
+
+from mbsym.formulas.formula import Formula
+from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
+from mbsym.report.said import Said
+
+#: Digits of enclosed numbers.
+DIGITS = 10
+
+#: Why nothing is decided.
+REASONS = {
+    Why.ZERO_ROOT: "A root is zero, or is not told from zero: normal forms of that case are not formed.",
+    Why.TWO_ZERO_ROOTS: "Two or more roots are zero, the others are to the left: terms of higher order on a centre "
+    "manifold of that dimension decide, which are not formed.",
+    Why.EQUAL_FREQUENCIES: "Frequencies coincide, or are not told apart: normal forms of that case are not formed.",
+    Why.RESONANCE_OPEN: "A resonance up to order 4 is neither proved nor excluded.",
+    Why.RESONANCE: "A resonance holds that the theorems for frequencies without resonances exclude.",
+    Why.RESONANT_TERM_OPEN: "The resonant term of third order is not told from zero.",
+    Why.EQUALITY: "The two sides of Markeev's inequality are not told apart.",
+    Why.DETERMINANT_OPEN: "The determinants D4 and D6 are not told from zero, or resonances of order 5 or 6 are not "
+    "excluded.",
+    Why.FORM_OPEN: "H4 has a zero in the cone of actions Omega.I = 0, or this is not excluded.",
+    Why.COEFFICIENT_OPEN: "The coefficients of second and third order on the centre manifold vanish, or are not told "
+    "from zero: terms of higher order decide.",
+    Why.MORE_PAIRS: "More than one pair of roots is imaginary, and there are applied forces: not decided.",
+    Why.MIXED_ROOTS: "Zero roots and imaginary ones occur together: not decided.",
+    Why.IRRATIONAL: "With applied forces roots on the imaginary axis are proved where all coefficients of the "
+    "characteristic polynomial are rational numbers: not decided.",
+}
+
+#: What each theorem asks, as far as it was shown.
+THEOREMS = {
+    Theorem.DEFINITE: "The quadratic part of the Hamiltonian is definite: the motion is stable (Dirichlet).",
+    Theorem.ARNOLD_MOSER: "No resonance up to order 4 holds and D4 is not zero: the motion is stable (Arnold-Moser).",
+    Theorem.ARNOLD_MOSER_6: "No resonance up to order 6 holds and D6 is not zero: the motion is stable, whether D4 is "
+    "zero or not (Arnold-Moser, order 6).",
+    Theorem.THIRD: "The resonant term of third order is not zero: the motion is unstable (Markeev).",
+    Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
+    "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
+    Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori surround the motion, "
+    "it is stable for most initial states (Arnold); stability in Lyapunov's sense is not proved.",
+}
+
+
+@dataclass(frozen=True)
+class Medium:
+    """How a medium writes names, a formula, mathematics that is given plainly and in LaTeX, a word."""
+
+    names: Callable[[tuple[str, ...]], str]
+    formula: Callable[[Formula], str]
+    math: Callable[[str, str], str]
+    word: Callable[[str], str]
+
+
+def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
+    """Everything, in order."""
+    if found.cyclic:
+        names: dict[str, object] = {"names": write.names(found.cyclic)}
+        if found.conservative:
+            yield (
+                "What is said is about the system without its cyclic coordinates [[names]], whose momenta keep their "
+                "unperturbed values.",
+                names,
+            )
+        else:
+            yield "What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names
+    if found.first is not None:
+        yield "At the given values problem 6 says: [[word]].", {"word": write.word(found.first.value)}
+    if found.at_values is not None:
+        yield from _judged(found.at_values, found, write)
+    if isinstance(found.in_symbols, InSymbols):
+        yield from _in_symbols(found.in_symbols, write)
+    elif isinstance(found.in_symbols, Focus):
+        yield from _focus(found.in_symbols, write)
+    elif found.no_symbols:
+        yield "There is no formula in parameters: [[why]].", {"why": write.word(found.no_symbols)}
+
+
+def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
+    if found.frequencies and whole.conservative:
+        values = ", ".join(map(decimal, found.frequencies))
+        yield (
+            "Frequencies with the signs of their energies: [[values]] (enclosed).",
+            {"values": write.math(values, values.replace("e", "\\mathrm{e}"))},
+        )
+    for one in found.resonances:
+        plain, tex = _relation(one.vector)
+        yield (
+            "A resonance of order [[order]] holds exactly: [[relation]].",
+            {
+                "order": write.math(str(one.order), str(one.order)),
+                "relation": write.math(plain, tex),
+            },
+        )
+    if found.quadratic:
+        plain, tex = _form(found.quadratic)
+        yield "Normal form of fourth order in the actions: [[form]].", {"form": write.math(plain, tex)}
+    for order, value in found.determinants:
+        text = decimal(value)
+        yield (
+            "[[name]] = [[value]].",
+            {
+                "name": write.math(f"D{order}", f"D_{order}"),
+                "value": write.math(text, _tex(text)),
+            },
+        )
+    if found.theorem is Theorem.FIRST:
+        yield "The first approximation decides: the motion is [[word]].", {"word": write.word(found.outcome.value)}
+    elif found.theorem is Theorem.FOURTH and found.sides is not None:
+        left, right = map(decimal, found.sides)
+        greater = found.outcome is Outcome.STABLE
+        yield (
+            "Markeev's inequality of the resonance of fourth order: [[left]] is greater than [[right]], the motion is "
+            "stable."
+            if greater
+            else "Markeev's inequality of the resonance of fourth order: [[left]] is less than [[right]], the motion "
+            "is unstable.",
+            {"left": write.math(left, _tex(left)), "right": write.math(right, _tex(right))},
+        )
+    elif found.theorem is Theorem.REDUCTION:
+        yield from _centre(found, write)
+    elif found.theorem in THEOREMS:
+        yield THEOREMS[found.theorem], {}
+    if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
+        yield REASONS[found.why], {}
+
+
+def _centre(found: Judged, write: Medium) -> Iterator[Said]:
+    a = decimal(found.coefficient)
+    if not found.frequencies:
+        unstable = found.outcome is Outcome.UNSTABLE
+        yield (
+            "One root is zero, the others are to the left: the first coefficient on the centre manifold that is not "
+            "zero makes the motion unstable."
+            if unstable
+            else "One root is zero, the others are to the left: on the centre manifold the coefficient of second order "
+            "is zero and that of third order negative, the motion is asymptotically stable.",
+            {},
+        )
+        return
+    w = decimal(found.frequencies[0])
+    soft = found.outcome is Outcome.ASYMPTOTIC
+    yield (
+        "One pair of roots +-i w with w = [[w]], the others to the left; on the centre manifold r' = a r^3 with "
+        "a = [[a]] for the amplitude r of [[name]]: asymptotically stable, a soft border."
+        if soft
+        else "One pair of roots +-i w with w = [[w]], the others to the left; on the centre manifold r' = a r^3 with "
+        "a = [[a]] for the amplitude r of [[name]]: unstable, a hard border.",
+        {
+            "w": write.math(w, _tex(w)),
+            "a": write.math(a, _tex(a)),
+            "name": write.names((found.amplitude_of,)),
+        },
+    )
+
+
+def _in_symbols(found: InSymbols, write: Medium) -> Iterator[Said]:
+    yield (
+        "In parameters, for the frequencies w1 and w2: the sum of their squares is [[trace]], the product of these "
+        "[[product]], the discriminant [[discriminant]].",
+        {
+            "trace": write.formula(found.trace),
+            "product": write.formula(found.product),
+            "discriminant": write.formula(found.discriminant),
+        },
+    )
+    yield (
+        "D4 = [[determinant]]; it vanishes where [[zero]] = 0.",
+        {"determinant": write.formula(found.determinant), "zero": write.formula(found.zero)},
+    )
+    for vector, formula in found.resonances:
+        if not formula.is_zero:
+            yield (
+                "The resonance [[ratio]] holds where this vanishes: [[formula]].",
+                {
+                    "ratio": write.math(f"{vector[0]}:{vector[1]}", f"{vector[0]}:{vector[1]}"),
+                    "formula": write.formula(formula),
+                },
+            )
+    yield (
+        "Where sum, product and discriminant are positive the motion is stable (Arnold-Moser) but for parameters at "
+        "which D4 or one of these resonances vanishes; what holds there is told at numbers.",
+        {},
+    )
+
+
+def _focus(found: Focus, write: Medium) -> Iterator[Said]:
+    yield (
+        "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold r' = a r^3 + ... "
+        "for the amplitude r of [[name]], a = [[a]].  Where w^2 > 0 and all other roots are to the left the motion is "
+        "asymptotically stable for a < 0 and unstable for a > 0.",
+        {
+            "square": write.formula(found.square),
+            "a": write.formula(found.coefficient),
+            "name": write.names((found.amplitude_of,)),
+        },
+    )
+
+
+def _relation(vector: Sequence[int]) -> tuple[str, str]:
+    """``w1 = 2 w2``, plainly and in LaTeX."""
+    sides: tuple[list[tuple[str, str]], list[tuple[str, str]]] = ([], [])
+    for place, k in enumerate(vector, start=1):
+        if k:
+            count = f"{abs(k)} " if abs(k) > 1 else ""
+            sides[k < 0].append((f"{count}w{place}", f"{count}\\omega_{place}"))
+    return tuple(  # type: ignore[return-value]
+        " = ".join(" + ".join(one[form] for one in side) or "0" for side in sides) for form in (0, 1)
+    )
+
+
+def _form(quadratic: Sequence[tuple[tuple[int, int], Any]]) -> tuple[str, str]:
+    plain, tex = "", ""
+    for (i, j), value in quadratic:
+        text = decimal(value)
+        sign = " - " if text.startswith("-") else " + " if plain else ""
+        text = text.lstrip("-")
+        power = (f"I{i + 1}^2", f"I_{i + 1}^2") if i == j else (f"I{i + 1} I{j + 1}", f"I_{i + 1} I_{j + 1}")
+        plain += f"{sign}{text} {power[0]}"
+        tex += f"{sign}{_tex(text)} \\penalty0 {power[1]}"
+    return plain.strip(), tex.strip()
+
+
+def decimal(x: Any) -> str:
+    """A number in decimals: as many digits as its enclosure gives, at most ``DIGITS``; an exact one as it is."""
+    if isinstance(x, arb):
+        if x.contains(0):
+            return f"0 within {float(x.rad() + abs(x.mid())):.1e}"
+        return f"{float(x):.{DIGITS}g}" if x.rel_accuracy_bits() > 34 else str(x.str(DIGITS, radius=False))
+    exact = Fraction(int(x.p), int(x.q)) if hasattr(x, "p") else Fraction(x)
+    text = str(exact)
+    return text if len(text) <= 16 else f"{float(exact):.{DIGITS}g}"
+
+
+def _tex(text: str) -> str:
+    if " within " in text:
+        return text.replace(" within ", " \\pm ")
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        return f"{mantissa} \\cdot 10^{{{int(exponent)}}}"
+    return text

@@ -1,0 +1,86 @@
+"""Problem 11, terms of higher order: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from flint import arb
+
+from mbsym.formulas.formula import Formula
+from mbsym.model.system import System
+from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
+from mbsym.report.normal_form_words import Medium, sentences
+from mbsym.report.plain import LONGEST, Write
+from mbsym.report.said import filled
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: NormalForms, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    symbols = found.in_symbols
+    return {
+        "coordinates": list(found.coordinates),
+        "cyclic": list(found.cyclic),
+        "hamiltonian": found.conservative,
+        "first_approximation": None if found.first is None else found.first.value,
+        "at_values": None if found.at_values is None else _judged(found.at_values),
+        "two_frequencies": _in_symbols(symbols, write) if isinstance(symbols, InSymbols) else None,
+        "pair": _focus(symbols, write) if isinstance(symbols, Focus) else None,
+        "no_formula": found.no_symbols,
+    }
+
+
+def _judged(found: Judged) -> dict[str, Any]:
+    return {
+        "verdict": found.outcome.value,
+        "theorem": found.theorem.value,
+        "reason": found.why.value,
+        "frequencies": list(map(enclosure, found.frequencies)),
+        "actions": [
+            {"first": i + 1, "second": j + 1, "coefficient": enclosure(value)} for (i, j), value in found.quadratic
+        ],
+        "determinants": [{"order": order, "value": enclosure(value)} for order, value in found.determinants],
+        "resonances": [list(one.vector) for one in found.resonances],
+        "coefficient": None if found.coefficient is None else enclosure(found.coefficient),
+        "amplitude_of": found.amplitude_of,
+    }
+
+
+def _in_symbols(found: InSymbols, write: Write) -> dict[str, Any]:
+    return {
+        "sum_of_squares": write(found.trace),
+        "product_of_squares": write(found.product),
+        "discriminant": write(found.discriminant),
+        "D4": write(found.determinant),
+        "D4_vanishes": write(found.zero),
+        "resonances": [{"ratio": list(vector), "vanishes": write(x)} for vector, x in found.resonances],
+    }
+
+
+def _focus(found: Focus, write: Write) -> dict[str, Any]:
+    return {
+        "frequency_squared": write(found.square),
+        "coefficient": write(found.coefficient),
+        "amplitude_of": found.amplitude_of,
+    }
+
+
+def enclosure(x: Any) -> str:
+    """A number: exactly where it is rational, else its enclosure, ``[mid +/- rad]``."""
+    return str(x.str(20)) if isinstance(x, arb) else str(x)
+
+
+def lines(found: NormalForms, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    yield from map(filled, sentences(found, PLAIN))
+
+
+def _short(x: Formula) -> str:
+    text = str(x)
+    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
+
+
+PLAIN = Medium(names=", ".join, formula=_short, math=lambda plain, _: plain, word=str)

@@ -1,0 +1,203 @@
+"""What problem 11 says of descriptions and of normal forms made by hand; and where it has to say nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from flint import acb, arb, ctx
+
+import mbsym
+from mbsym.algebra.truncated import Space, Truncated
+from mbsym.analysis import higher
+from mbsym.analysis.stages import Unavailable
+from mbsym.problems.normal_forms import Focus, Outcome, Theorem, Why
+from mbsym.problems.normal_forms.twist import judged, vectors
+
+SYSTEMS = Path(__file__).parents[3] / "systems"
+
+ONE_COORDINATE = """
+mbsym: 1
+name: one coordinate
+parameters: {{w: {{sign: positive}}}}
+bodies:
+  - {{name: slider, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}}
+loads:
+  - {{potential: {potential}}}
+  - {{generalized force: {{x: {force}}}}}
+motion: {{x: 0}}
+values: {{w: 2}}
+"""
+
+
+def one_coordinate(force: str, potential: str = "w**2*x**2/2") -> mbsym.Analysis:
+    return mbsym.loads(ONE_COORDINATE.format(force=force, potential=potential))
+
+
+# --- Hamiltonians by hand: H = Omega_1 I_1 + Omega_2 I_2 + ..., I = (x^2 + p^2)/2 ---
+
+
+def judged_by_hand(omega: tuple[int, int], further: str) -> tuple[Outcome, Theorem]:
+    """``further``: terms in x, y, px, py, i, j (the actions)."""
+
+    def lowered(order: int) -> Truncated:
+        space = Space(4, order, acb(0), acb(1))
+        x, y, px, py = map(space.variable, range(4))
+        half = acb("0.5")
+        i, j = (x * x + px * px).scaled(half), (y * y + py * py).scaled(half)
+        names = {"x": x, "y": y, "px": px, "py": py, "i": i, "j": j, "c": lambda a, b: a.scaled(acb(b))}
+        return i.scaled(acb(omega[0])) + j.scaled(acb(omega[1])) + eval(further, names)
+
+    def resonant(vector: tuple[int, ...], found: object) -> bool:
+        return sum(k * abs(w) for k, w in zip(vector, sorted(omega, key=abs, reverse=True), strict=True)) == 0
+
+    with ctx.workprec(200):
+        found = judged(lowered, resonant)
+    return found.outcome, found.theorem
+
+
+@pytest.mark.parametrize(
+    ("omega", "further", "outcome", "theorem"),
+    [
+        ((1, 3), "i*i", Outcome.STABLE, Theorem.DEFINITE),
+        # H_4(Omega_2, -Omega_1) = (7, 5): a 49 + b 35 + c 25
+        ((5, -7), "i*i", Outcome.STABLE, Theorem.ARNOLD_MOSER),
+        ((5, -7), "c(i*i, 25) - c(j*j, 49)", Outcome.UNDECIDED, Theorem.NONE),
+        ((5, -7), "c(i*i, 25) - c(j*j, 49) + i*i*i", Outcome.STABLE, Theorem.ARNOLD_MOSER_6),
+        # the cubic term x y^2 of frequencies 2 and -1 is resonant, x^3 is not
+        ((2, -1), "x*y*y", Outcome.UNSTABLE, Theorem.THIRD),
+        ((2, -1), "i*i", Outcome.STABLE, Theorem.ARNOLD_MOSER),
+        # x y^3: with x = sqrt(2 I_1) cos a, y = sqrt(2 I_2) cos b its resonant part is sqrt(I_1 I_2^3)/2 cos(a + 3 b):
+        # on I = t (1, 3) it is t^2 sqrt(27)/2 = 2.598 t^2 cos psi against A t^2 of A I_1^2
+        ((3, -1), "x*y*y*y + c(i*i, 2.59)", Outcome.UNSTABLE, Theorem.FOURTH),
+        ((3, -1), "x*y*y*y + c(i*i, 2.61)", Outcome.STABLE, Theorem.FOURTH),
+        ((3, -1), "x*y*y*y + c(i*i, -2.61)", Outcome.STABLE, Theorem.FOURTH),
+    ],
+)
+def test_theorems_of_two_frequencies(omega: tuple[int, int], further: str, outcome: Outcome, theorem: Theorem) -> None:
+    assert judged_by_hand(omega, further) == (outcome, theorem)
+
+
+def test_vectors_are_primitive_and_told_once() -> None:
+    assert set(vectors(2, 3)) == {(1, 2), (2, 1), (1, -2), (2, -1)}
+
+
+# --- descriptions ---
+
+
+def test_triangular_points() -> None:
+    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    found = analysis.normal_forms
+    assert (found.at_values.outcome, found.at_values.theorem) == (Outcome.STABLE, Theorem.ARNOLD_MOSER)
+    assert found.first.value == "gyroscopically stabilised only"
+    check = analysis.check("normal forms")
+    assert check is not None
+    assert not check.failed
+
+
+def test_a_wrong_formula_is_found() -> None:
+    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    with analysis.unvouched():
+        found = analysis.normal_forms
+    wrong = replace(found, in_symbols=replace(found.in_symbols, determinant=found.in_symbols.trace))
+    analysis._stages["normal_forms"] = replace(analysis._stages["normal_forms"], value=wrong)
+    check = higher.check(analysis)
+    assert check is not None
+    assert check.failed
+    with pytest.raises(Unavailable, match="normal forms"):
+        analysis.normal_forms  # noqa: B018
+
+
+def test_the_sleeping_top_by_arnold_and_moser() -> None:
+    """Omega_1 = (C W + sqrt(C^2 W^2 - 4 A m g l))/(2 A), Omega_2 = (C W - sqrt(...))/(2 A), the latter's energy < 0.
+
+    With symmetry nothing resonates: cubic terms vanish, and H_4 is a function of the actions.
+    """
+    found = mbsym.load(SYSTEMS / "heavy-top.yaml").normal_forms
+    assert found.cyclic == ("phi",)
+    assert found.at_values.theorem is Theorem.ARNOLD_MOSER
+    one, other = found.at_values.frequencies
+    assert one > 0
+    assert other < 0
+
+
+@pytest.mark.parametrize(
+    ("force", "coefficient"), [("-x_dot**3", "-3*w**2/8"), ("x_dot**3", "3*w**2/8"), ("-x**2*x_dot", "-1/8")]
+)
+def test_guckenheimer_and_holmes_from_descriptions(force: str, coefficient: str) -> None:
+    """(3.4.11): x'' + x'^3 + w^2 x, the other sign, x'' + x^2 x' + w^2 x."""
+    analysis = one_coordinate(force)
+    found = analysis.normal_forms
+    assert isinstance(found.in_symbols, Focus)
+    assert str(found.in_symbols.coefficient) == coefficient
+    soft = coefficient.startswith("-")
+    assert found.at_values.outcome is (Outcome.ASYMPTOTIC if soft else Outcome.UNSTABLE)
+    assert str(found.at_values.coefficient) == {"-3*w**2/8": "-3/2", "3*w**2/8": "3/2", "-1/8": "-1/8"}[coefficient]
+
+
+def test_duffing_terms_count_beside_van_der_pol() -> None:
+    """x'' + w^2 x + x^2 + x x' = 0:  a = 1/(8 w^2), by hand from (3.4.11).
+
+    With X = x, Y = -x'/w:  X' = -w Y, Y' = w X + g, g = (X^2 - w X Y)/w;  a = -g_XY (g_XX + g_YY)/(16 w), in which
+    g_XY = -1, g_XX = 2/w, g_YY = 0.
+    """
+    found = one_coordinate("-x**2 - x*x_dot").normal_forms
+    assert str(found.at_values.coefficient) == "1/32"
+
+
+@pytest.mark.parametrize(
+    ("force", "potential", "why"),
+    [
+        ("x_dot**5", "w**2*x**2/2", Why.COEFFICIENT_OPEN),  # unstable, and terms up to third order do not see it
+        ("-x_dot**5", "w**2*x**2/2", Why.COEFFICIENT_OPEN),
+        ("0", "x**8", Why.ZERO_ROOT),  # x is not cyclic although terms up to sixth order do not hold it
+        ("-x_dot**3", "x**4", Why.TWO_ZERO_ROOTS),
+    ],
+)
+def test_what_higher_terms_than_these_decide_is_undecided(force: str, potential: str, why: Why) -> None:
+    found = one_coordinate(force, potential).normal_forms
+    assert (found.at_values.outcome, found.at_values.why) == (Outcome.UNDECIDED, why)
+    assert found.cyclic == ()
+
+
+@pytest.mark.parametrize(
+    ("force", "potential", "outcome"),
+    [
+        ("-x_dot", "x**4", Outcome.ASYMPTOTIC),
+        ("-x_dot", "-x**4", Outcome.UNSTABLE),
+        ("-x_dot", "x**3", Outcome.UNSTABLE),
+        ("-x_dot", "x**2", Outcome.ASYMPTOTIC),
+        ("x_dot", "x**2", Outcome.UNSTABLE),
+    ],
+)
+def test_one_zero_root(force: str, potential: str, outcome: Outcome) -> None:
+    """x'' + x' + V'(x) = 0: on the centre manifold x' = -V'(x) + ..."""
+    assert one_coordinate(force, potential).normal_forms.at_values.outcome is outcome
+
+
+def test_constraints_and_given_matrices_are_refused() -> None:
+    for name in ("rolling-disc", "triangular-points"):
+        with pytest.raises(Unavailable):
+            mbsym.load(SYSTEMS / f"{name}.yaml").normal_forms  # noqa: B018
+
+
+def test_more_degrees_of_freedom_are_never_said_to_be_stable_where_energy_is_not_definite() -> None:
+    """DeBra-Delp: a satellite that gyroscopic forces hold up, three frequencies of different signs."""
+    text = (SYSTEMS / "gravity-gradient.yaml").read_text(encoding="utf-8")
+    found = mbsym.loads(text).normal_forms
+    assert found.at_values.theorem is Theorem.DEFINITE
+
+
+def test_enclosures_decide_nothing_by_their_middle() -> None:
+    """Frequencies as wide balls: a ratio that may be 2 is no resonance and no absence of one."""
+
+    def lowered(order: int) -> Truncated:
+        space = Space(4, order, acb(0), acb(1))
+        x, y, px, py = map(space.variable, range(4))
+        wide = acb(arb(2, "1e-60")) / 2
+        return (x * x + px * px).scaled(wide) - (y * y + py * py).scaled(acb("0.5")) + x * y * y
+
+    with ctx.workprec(200):
+        found = judged(lowered, lambda k, w: None if (k[0] * w[0] + k[1] * w[1]).contains(0) else False)
+    assert (found.outcome, found.why) == (Outcome.UNDECIDED, Why.RESONANCE_OPEN)
