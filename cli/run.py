@@ -65,7 +65,8 @@ def command(
     For folders in folders, several at a time and only what changed, there is 'mbsym batch'.
 
     Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals,
-    8 stabilisation (where it is named, and of systems that are given by their matrices).
+    8 stabilisation (where it is named, and of systems that are given by their matrices),
+    11 terms of higher order (where it is named).
     One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
     failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
@@ -102,6 +103,7 @@ def command(
       mbsym run systems/satellite.yaml --animate 20
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/cart-pole.yaml --problems 5,6,8
+      mbsym run systems/three-bodies.yaml --problems 6,11
       mbsym run systems/ --brief
       mbsym run systems/satellite.yaml --detail full
       mbsym run systems/spherical-pendulum.yaml --form routh,hamilton

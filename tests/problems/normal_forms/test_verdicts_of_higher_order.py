@@ -10,7 +10,6 @@ from flint import acb, arb, ctx
 
 import mbsym
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.analysis import higher
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Focus, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged, vectors
@@ -102,7 +101,7 @@ def test_a_wrong_formula_is_found() -> None:
         found = analysis.normal_forms
     wrong = replace(found, in_symbols=replace(found.in_symbols, determinant=found.in_symbols.trace))
     analysis._stages["normal_forms"] = replace(analysis._stages["normal_forms"], value=wrong)
-    check = higher.check(analysis)
+    check = analysis.check("normal forms")
     assert check is not None
     assert check.failed
     with pytest.raises(Unavailable, match="normal forms"):
