@@ -263,34 +263,41 @@ def features(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
 
 
 def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
-    """The moment that three angles stand for, in the axes of the body and in those of the previous one.
+    """The components of ``moment_components`` that there are, in the axes of the body and in those of the previous one.
+
+    They vanish with f where the angles are regular: they say nothing that f does not say, only more shortly.
+    """
+    return tuple(x for part in moment_components(found, joint) for x in part if x is not None)
+
+
+def moment_components(found: Rest, joint: Joint) -> tuple[tuple[Polynomial | None, ...], ...]:
+    """The moment that three angles stand for: in the axes of the body, and in those of the previous one.
 
     With the unit vectors w_i of the turns,  f_i = w_i . tau,  so
     tau = [f1 (w2 x w3) + f2 (w3 x w1) + f3 (w1 x w2)] / w1.(w2 x w3),
-    and f and tau vanish together where the angles are regular.  Components for which the division does not come out are
-    left out; they say nothing that f does not say, only more shortly.  In axes that turn with a free angle the
-    components would contain it: they are left out, too.
+    and f and tau vanish together where the angles are regular.  A component for which the division does not come out is
+    None.  In axes that turn with a free angle the components would contain it: there are none in those.
     """
     ring, motion = found.ring, found.scene.motions[joint.body]
     turns, before = motion.turns, motion.body.attached_to
     if len(joint.angles) != 3 or len(turns) != 3:
-        return ()
+        return (), ()
     lengths = [ring.number(sign) for sign in joint.signs]
     after = [axis_vector(ring, x.axis, length, x.frame) for x, length in zip(turns, lengths, strict=True)]
     ahead = [v.in_parallel(turn.source) for v, turn in zip(after, turns, strict=True)]
     f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]
-    parts: list[Polynomial] = []
+    parts: list[tuple[Polynomial | None, ...]] = []
     for free, w in (
         (joint.last_free, [forward(turns[k + 1 :], axis, joint.body) for k, axis in enumerate(after)]),
         (joint.first_free, [back(turns[:k], axis, before) for k, axis in enumerate(ahead)]),
     ):
         if free:
+            parts.append(())
             continue
         total = zero_vector(ring, w[0].frame)
         for k in range(3):
             total = total + w[(k + 1) % 3].cross(w[(k + 2) % 3]) * f[k]
         volume = w[0].dot(w[1].cross(w[2]))
         square = ring.reduce(volume * volume)
-        quotients = [ring.quotient(ring.reduce(ring.times(x, volume)), square) for x in total]
-        parts += [x for x in quotients if x is not None]
+        parts.append(tuple(ring.quotient(ring.reduce(ring.times(x, volume)), square) for x in total))
     return tuple(parts)

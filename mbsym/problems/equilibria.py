@@ -7,9 +7,10 @@ at a constant rate; prescribed quantities go on running.  With  M(q) q'' = f(q, 
 
 Where the f_i are polynomials in sines, cosines and plain coordinates (roots and reciprocals included), the system with
 s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number
-field, every f_i is zero there exactly, and the list is complete.  Where they are not (an angle that also stands outside
-sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by bisection or
-from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the test exactly
+field, every f_i is zero there exactly, and the list is complete.  Where that outgrows its limits, direction cosines in
+place of angles may do (``problems.rest_oriented``).  Where the f_i are no such polynomials (an angle that also stands
+outside sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by
+bisection or from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the test exactly
 where it can be guessed (zero, springs at rest).  The list is complete where the bisection is and the equations bound
 every coordinate; otherwise it **may be incomplete**, and the result says so.
 
@@ -51,7 +52,8 @@ from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.rest_bounds import reach
 from mbsym.problems.rest_candidates import Candidate, candidates, only_root
-from mbsym.problems.rest_place import PRECISION, Place, exact_rates
+from mbsym.problems.rest_oriented import orientations
+from mbsym.problems.rest_place import PRECISION, Place, angle_of, exact_rates
 from mbsym.problems.rest_sampling import STARTS, from_many_points, turned
 from mbsym.problems.rest_unknowns import Unknowns
 from mbsym.problems.rest_verdict import LinearAtRest, linear_at_rest
@@ -394,11 +396,26 @@ class _ChartSearch:
             if table.roots_agree(family.sample):
                 self._add_family(table, family)
         if result.unfinished:
+            if self._solve_in_direction_cosines():
+                return
             reasons = "; ".join(result.unfinished)
             self._incomplete(
                 f"the exact solution is not finished ({reasons}); the rest was searched for from {STARTS} points"
             )
             self._search_numerically(bisect=False)
+
+    def _solve_in_direction_cosines(self) -> bool:
+        """The second way to a complete list; False where it does not lead to one."""
+        if self.families:
+            return False
+        found = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
+        if found is None or any(not self._may_rest(place) for place in found.places):
+            return False
+        for place in found.places:
+            if not self._known([float(place.balls[name].mid()) for name in self.occurring], 1e-12):
+                self._add(place, EXACT)
+        self.remarks.append(f"solved exactly in the direction cosines of {', '.join(found.joints)}")
+        return True
 
     def _place(self, table: Unknowns, point: AlgebraicPoint) -> Place:
         ring = self.ring
@@ -407,7 +424,7 @@ class _ChartSearch:
         for name in self.occurring:
             if ring.has("sine", name) and ring.index("sine", name) in exact:
                 s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
-                balls[name] = _angle(s, c) * ring.angles[name]
+                balls[name] = angle_of(s, c) * ring.angles[name]
             else:
                 balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
         for name in self.free:  # any value does; 0 is one
@@ -562,10 +579,15 @@ class _ChartSearch:
         with ctx.workprec(PRECISION):
             if any(self.ring.evaluate(x, place.balls).contains(0) for x in self.nonzero):
                 return
-            if any(not self.ring.evaluate(x, place.balls).contains(0) for x in self.equations):
-                return
+        if not self._may_rest(place):
+            return
         if not self._known([float(box[name].mid()) for name in self.occurring], 1e-12):
             self._add(place, CERTIFIED)
+
+    def _may_rest(self, place: Place) -> bool:
+        """Whether no equation is proved not to vanish there: the second route of every list in balls."""
+        with ctx.workprec(PRECISION):
+            return all(self.ring.evaluate(x, place.balls).contains(0) for x in self.equations)
 
     def _known(self, place: Sequence[float], tolerance: float) -> bool:
         """Whether a solution is listed already, within ``tolerance``."""
@@ -702,13 +724,6 @@ class _ChartSearch:
             told = " or ".join(sorted(words - {found.word}))
             return undecided(Because.DIFFERS_ALONG, names, found.word, told)
         return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
-
-
-def _angle(s: Any, c: Any) -> Any:
-    with ctx.workprec(PRECISION):
-        if c < 0 and s.contains(0):  # atan2 is cut here
-            return arb.pi() - (s / -c).atan()
-        return arb.atan2(s, c)
 
 
 def _short(value: float) -> str:

@@ -23,6 +23,14 @@ def exact_rates(found: Rest) -> dict[int, Any]:
     return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
 
 
+def angle_of(s: Any, c: Any) -> Any:
+    """A ball around the angle of a sine and a cosine, in (-pi, pi]."""
+    with ctx.workprec(PRECISION):
+        if c < 0 and s.contains(0):  # atan2 is cut here
+            return arb.pi() - (s / -c).atan()
+        return arb.atan2(s, c)
+
+
 class Place:
     """Where the matrices are evaluated: values of coordinates as balls, and exactly where they are algebraic.
 
