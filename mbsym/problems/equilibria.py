@@ -10,9 +10,9 @@ s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``)
 field, every f_i is zero there exactly, and the list is complete.  Where that outgrows its limits, direction cosines in
 place of angles may do (``problems.rest_oriented``).  Where the f_i are no such polynomials (an angle that also stands
 outside sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by
-bisection or from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the test exactly
-where it can be guessed (zero, springs at rest).  The list is complete where the bisection is and the equations bound
-every coordinate; otherwise it **may be incomplete**, and the result says so.
+bisection or from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the
+test exactly where it can be guessed (zero, springs at rest).  The list is complete where the bisection is and the
+equations bound every coordinate; otherwise it **may be incomplete**, and the result says so.
 
 Angles that are singular somewhere (a gimbal) are replaced there by others, so that no orientation is lost, and
 coordinates that describe one configuration twice are counted once.  Where the equations do not know an angle (the whole
