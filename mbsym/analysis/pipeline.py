@@ -16,7 +16,18 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mbsym.algebra.failures import Severity
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.analysis import approximation, conserved, constrained, deriving, forms, given, higher, judging, second_routes
+from mbsym.analysis import (
+    approximation,
+    conserved,
+    constrained,
+    deriving,
+    forms,
+    given,
+    higher,
+    invariant,
+    judging,
+    second_routes,
+)
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
 from mbsym.expressions.tree import Expression
@@ -40,6 +51,7 @@ from mbsym.problems import (
     stabilisation,
     stability,
 )
+from mbsym.problems import invariant_sets as problem_10
 from mbsym.problems.checks import Check, oracles
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
@@ -60,6 +72,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
+    from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.stabilisation import Stabilisation
@@ -99,6 +112,7 @@ KNOW_SPEEDS = frozenset(
         "programs",
         "integrals",
         "first_order",
+        "invariant_sets",
         "claims",
         "checks",
     )
@@ -312,6 +326,15 @@ class Analysis(Stages):
 
     stabilisation: Problem[Stabilisation] = Problem(
         8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+    )
+
+    invariant_sets: Problem[InvariantSets] = Problem(
+        10,
+        "steady motions and invariant manifolds",
+        problem_10,
+        invariant.invariant_sets_of,
+        ("equations of motion", "first integrals"),
+        says=True,
     )
 
     normal_forms: Problem[NormalForms] = Problem(

@@ -74,7 +74,7 @@ class Transfer:
     def __call__(self, p: Polynomial) -> Any:
         degrees = p.degrees()
         for k, degree in enumerate(degrees):
-            if degree and k not in self.places:
+            if degree > 0 and k not in self.places:  # of 0 they are all -1
                 raise NoClosedForm(
                     f"{_told(self.ring, k)} occurs: the equations are not polynomial in speeds and positions"
                 )

@@ -16,6 +16,7 @@ from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext, power
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.model.quantities import rate_unit, unit_of
+from mbsym.problems import NUMBERS
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
@@ -41,11 +42,14 @@ from mbsym.report.html_environment import page
 from mbsym.report.html_motion import asked_motion
 from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.invariant_words import Medium as InvariantMedium
+from mbsym.report.invariant_words import closing, family_title, of_family, of_set, opening
 from mbsym.report.latex_description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.normal_form_words import Medium as HigherMedium
 from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
+from mbsym.report.sections.invariant_sets import even
 from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
 from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
@@ -57,12 +61,13 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.reduction import Reduction
     from mbsym.problems.stabilisation import Stabilisation
 
 #: The order of the sections: as a reader wants them, as in report.tex.
-ORDER = tuple(range(1, 13))
+ORDER = tuple(NUMBERS)
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -107,6 +112,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "constraint": lambda value: constraint_in_words(value, names),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
         "normal_form_sentences": lambda one: list(_of_normal_forms(one, names)),
+        "invariant_paragraphs": lambda one: list(_of_invariant_sets(one, names)),
         "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
@@ -204,7 +210,32 @@ def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup
         yield from _filled([(text, written)])
 
 
-_SIGNS = {"!=": "≠"}
+def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[Markup]]:
+    """Paragraphs of problem 10, names and formulas in MathML."""
+    write = InvariantMedium(
+        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
+        value=lambda name, x: shown.math(str(names[name]), mo("="), shown.inline(x)),
+        rate=lambda name, x: shown.math(f"<mover>{names[name]}<mo>˙</mo></mover>", mo("="), shown.inline(x)),
+        formula=lambda x: shown.math(shown.inline(x)),
+        even=lambda factor: escape(even(factor)),
+        word=lambda word: str(escape(word)),
+    )
+
+    def said(told: Iterable[tuple[str, dict[str, object]]]) -> list[Markup]:
+        return list(_filled((text, {k: Markup(v) for k, v in values.items()}) for text, values in told))
+
+    yield said(opening(found, write))
+    for family in found.families:
+        if family.sets or family.unfinished:
+            title = escape(f"K = {family_title(family, found)}")
+            yield [title, *said(of_family(family, write))]
+            for k, one in enumerate(family.sets, start=1):
+                yield said(of_set(one, k, write))
+    yield said(closing(found, write))
+
+
+_SIGNS = {"!=": "≠", ">=": "≥"}
 
 
 def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Markup]:

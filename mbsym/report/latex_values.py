@@ -55,6 +55,7 @@ from mbsym.report.latex_formulas import (
     row,
     tensor,
 )
+from mbsym.report.latex_invariant import of_invariant_sets
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_normal_forms import of_normal_forms
 from mbsym.report.latex_references import keys_of, references, theorems_named
@@ -142,6 +143,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
         "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
+        "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),

@@ -36,7 +36,12 @@ GCC = shutil.which("gcc")
 
 
 #: Fragments of what a description, or a run, need not have: claims, and problem 8.
-NOT_ALWAYS = {"fragments/claims.tex", "fragments/stabilisation.tex", "fragments/normal_forms.tex"}
+NOT_ALWAYS = {
+    "fragments/claims.tex",
+    "fragments/stabilisation.tex",
+    "fragments/invariant_sets.tex",
+    "fragments/normal_forms.tex",
+}
 
 
 def valid(number: int) -> tuple[str, System]:

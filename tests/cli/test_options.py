@@ -203,16 +203,16 @@ def test_each_mistake_of_tradeoff_is_said_once(tmp_path: Path) -> None:
 
 
 def test_all_options_of_run_at_once(tmp_path: Path) -> None:
-    done = mbsym("run", DOUBLE, "--problems", "9,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
+    done = mbsym("run", DOUBLE, "--problems", "99,5-3", "--format", "pdf", "--terms", "-1", "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert heads(done) == [
-        "--problems: error[unknown-problem]: there is no problem 9",
+        "--problems: error[unknown-problem]: there is no problem 99",
         "--problems: error[bad-range]: the range 5-3 is empty",
         "--format: error[unknown-format]: there is no format 'pdf'",
         "--terms: error[bad-number]: -1 is out of bounds: at least 1",
     ]
     assert "hint: a range goes upwards: write 3-5" in done.stderr
-    assert "hint: problems are numbered 1 to 8, 11" in done.stderr
+    assert "hint: problems are numbered 1 to 8, 10 to 11" in done.stderr
     assert not (tmp_path / "out").exists()
 
 

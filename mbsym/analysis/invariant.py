@@ -1,0 +1,143 @@
+"""Problem 10 in the pipeline: the vector field, the integrals known of it, what is declared of parameters."""
+
+from __future__ import annotations
+
+import random
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from flint import nmod_mat
+
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.integrals import ENERGY
+from mbsym.problems.polynomial_integrals.result import Sure
+
+if TYPE_CHECKING:
+    from mbsym.algebra.polynomial_field import PolynomialField
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.analysis.polynomial import Setting
+    from mbsym.problems.invariant_sets import InvariantSets
+    from mbsym.problems.vector_field import Transfer
+
+_PRIME = (1 << 31) - 1
+
+
+def invariant_sets_of(analysis: Analysis) -> InvariantSets:
+    """Families of the integrals of problem 7, of those that claims have proved, and of further polynomial ones.
+
+    Raises Unavailable for systems without speeds, NoClosedForm where the field is not polynomial or nothing but the
+    geometry is conserved.
+    """
+    from mbsym.analysis import polynomial  # few ask for it
+    from mbsym.problems.invariant_sets.arena import arena
+    from mbsym.problems.invariant_sets.problem import invariant_sets
+
+    if analysis.speed_form is None:
+        reason = "families of integrals are looked at of equations in speeds (and unit vectors)"
+        hint = "declare 'speeds' and 'orientation' (mbsym explain description)"
+        raise Unavailable("speeds", NoResult(reason, hint, "no speeds", "no-speeds"))
+    there = polynomial.setting(analysis)
+    field = there.whole
+    found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
+    chosen = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
+    if not chosen:
+        raise NoClosedForm("no integrals are known but those of geometry")
+    signs = {one.name: one.sign for one in analysis.system.parameters}
+    place = arena(field, chosen, signs, _assumptions(analysis, there.transfer))
+    if analysis.system.symbols:
+        from mbsym.formulas.latex import write_as
+
+        write_as(place.ring, {one.name: one.latex for one in analysis.system.symbols})
+    return invariant_sets(place)
+
+
+def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
+    """Names and polynomials, the energy first, then others by falling degree.
+
+    Of problem 7, of claims, and what a search up to weighted degree 2 max(weights) finds besides.
+    """
+    from mbsym.analysis import polynomial
+
+    field = there.whole
+    energies = {one.name for one in analysis.integrals if one.kind == ENERGY}
+    known = [(name, p) for name, p in there.known if field.reduced(_without_constants(field, p)) != 0]
+    # Claimed integrals are looked at here once more: ``analysis.claims`` asks for every result, this one among them.
+    for k, claim in enumerate(analysis.system.claims):
+        if claim.kind == "first integral":
+            with suppress(Failure):
+                stated = Symbols.of(analysis).polynomial(analysis.parameters_scene, claim)
+                top, bottom = there.transfer.fraction(in_parameters(analysis, stated))
+                if not any(bottom.degrees()[place] for place in field.places):
+                    known.append((claim.place or f"claim {k + 1}", top))
+    with suppress(Failure):
+        most = 2 * max(polynomial.weights_of(there).weights)
+        new = [one for one in polynomial.integrals_of(there, most).new if one.sure is Sure.PROVED]
+        for k, one in enumerate(new, 1):
+            known.append((f"further integral {k}" if len(new) > 1 else "further integral", one.polynomial))
+    order = sorted(range(len(known)), key=lambda k: (known[k][0] not in energies, -_degree(field, known[k][1]), k))
+    return [known[k] for k in order]
+
+
+def _degree(field: PolynomialField, p: Any) -> int:
+    first = len(field.parameters)
+    return max((sum(monomial[first:]) for monomial in p.to_dict()), default=0)
+
+
+def _without_constants(field: PolynomialField, p: Any) -> Any:
+    """The integral without terms that hold no variable."""
+    first = len(field.parameters)
+    return field.context.from_dict({m: c for m, c in p.to_dict().items() if any(m[first:])})
+
+
+def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> list[tuple[str, Any]]:
+    """Those whose gradients are independent of the earlier ones' and of the relations', at a random point mod a prime.
+
+    The relations come last, with names of their own: they take part in the families.
+    """
+    chance = random.Random(3)
+    point = [chance.randrange(2, _PRIME) for _ in range(field.context.nvars())]
+    rows = [_gradient(field, relation, point) for relation in field.relations]
+    kept = []
+    for name, p in found:
+        row = _gradient(field, p, point)
+        if _rank([*rows, row]) > len(rows):
+            rows.append(row)
+            kept.append((name, p))
+    if not kept:
+        return []
+    for k, relation in enumerate(field.relations):
+        number = f" {k + 1}" if len(field.relations) > 1 else ""
+        kept.append((f"geometry{number}", _without_constants(field, relation)))
+    return kept
+
+
+def _gradient(field: PolynomialField, p: Any, point: list[int]) -> list[int]:
+    return [_value(p.derivative(k), point) for k in field.places]
+
+
+def _value(p: Any, point: list[int]) -> int:
+    total = 0
+    for monomial, c in p.to_dict().items():
+        term = int(c.p) * pow(int(c.q), -1, _PRIME)
+        for x, power in zip(point, monomial, strict=True):
+            term = term * pow(x, power, _PRIME) % _PRIME
+        total += term
+    return total % _PRIME
+
+
+def _rank(rows: list[list[int]]) -> int:
+    return int(nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], _PRIME).rank())
+
+
+def _assumptions(analysis: Analysis, transfer: Transfer) -> list[tuple[Any, str]]:
+    """Those in parameters that occur in the field."""
+    found = []
+    for p, relation in analysis.signs.assumptions:
+        try:
+            found.append((transfer(p), relation))
+        except Failure:
+            continue
+    return found

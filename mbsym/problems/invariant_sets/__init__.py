@@ -1,0 +1,57 @@
+"""Problem 10: steady motions and invariant manifolds, by families of integrals (Routh, Lyapunov).
+
+Where V_0, V_1, ..., V_m are integrals of x' = X(x), so is  K = V_0 + lambda_1 V_1 + ... + lambda_m V_m,  and
+
+    {x: grad K(x) = 0}
+
+is carried into itself by the motion, for every choice of the multipliers.  These equations are taken apart exactly,
+over the parameters and the multipliers, by what they are linear in (``algebra.splitting``): each branch is a family of
+steady motions, or an invariant manifold with the motion on it.  The norms of unit vectors and sin^2 + cos^2 = 1 are
+integrals with multipliers of their own.  Each set is checked without its derivation: d/dt of every equation of the set
+vanishes on the set by the equations of motion.
+
+Stability: a motion (or manifold) on which the second variation of K is definite on the level of the integrals is stable
+(Routh's theorem with Lyapunov's complement): **sufficient**.  The roots of the first approximation beside it give what
+is **necessary**; whether parameters lie between the two is tried at exact points.
+
+All this holds for almost all parameters: polynomials in them that were divided by are listed and taken not to vanish.
+Branches that the budget leaves aside are counted: then the list may be incomplete.
+
+Source: E. J. Routh, A Treatise on the Stability of a Given State of Motion (1877); A. M. Lyapunov, On constant helical
+motions of a body in a liquid (1888); V. D. Irtegov and T. N. Titorenko (families of first integrals).
+
+Example:
+
+    >>> import mbsym
+    >>> clebsch = mbsym.load("systems/clebsch-poisson.yaml").invariant_sets
+    >>> [one.kind.value for one in clebsch.families[0].sets].count("steady motions") >= 3
+    True
+"""
+
+from __future__ import annotations
+
+from mbsym.problems.invariant_sets.result import (
+    Definiteness,
+    Family,
+    FirstApproximation,
+    Gap,
+    InvariantSets,
+    Kind,
+    Proof,
+    Relation,
+    SecondVariation,
+    StationarySet,
+)
+
+__all__ = [
+    "Definiteness",
+    "Family",
+    "FirstApproximation",
+    "Gap",
+    "InvariantSets",
+    "Kind",
+    "Proof",
+    "Relation",
+    "SecondVariation",
+    "StationarySet",
+]

@@ -1,0 +1,243 @@
+"""What holds on one branch of the equations of stationarity: values, remainders, dimensions."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from flint import nmod_mat, nmod_poly
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.splitting import Branch, Solved
+from mbsym.problems.invariant_sets.arena import Arena
+
+#: A prime over which generic points are looked for, and how often.
+PRIME = (1 << 31) - 1
+ATTEMPTS = 40
+#: Longer polynomials are not reduced further.
+MOST_TERMS = 3_000
+
+
+@dataclass(frozen=True)
+class Rule:
+    """An equation of degree ``degree`` in a generator, whose leading coefficient there is ``leading``."""
+
+    generator: int
+    degree: int
+    leading: Polynomial
+    equation: Polynomial
+
+    def top(self, p: Polynomial, power: int) -> Polynomial:
+        """The coefficient of generator^power in p."""
+        g = self.generator
+        terms = {(*m[:g], 0, *m[g + 1 :]): c for m, c in p.to_dict().items() if m[g] == power}
+        return p.context().from_dict(terms) if terms else p.context().constant(0)
+
+    def applied(self, p: Polynomial) -> Polynomial:
+        """p times a power of ``leading``, of a lower degree in the generator than the equation."""
+        g = p.context().gen(self.generator)
+        if p == 0:
+            return p
+        while (power := p.degrees()[self.generator]) >= self.degree:
+            p = self.leading * p - self.top(p, power) * g ** (power - self.degree) * self.equation
+            if len(p) > MOST_TERMS:
+                raise NoClosedForm(f"a polynomial of {len(p)} terms", limit=Limit.TERMS)
+        return p
+
+
+@dataclass(frozen=True)
+class Place:
+    """A branch in its arena, the relations between the variables among its remaining equations."""
+
+    arena: Arena
+    branch: Branch
+    #: The equations among those that remain which come from the relations between the variables.
+    geometric: tuple[Polynomial, ...] = ()
+
+    def never_zero(self, p: Polynomial) -> bool:
+        """Whether p vanishes nowhere on the branch because its square there is a polynomial that vanishes nowhere."""
+        square = self.shortened(p * p)
+        return square != 0 and self.arena.signs.never_zero(square)
+
+    def fixes(self, multiplier: int) -> bool:
+        """Whether the state, or what remains, depends on a free multiplier."""
+        held = [s for s in self.branch.solved if s.unknown in self.arena.variables]
+        polynomials = [p for s in held for p in (s.numerator, s.denominator)]
+        return any(p.degrees()[multiplier] > 0 for p in (*polynomials, *self.branch.remaining))
+
+    @cached_property
+    def solved(self) -> dict[int, Solved]:
+        return {s.unknown: s for s in self.branch.solved}
+
+    @cached_property
+    def free_variables(self) -> tuple[int, ...]:
+        return tuple(k for k in self.arena.variables if k not in self.solved)
+
+    @cached_property
+    def free_multipliers(self) -> tuple[int, ...]:
+        return tuple(k for k in self.arena.multipliers if k not in self.solved)
+
+    @cached_property
+    def rules(self) -> tuple[Rule, ...]:
+        """One for each remaining equation: leading coefficients that are numbers first, then later generators."""
+        found: list[Rule] = []
+        taken: set[int] = set()
+        unknown = (*self.arena.multipliers, *self.arena.variables)
+        for p in self.branch.remaining:
+            degrees = p.degrees()
+            candidates = []
+            for rank, g in enumerate(reversed(unknown)):
+                if degrees[g] and g not in taken:
+                    rule = Rule(g, degrees[g], p.context().constant(1), p)
+                    leading = rule.top(p, degrees[g])
+                    candidates.append(((not leading.is_constant(), degrees[g], rank), replace(rule, leading=leading)))
+            if not candidates:
+                continue
+            rule = min(candidates, key=lambda item: item[0])[1]
+            if rule.leading.is_constant():
+                rule = replace(rule, leading=p.context().constant(1), equation=p / rule.leading.leading_coefficient())
+            found.append(rule)
+            taken.add(rule.generator)
+        return tuple(found)
+
+    @cached_property
+    def exact_rules(self) -> tuple[Rule, ...]:
+        return tuple(rule for rule in self.rules if rule.leading.is_constant())
+
+    def shortened(self, p: Polynomial) -> Polynomial:
+        """The same value on the branch, powers taken out by the equations whose leading coefficients are numbers."""
+        for _ in range(1 + len(self.exact_rules)):
+            before = p
+            for rule in self.exact_rules:
+                p = rule.applied(p)
+            if p == before:
+                break
+        return p
+
+    def fraction(self, p: Polynomial) -> tuple[Polynomial, Polynomial]:
+        """(P, Q), p = P/Q on the branch, without a common factor."""
+        top, bottom = p, p.context().constant(1)
+        for s in self.branch.solved:
+            degree = top.degrees()[s.unknown]
+            if degree > 0:
+                top = Branch((s,)).numerator(top)
+                bottom *= s.denominator**degree
+        top = self.shortened(top)
+        if top == 0:
+            return top, p.context().constant(1)
+        common = top.gcd(bottom)
+        return top / common, bottom / common
+
+    def vanishes(self, p: Polynomial) -> bool | None:
+        """Whether p is zero on the branch; None where that was not decided.
+
+        A value that is not zero at a point modulo a prime decides, and so does a remainder of zero.
+        """
+        if self.point is not None and evaluate(p, self.point) != 0:
+            return False
+        try:
+            top = self.shortened(self.branch.numerator(p))
+            for rule in self.rules * len(self.rules):
+                top = rule.applied(top)
+        except NoClosedForm:
+            return None
+        return True if top == 0 else None
+
+    @cached_property
+    def point(self) -> dict[int, int] | None:
+        """A point of the branch over the field of ``PRIME`` elements, by generator; None where none was found."""
+        chance = random.Random(len(self.branch.remaining) * 7919 + 17)
+        generators = (*self.arena.parameters, *self.arena.multipliers, *self.arena.variables)
+        for _ in range(ATTEMPTS):
+            values = {g: chance.randrange(2, PRIME) for g in generators}
+            point = self._completed(values, chance)
+            if point is not None:
+                return point
+        return None
+
+    def _completed(self, values: dict[int, int], chance: random.Random) -> dict[int, int] | None:
+        pending = list(self.rules)
+        unset = {rule.generator for rule in pending}
+        while pending:
+            ready = next((r for r in pending if not self._others(r, unset)), None)
+            if ready is None:
+                return None
+            roots = _roots(ready.equation, ready.generator, values)
+            if not roots:
+                return None
+            values[ready.generator] = chance.choice(roots)
+            unset.discard(ready.generator)
+            pending.remove(ready)
+        for s in self.branch.solved:
+            bottom = evaluate(s.denominator, values)
+            if bottom == 0:
+                return None
+            values[s.unknown] = evaluate(s.numerator, values) * pow(bottom, -1, PRIME) % PRIME
+        if any(evaluate(p, values) == 0 for p in self.branch.nonzero):
+            return None
+        return None if any(evaluate(p, values) != 0 for p in self.branch.remaining) else values
+
+    def _others(self, rule: Rule, unset: set[int]) -> bool:
+        degrees = rule.equation.degrees()
+        return any(degrees[g] for g in unset if g != rule.generator)
+
+    @cached_property
+    def dimensions(self) -> tuple[int, int] | None:
+        """(for fixed multipliers, of the union over all multipliers), at a generic point; None where none was found."""
+        point = self.point
+        if point is None:
+            return None
+        arena = self.arena
+        unknown = (*arena.multipliers, *arena.variables)
+        rows = [[evaluate(p.derivative(g), point) for g in unknown] for p in self.branch.remaining]
+        for s in self.branch.solved:
+            p = s.denominator * arena.ring.context.gen(s.unknown) - s.numerator
+            rows.append([evaluate(p.derivative(g), point) for g in unknown])
+        m = len(arena.multipliers)
+        whole = len(unknown) - rank(rows)
+        fixed = len(unknown) - rank([*rows, *([int(j == i) for j in range(len(unknown))] for i in range(m))])
+        moving = len(unknown) - rank(
+            [*rows, *([int(j == m + i) for j in range(len(unknown))] for i in range(len(unknown) - m))]
+        )
+        return fixed, whole - moving
+
+
+def evaluate(p: Polynomial, values: Mapping[int, int]) -> int:
+    """p modulo ``PRIME``."""
+    total = 0
+    for monomial, c in p.to_dict().items():
+        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
+        for g, power in enumerate(monomial):
+            if power:
+                term = term * pow(values[g], power, PRIME) % PRIME
+        total += term
+    return total % PRIME
+
+
+def rank(rows: Sequence[Sequence[int]]) -> int:
+    """Over the field of ``PRIME`` elements."""
+    if not rows:
+        return 0
+    return int(nmod_mat(len(rows), len(rows[0]), [x % PRIME for row in rows for x in row], PRIME).rank())
+
+
+def _roots(p: Polynomial, generator: int, values: Mapping[int, int]) -> list[int]:
+    coefficients = [0] * (p.degrees()[generator] + 1)
+    for monomial, c in p.to_dict().items():
+        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
+        for g, power in enumerate(monomial):
+            if power and g != generator:
+                term = term * pow(values[g], power, PRIME) % PRIME
+        coefficients[monomial[generator]] = (coefficients[monomial[generator]] + term) % PRIME
+    found: Any = nmod_poly(coefficients, PRIME)
+    if found.degree() < 1:
+        return []
+    return [
+        int(-factor[0] * pow(int(factor[1]), -1, PRIME)) % PRIME
+        for factor, _ in found.factor()[1]
+        if factor.degree() == 1
+    ]

@@ -1,0 +1,221 @@
+"""Problem 10 on a polynomial vector field with known integrals: families, their stationary sets, what moves there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.splitting import Branch, exchanged, split
+from mbsym.formulas.formula import Formula
+from mbsym.problems.invariant_sets import second_variation
+from mbsym.problems.invariant_sets.arena import Arena
+from mbsym.problems.invariant_sets.branches import Place
+from mbsym.problems.invariant_sets.result import (
+    Definiteness,
+    Family,
+    Gap,
+    InvariantSets,
+    Kind,
+    Proof,
+    SecondVariation,
+    StationarySet,
+)
+from mbsym.problems.invariant_sets.trials import gap_between, is_real
+
+#: Sets of one family that are looked at closely.
+MOST_SETS = 40
+
+
+def invariant_sets(arena: Arena) -> InvariantSets:
+    """The stationary sets of K = V_0 + sum lambda_k V_k, and of V_1 + sum lambda_k V_k, ..., each family for itself."""
+    families = []
+    generic: list[Polynomial] = []
+    for first in range(max(1, len(arena.integrals) - 1)):
+        names = arena.names[first:]
+        multipliers = arena.multipliers[: len(names) - 1]
+        whole = arena.integrals[first]
+        for g, integral in zip(multipliers, arena.integrals[first + 1 :], strict=True):
+            whole = whole + arena.ring.context.gen(g) * integral
+        own = replace(arena, multipliers=multipliers, integrals=arena.integrals[first:], names=names)
+        family, taken = _family(own, whole)
+        families.append(family)
+        generic += [p for p in taken if p not in generic]
+    integrals = tuple((name, arena.formula(p)) for name, p in zip(arena.names, arena.integrals, strict=True))
+    relations = tuple(arena.formula(p) for p in arena.relations)
+    return InvariantSets(integrals, relations, tuple(families), tuple(arena.formula(p) for p in generic))
+
+
+def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, ...]]:
+    equations = [whole.derivative(g) for g in arena.variables]
+    found = split(equations, (*arena.variables, *arena.multipliers), arena.signs.never_zero)
+    places = [place for branch in found.branches if (place := _on_relations(arena, branch)) is not None]
+    kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
+    looked = [_set(place, whole) for place in kept[:MOST_SETS]]
+    sets = [one for one in looked if one is not None]
+    # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
+    unfinished = found.unfinished + max(0, len(kept) - MOST_SETS) + looked.count(None)
+    sets.sort(key=lambda one: (one.dimension, one.union))
+    names = tuple(arena.name(g) for g in arena.multipliers)
+    return Family(arena.names, names, tuple(sets), unfinished), found.generic
+
+
+def _on_relations(arena: Arena, branch: Branch) -> Place | None:
+    """With the relations between the variables among what remains; None where they contradict the branch."""
+    place = Place(arena, branch)
+    for relation in arena.relations:
+        top = place.shortened(place.branch.numerator(relation))
+        if top == 0:
+            continue
+        factors = [f for f, _ in irreducible_factors(top)[1]]
+        open_factors = [f for f in factors if f not in branch.nonzero and not _is_parameter(arena, f)]
+        if not open_factors:
+            return None
+        product = arena.ring.one
+        for f in open_factors:
+            product = product * f
+        branch = replace(place.branch, remaining=(*place.branch.remaining, product))
+        place = Place(arena, branch, (*place.geometric, product))
+    return place
+
+
+def _is_steady(place: Place) -> bool:
+    return all(place.vanishes(slope) is True for slope in place.arena.numerators)
+
+
+def _by_variables(place: Place) -> Place:
+    """Of steady motions: multipliers in terms of the variables wherever that is possible without losing a motion."""
+    arena = place.arena
+    again = True
+    while again:
+        again = False
+        for s in place.branch.solved:
+            if s.unknown not in arena.variables:
+                continue
+            p = s.denominator * arena.ring.context.gen(s.unknown) - s.numerator
+            degrees = p.degrees()
+            for g in place.free_multipliers:
+                if degrees[g] != 1 or any(rule.equation.degrees()[g] > 0 for rule in place.rules):
+                    continue
+                slope = place.shortened(p.derivative(g))
+                square = place.shortened(slope * slope)
+                if square == 0 or not _is_parameter(arena, square):
+                    continue
+                branch = exchanged(place.branch, s, g, (slope, square))
+                if branch is not None:
+                    place, again = Place(arena, branch, place.geometric), True
+                    break
+            if again:
+                break
+    return place
+
+
+def _is_parameter(arena: Arena, p: Polynomial) -> bool:
+    degrees = p.degrees()
+    return all(degrees[g] == 0 for g in (*arena.variables, *arena.multipliers))
+
+
+def _largest(places: Sequence[Place]) -> list[Place]:
+    """Without those that lie in the closure of another."""
+    kept: list[Place] = []
+    for place in sorted(places, key=lambda one: len(one.branch.solved) + len(one.branch.remaining)):
+        if not any(_holds(other, place) for other in kept):
+            kept.append(place)
+    return kept
+
+
+def _holds(outer: Place, inner: Place) -> bool:
+    """Whether the equations of ``outer`` hold on ``inner``, and its denominators do not vanish there."""
+    for s in outer.branch.solved:
+        if inner.vanishes(s.denominator) is not False:
+            return False
+        generator = s.numerator.context().gen(s.unknown)
+        if inner.vanishes(s.denominator * generator - s.numerator) is not True:
+            return False
+    return all(inner.vanishes(p) is True for p in outer.branch.remaining)
+
+
+def _set(place: Place, whole: Polynomial) -> StationarySet | None:
+    arena, dimensions = place.arena, place.dimensions
+    if dimensions is None:
+        return None  # no point was found over a finite field: nothing is said of it
+    steady = _is_steady(place)
+    motion = []
+    for g, slope in zip(arena.variables, arena.numerators, strict=True):
+        if g in place.free_variables:
+            top, bottom = place.fraction(slope)
+            low, high = place.fraction(arena.denominator)
+            motion.append((arena.name(g), top * high, bottom * low))
+    kind = Kind.STEADY if steady else Kind.MANIFOLD
+    first, gap = None, Gap.UNTRIED
+    variation = _variation(place, whole, steady)
+    if steady:
+        try:
+            first = second_variation.first_approximation(place)
+        except Failure:
+            first = None
+        gap = gap_between(place, variation, first)
+    return StationarySet(
+        kind=kind,
+        solved=tuple((arena.name(g), _value(place, g)) for g in arena.variables if g in place.solved),
+        relations=tuple(arena.formula(p) for p in place.branch.remaining),
+        nonzero=tuple(arena.formula(p) for p in _denominators(place)),
+        free=tuple(arena.name(g) for g in place.free_variables),
+        multipliers=tuple((arena.name(g), _value(place, g) if g in place.solved else None) for g in arena.multipliers),
+        dimension=dimensions[0],
+        union=dimensions[1],
+        motion=() if steady else tuple((name, arena.formula(*_lowest(top, bottom))) for name, top, bottom in motion),
+        invariant=_invariant(place),
+        variation=variation,
+        first=first,
+        gap=gap,
+        real=is_real(place),
+    )
+
+
+def _variation(place: Place, whole: Polynomial, steady: bool) -> SecondVariation:
+    """On the level of the integrals, or across the manifold; left out where it has equations that were not solved."""
+    variables = place.arena.variables
+    further = [p for p in place.branch.remaining if p not in place.geometric]
+    try:
+        if steady:
+            return second_variation.on_level(place, whole)
+        if not any(p.degrees()[g] > 0 for p in further for g in variables):
+            return second_variation.across(place, whole)
+    except Failure:
+        pass
+    return SecondVariation(Definiteness.LEFT_OUT, 0)
+
+
+def _value(place: Place, g: int) -> Formula:
+    s = place.solved[g]
+    return place.arena.formula(*_lowest(place.shortened(s.numerator), place.shortened(s.denominator)))
+
+
+def _lowest(top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial]:
+    if top == 0:
+        return top, bottom * 0 + 1
+    common = top.gcd(bottom)
+    return top / common, bottom / common
+
+
+def _denominators(place: Place) -> list[Polynomial]:
+    """What is divided by on the set and is no polynomial in parameters alone."""
+    found: list[Polynomial] = []
+    for s in place.branch.solved:
+        for f, _ in irreducible_factors(s.denominator)[1]:
+            if not _is_parameter(place.arena, f) and f not in found:
+                found.append(f)
+    return found
+
+
+def _invariant(place: Place) -> Proof:
+    """d/dt of every equation of the set, for constant multipliers, vanishes on it by the equations of motion."""
+    arena = place.arena
+    context = arena.ring.context
+    equations = list(place.branch.remaining)
+    equations += [s.denominator * context.gen(s.unknown) - s.numerator for s in place.branch.solved]
+    answers = [place.vanishes(arena.derivative(p)) for p in equations]
+    return Proof.FAILED if False in answers else Proof.UNDECIDED if None in answers else Proof.PROVED

@@ -1,0 +1,132 @@
+"""What problem 10 finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
+
+
+class Kind(Enum):
+    """What moves on a stationary set."""
+
+    STEADY = "steady motions"
+    MANIFOLD = "invariant manifold"
+
+
+class Proof(Enum):
+    """How it is known that a set is invariant."""
+
+    PROVED = "proved"
+    UNDECIDED = "undecided"
+    FAILED = "failed"
+
+
+class Definiteness(Enum):
+    """What the second variation says, for almost all parameters that the description allows."""
+
+    STABLE = "stable"  # definite, proved
+    CONDITIONAL = "conditional"  # definite where the conditions hold
+    NEVER = "never"  # neither sign is possible
+    DEGENERATE = "degenerate"  # a minor vanishes identically
+    LEFT_OUT = "left out"  # beyond the budget
+
+
+@dataclass(frozen=True)
+class Relation:
+    """``formula`` relation 0, the relation one of > >= !=; or one of ``unless`` vanishes."""
+
+    formula: Formula
+    relation: str
+    unless: tuple[Formula, ...] = ()
+
+
+@dataclass(frozen=True)
+class SecondVariation:
+    """The second variation of the family on the level of its integrals.
+
+    ``positive`` and ``negative``: conditions for either sign, None where that sign is impossible; they may hold free
+    multipliers, and are sufficient if some value of these satisfies them (``chosen``: which).
+    """
+
+    outcome: Definiteness
+    size: int
+    positive: tuple[Relation, ...] | None = None
+    negative: tuple[Relation, ...] | None = None
+    chosen: tuple[str, ...] = ()
+
+
+class Gap(Enum):
+    """What exact trials say of the region between sufficient and necessary conditions."""
+
+    FOUND = "found"  # a point in it
+    NONE_FOUND = "none found"  # at no point that was tried
+    UNTRIED = "untried"
+
+
+@dataclass(frozen=True)
+class FirstApproximation:
+    """The roots lambda at a steady motion: ``zeros`` of them vanish, the others are even factors in lambda^2.
+
+    ``necessary``: where one of them is violated the motion is unstable; not ``complete`` where a factor that is not
+    even was left out.  ``unstable``: proved for all parameters that the description allows.
+    """
+
+    zeros: int
+    factors: tuple[tuple[Formula, ...], ...]
+    necessary: tuple[Relation, ...]
+    unstable: bool
+    complete: bool
+
+
+@dataclass(frozen=True)
+class StationarySet:
+    """{x: grad K = 0} for one branch of multipliers.
+
+    ``equations`` that hold on it, solved where they could be (``solved``: name and value); ``nonzero``: what does not
+    vanish on it; ``relations`` between what is left free, multipliers included; ``dimension`` for fixed multipliers,
+    and of the union over all.
+    """
+
+    kind: Kind
+    solved: tuple[tuple[str, Formula], ...]
+    relations: tuple[Formula, ...]
+    nonzero: tuple[Formula, ...]
+    free: tuple[str, ...]
+    multipliers: tuple[tuple[str, Formula | None], ...]
+    dimension: int
+    union: int
+    motion: tuple[tuple[str, Formula], ...]
+    invariant: Proof
+    variation: SecondVariation | None
+    first: FirstApproximation | None
+    gap: Gap
+    #: Real points: whether one was found at rational values that the description allows.
+    real: bool
+
+
+@dataclass(frozen=True)
+class Family:
+    """K = V_0 + sum multipliers_k V_k, and its stationary sets."""
+
+    integrals: tuple[str, ...]
+    multipliers: tuple[str, ...]
+    sets: tuple[StationarySet, ...]
+    unfinished: int
+
+
+@dataclass(frozen=True, repr=False)
+class InvariantSets(Shown):
+    """Problem 10.  ``integrals``: what the families are made of; ``generic``: taken to be nonzero."""
+
+    integrals: tuple[tuple[str, Formula], ...]
+    relations: tuple[Formula, ...]
+    families: tuple[Family, ...]
+    generic: tuple[Formula, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether no branch was left aside."""
+        return not any(family.unfinished for family in self.families)

@@ -1,0 +1,232 @@
+"""The second variation of K on the level of its integrals (Routh, Lyapunov), and the first approximation beside it.
+
+At a steady motion x_0 with  grad K(x_0) = 0,  K = V_0 + sum lambda_k V_k,  the motion is stable if
+
+    delta^2 K = dx . K''(x_0) dx    is definite on    {dx: grad V_j(x_0) . dx = 0 for all j},
+
+for then  +-(K - K_0) + c sum (V_j - V_j0)^2  is a Lyapunov function for c large enough.  With G = (grad V_j), pivot
+columns p of G with det G_p = d != 0, and r the others,
+
+    dx = T y,    T = [-adj(G_p) G_r; d 1],    d^2 > 0,    S = T^t K'' T,
+
+so the leading minors of S decide (Sylvester).  On a manifold K is constant, and y the deviations of the variables that
+were solved for: S = d^2 K/dy^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mbsym.algebra.characteristic import BUDGET, determinant, factor_in_lambda, leading_minors, subdiscriminants
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial
+from mbsym.problems.invariant_sets.branches import Place, evaluate, rank
+from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Relation, SecondVariation
+from mbsym.problems.stability.routh import adjugate
+
+Rows = list[list[Polynomial]]
+
+#: Conditions of more terms than this are left out.
+MOST_TERMS = 600
+
+
+def on_level(place: Place, family: Polynomial) -> SecondVariation:
+    """Of a steady motion: definiteness on the common tangent space of all integrals and relations."""
+    arena = place.arena
+    gradients = [
+        [place.shortened(place.fraction(p.derivative(g))[0]) for g in arena.variables]
+        for p in (*arena.integrals, *arena.relations)
+    ]
+    hessian, scale = _hessian(place, family, arena.variables)
+    rows, pivots = _independent(place, gradients)
+    if rows is None:
+        return SecondVariation(Definiteness.LEFT_OUT, 0)
+    others = [j for j in range(len(arena.variables)) if j not in pivots]
+    if not others:
+        return SecondVariation(Definiteness.STABLE, 0, (), ())
+    block = [[row[j] for j in pivots] for row in rows]
+    try:
+        divisor = place.shortened(determinant(block, BUDGET)) if block else arena.ring.one
+        tangent = _tangent(place, rows, block, pivots, others, divisor)
+        form = _product(place, hessian, tangent)
+    except Failure:
+        return SecondVariation(Definiteness.LEFT_OUT, len(others))
+    return _definite(place, form, scale)
+
+
+def across(place: Place, family: Polynomial) -> SecondVariation:
+    """Of an invariant manifold: definiteness in the variables that were solved for."""
+    solved = [g for g in place.arena.variables if g in place.solved]
+    hessian, scale = _hessian(place, family, solved)
+    return _definite(place, hessian, scale)
+
+
+def _hessian(place: Place, family: Polynomial, variables: Sequence[int]) -> tuple[Rows, Polynomial]:
+    """K'' times ``scale`` on the branch, without denominators."""
+    parts = [[place.fraction(family.derivative(a).derivative(b)) for b in variables] for a in variables]
+    scale = place.arena.ring.one
+    for row in parts:
+        for _, bottom in row:
+            scale = scale * (bottom / bottom.gcd(scale))
+    return [[place.shortened(top * (scale / bottom)) for top, bottom in row] for row in parts], scale
+
+
+def _independent(place: Place, gradients: Rows) -> tuple[Rows | None, list[int]]:
+    """Rows that are independent at a generic point, and columns in which their block is regular there."""
+    point = place.point
+    if point is None:
+        return None, []
+    numbers = [[evaluate(x, point) for x in row] for row in gradients]
+    # Short rows first: what is divided by is a minor of the rows.
+    order = sorted(range(len(gradients)), key=lambda i: sum(len(x) for x in gradients[i]))
+    kept: list[int] = []
+    for i in order:
+        if rank([*(numbers[k] for k in kept), numbers[i]]) > len(kept):
+            kept.append(i)
+    columns: list[int] = []
+    short = sorted(
+        range(len(gradients[0])), key=lambda j: sum(len(gradients[i][j]) for i in kept if gradients[i][j] != 0)
+    )
+    for j in short:
+        if rank([[numbers[i][k] for k in (*columns, j)] for i in kept]) > len(columns):
+            columns.append(j)
+    return [gradients[i] for i in kept], sorted(columns)
+
+
+def _tangent(
+    place: Place, rows: Rows, block: Rows, pivots: Sequence[int], others: Sequence[int], divisor: Polynomial
+) -> Rows:
+    """T, one row for each variable."""
+    size = len(pivots) + len(others)
+    zero = place.arena.ring.zero
+    found = [[zero] * len(others) for _ in range(size)]
+    adjoint = adjugate(block) if len(block) > 1 else [[place.arena.ring.one]] if block else []
+    for b, j in enumerate(others):
+        found[j][b] = divisor
+        for a, i in enumerate(pivots):
+            total = zero
+            for k, row in enumerate(rows):
+                total -= adjoint[a][k] * row[j]
+            found[i][b] = place.shortened(total)
+    return found
+
+
+def _product(place: Place, hessian: Rows, tangent: Rows) -> Rows:
+    n, m, zero = len(hessian), len(tangent[0]), place.arena.ring.zero
+    half = [[sum((hessian[i][k] * tangent[k][b] for k in range(n)), zero) for b in range(m)] for i in range(n)]
+    return [
+        [place.shortened(sum((tangent[i][a] * half[i][b] for i in range(n)), zero)) for b in range(m)] for a in range(m)
+    ]
+
+
+def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
+    """Both signs of the form divided by ``scale``.  What tangents were divided by is a squared factor of each minor."""
+    arena, size = place.arena, len(form)
+    try:
+        minors = [place.shortened(x) for x in leading_minors(form, BUDGET)]
+    except Failure:
+        return SecondVariation(Definiteness.LEFT_OUT, size)
+    if any(len(x) > MOST_TERMS for x in minors):
+        return SecondVariation(Definiteness.LEFT_OUT, size)
+    if any(x == 0 for x in minors):
+        return SecondVariation(Definiteness.DEGENERATE, size)
+    wanted = [place.shortened(x * scale ** ((k + 1) % 2)) for k, x in enumerate(minors)]
+    positive = _sufficient(place, wanted)
+    negative = _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(wanted)])
+    if positive == () or negative == ():
+        outcome = Definiteness.STABLE
+    elif positive is None and negative is None:
+        outcome = Definiteness.NEVER
+    else:
+        outcome = Definiteness.CONDITIONAL
+    chosen = {
+        g
+        for x in wanted
+        for g, degree in enumerate(x.degrees())
+        if degree > 0 and g in place.free_multipliers and not place.fixes(g)
+    }
+    return SecondVariation(outcome, size, positive, negative, tuple(arena.name(g) for g in sorted(chosen)))
+
+
+def _sufficient(place: Place, wanted: Sequence[Polynomial]) -> tuple[Relation, ...] | None:
+    """Conditions for all of them to be positive, each reduced by those before it; None where that is impossible."""
+    arena = place.arena
+    known, found = arena.signs, []
+    for p in wanted:
+        condition = known.condition(p)
+        if condition.kind == "never":
+            return None
+        told: list[tuple[Polynomial, str]] = [(condition.polynomial, ">")] if condition.kind == "inequality" else []
+        told += [(f, "!=") for f in condition.nonzero if not place.never_zero(f)]
+        known = known.assuming(told)
+        found += told
+    return tuple(Relation(arena.formula(p), relation) for p, relation in found)
+
+
+def first_approximation(place: Place) -> FirstApproximation | None:
+    """The characteristic polynomial of x' = J x at a steady motion; None where it is beyond the budget."""
+    arena = place.arena
+    parts = [[place.fraction(p.derivative(g)) for g in arena.variables] for p in arena.numerators]
+    below = place.fraction(arena.denominator)
+    scale = arena.ring.one
+    for row in parts:
+        for _, bottom in row:
+            scale = scale * (bottom / bottom.gcd(scale))
+    # J = rows * below[1]/(below[0] scale); roots are those of the pencil  lambda b - a.
+    a = [[place.shortened(top * (scale / bottom) * below[1]) for top, bottom in row] for row in parts]
+    b = place.shortened(below[0] * scale)
+    coefficients = _characteristic(place, a)
+    if coefficients is None:
+        return None
+    whole = [place.shortened(c * b**k) for k, c in enumerate(coefficients)]
+    zeros = next(k for k, c in enumerate(whole) if c != 0)
+    rest = whole[zeros:]
+    if any(len(c) > MOST_TERMS for c in rest):
+        return None
+    factors = []
+    necessary: list[Relation] = []
+    complete, unstable = True, False
+    for factor, _ in factor_in_lambda(rest)[1]:
+        if any(factor[k] != 0 for k in range(1, len(factor), 2)):
+            complete = False  # not even: left to problem 6
+            continue
+        even = list(factor[::2])
+        factors.append(tuple(arena.formula(c) for c in even))
+        if len(even) < 2:
+            continue
+        lead = even[-1]
+        wanted = [place.shortened(c * lead) for c in even[:-1]]
+        if len(even) > 2:
+            wanted += [place.shortened(x) for x in subdiscriminants(even)[1:]]
+        for p in wanted:
+            sign = arena.signs.sign(p)
+            unstable |= sign == "negative"
+            if p == 0 or sign in ("positive", "nonnegative", "zero", "negative"):
+                continue
+            condition = arena.signs.condition(p)
+            if condition.kind == "inequality":
+                unless = tuple(arena.formula(f) for f in condition.nonzero if not place.never_zero(f))
+                necessary.append(Relation(arena.formula(condition.polynomial), ">=", unless))
+            else:
+                complete = False  # never positive, and perhaps zero
+    return FirstApproximation(zeros, tuple(factors), () if unstable else tuple(necessary), unstable, complete)
+
+
+def _characteristic(place: Place, a: Rows) -> list[Polynomial] | None:
+    """det(lambda 1 - a), from low to high, by Berkowitz's method without divisions."""
+    ring, n = place.arena.ring, len(a)
+    polynomial = [ring.one]  # from the leading coefficient on
+    for r in range(n):
+        row, column = [a[r][j] for j in range(r)], [a[i][r] for i in range(r)]
+        tails = [ring.one, -a[r][r]]
+        vector = column
+        for _ in range(r):
+            tails.append(-place.shortened(sum((x * y for x, y in zip(row, vector, strict=True)), ring.zero)))
+            vector = [place.shortened(sum((a[i][j] * vector[j] for j in range(r)), ring.zero)) for i in range(r)]
+            if any(len(x) > 4 * MOST_TERMS for x in vector):
+                return None
+        polynomial = [
+            place.shortened(sum((tails[i - j] * polynomial[j] for j in range(min(i, r) + 1)), ring.zero))
+            for i in range(r + 2)
+        ]
+    return polynomial[::-1]

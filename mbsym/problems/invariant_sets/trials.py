@@ -1,0 +1,197 @@
+"""Exact trials at rational points: real points of a set, and points between sufficient and necessary conditions."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.ring import Polynomial
+from mbsym.problems.invariant_sets.branches import Place, Rule
+from mbsym.problems.invariant_sets.result import (
+    Definiteness,
+    FirstApproximation,
+    Gap,
+    Relation,
+    SecondVariation,
+)
+
+#: Points that are tried, values of free multipliers at each of them, bits of balls.
+POINTS, CHOICES, BITS = 60, 60, 128
+_VALUES = [fmpq(p, q) for p in range(1, 9) for q in (1, 2, 3)]
+
+Point = dict[int, arb]
+
+
+def is_real(place: Place) -> bool:
+    """Whether a real point of the set was found at parameters that the description allows."""
+    with _precision():
+        return next(_points(place, POINTS), None) is not None
+
+
+def gap_between(place: Place, variation: SecondVariation | None, first: FirstApproximation | None) -> Gap:
+    """Whether parameters were found at which what is necessary holds strictly and what is sufficient does not."""
+    if variation is None or first is None or first.unstable or not first.complete:
+        return Gap.UNTRIED
+    if variation.outcome not in (Definiteness.CONDITIONAL, Definiteness.STABLE):
+        return Gap.UNTRIED
+    tried = False
+    with _precision():
+        for point in _points(place, POINTS):
+            if not _hold(first.necessary, point, strictly=True):
+                continue
+            tried = True
+            if not any(_definite(variation, choice) for choice in _choices(place, point)):
+                return Gap.FOUND
+    return Gap.NONE_FOUND if tried else Gap.UNTRIED
+
+
+class _precision:
+    def __enter__(self) -> None:
+        self.before, ctx.prec = ctx.prec, BITS
+
+    def __exit__(self, *_: object) -> None:
+        ctx.prec = self.before
+
+
+def _definite(variation: SecondVariation, point: Mapping[int, arb]) -> bool:
+    return any(side is not None and _hold(side, point) for side in (variation.positive, variation.negative))
+
+
+def _hold(relations: Sequence[Relation], point: Mapping[int, arb], strictly: bool = False) -> bool:
+    """Proved by balls."""
+    for one in relations:
+        if any(_value(f.polynomial, point).contains(0) for f in one.unless):
+            return False
+        value = _value(one.formula.polynomial, point)
+        if one.relation == "!=":
+            if value.contains(0):
+                return False
+        elif not value > 0 and (strictly or one.relation == ">" or not value >= 0):
+            return False
+    return True
+
+
+def _value(p: Polynomial, point: Mapping[int, arb]) -> arb:
+    total = arb(0)
+    for monomial, c in p.to_dict().items():
+        term = arb(c)
+        for g, power in enumerate(monomial):
+            if power:
+                term *= point[g] ** int(power)
+        total += term
+    return total
+
+
+def _choices(place: Place, point: Point) -> Iterator[Point]:
+    """The same state and parameters with other values of the multipliers on which the state does not depend."""
+    yield point
+    free = [g for g in place.free_multipliers if not place.fixes(g)]
+    if not free:
+        return
+    chance = random.Random(5)
+    for _ in range(CHOICES):
+        changed = dict(point) | {g: arb(chance.choice(_VALUES) * chance.choice((1, -1))) for g in free}
+        if _solve(place, changed):
+            yield changed
+
+
+def _points(place: Place, count: int) -> Iterator[Point]:
+    """Real points of the set at parameters that the description allows: rational but for roots, in balls."""
+    arena = place.arena
+    chance = random.Random(11)
+    unknown = (*place.free_multipliers, *place.free_variables)
+    for _ in range(count):
+        point: Point = {
+            g: arb(chance.choice(_VALUES)) * _direction(arena.signs.words[g], chance) for g in arena.parameters
+        }
+        for g in unknown:
+            point[g] = arb(chance.choice(_VALUES) * chance.choice((1, -1)) * fmpq(1, 2))
+        if not _allowed(place, point):
+            continue
+        pending = list(place.rules)
+        if _roots(pending, point, chance) and _solve(place, point):
+            yield point
+
+
+def _direction(word: str, chance: random.Random) -> int:
+    return {"positive": 1, "nonnegative": 1, "negative": -1, "nonpositive": -1}.get(word) or chance.choice((1, -1))
+
+
+def _allowed(place: Place, point: Mapping[int, arb]) -> bool:
+    for p, relation in place.arena.signs.assumptions:
+        value = _value(p, point)
+        if (relation == ">" and not value > 0) or (relation == ">=" and not value >= 0) or value.contains(0):
+            return False
+    return True
+
+
+def _roots(pending: list[Rule], point: Point, chance: random.Random) -> bool:
+    """Real roots of what remains, one generator after another."""
+    unset = {rule.generator for rule in pending}
+    while pending:
+        ready = next((r for r in pending if not any(r.equation.degrees()[g] for g in unset if g != r.generator)), None)
+        if ready is None:
+            return False
+        root = _root(ready, point, chance)
+        if root is None:
+            return False
+        point[ready.generator] = root
+        unset.discard(ready.generator)
+        pending.remove(ready)
+    return True
+
+
+def _root(rule: Rule, point: Point, chance: random.Random) -> arb | None:
+    """A real root between two rational places where the equation has other signs, in a ball."""
+    degree = rule.equation.degrees()[rule.generator]
+    coefficients = [arb(0)] * (degree + 1)
+    rest = dict(point) | {rule.generator: arb(1)}
+    for power in range(degree + 1):
+        part = rule.top(rule.equation, power)
+        if part != 0:
+            coefficients[power] = _value(part, rest)
+
+    def at(x: fmpq) -> arb:
+        total = arb(0)
+        for c in reversed(coefficients):
+            total = total * arb(x) + c
+        return total
+
+    marks = [fmpq(k, 3) for k in range(-24, 25)]
+    values = [at(x) for x in marks]
+    exact = [x for x, value in zip(marks, values, strict=True) if value.is_zero()]
+    if exact:
+        return arb(chance.choice(exact))
+    pairs = [
+        (a, b)
+        for (a, u), (b, v) in zip(
+            zip(marks, values, strict=True), list(zip(marks, values, strict=True))[1:], strict=False
+        )
+        if (u > 0 and v < 0) or (u < 0 and v > 0)
+    ]
+    if not pairs:
+        return None
+    low, high = chance.choice(pairs)
+    rising = bool(at(high) > 0)
+    for _ in range(BITS - 32):
+        middle = (low + high) / 2
+        value = at(middle)
+        if value.contains(0):
+            break
+        if bool(value > 0) == rising:
+            high = middle
+        else:
+            low = middle
+    return arb(low).union(arb(high))
+
+
+def _solve(place: Place, point: Point) -> bool:
+    """What the branch solved for; False where a denominator, or what must not vanish, may be zero."""
+    for s in place.branch.solved:
+        bottom = _value(s.denominator, point)
+        if bottom.contains(0):
+            return False
+        point[s.unknown] = _value(s.numerator, point) / bottom
+    return not any(_value(p, point).contains(0) for p in place.branch.nonzero)

@@ -1,0 +1,127 @@
+"""Problem 10, steady motions and invariant manifolds: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mbsym.formulas.formula import Formula
+from mbsym.model.system import System
+from mbsym.problems.invariant_sets import (
+    FirstApproximation,
+    InvariantSets,
+    Proof,
+    Relation,
+    SecondVariation,
+    StationarySet,
+)
+from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening
+from mbsym.report.plain import LONGEST, Write
+from mbsym.report.said import filled
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    return {
+        "integrals": [{"name": name, "formula": write(x)} for name, x in found.integrals],
+        "relations": [write(x) for x in found.relations],
+        "families": [
+            {
+                "integrals": list(family.integrals),
+                "multipliers": list(family.multipliers),
+                "complete": not family.unfinished,
+                "sets": [_set(one, write) for one in family.sets],
+            }
+            for family in found.families
+        ],
+        "provided_nonzero": [write(x) for x in found.generic],
+    }
+
+
+def _set(one: StationarySet, write: Write) -> dict[str, Any]:
+    stands = one.invariant is Proof.PROVED
+    return {
+        "kind": one.kind.value,
+        "dimension": one.dimension,
+        "dimension_of_union": one.union,
+        "solved": {name: write(x) for name, x in one.solved},
+        "relations": [write(x) for x in one.relations],
+        "nonzero": [write(x) for x in one.nonzero],
+        "free": list(one.free),
+        "multipliers": {name: None if x is None else write(x) for name, x in one.multipliers},
+        "motion": {name: write(x) for name, x in one.motion},
+        "invariant": one.invariant.value,
+        "real_point_found": one.real,
+        "second_variation": None if one.variation is None or not stands else _variation(one.variation, write),
+        "first_approximation": None if one.first is None else _first(one.first, write),
+        "gap": one.gap.value,
+    }
+
+
+def _variation(found: SecondVariation, write: Write) -> dict[str, Any]:
+    return {
+        "outcome": found.outcome.value,
+        "size": found.size,
+        "positive": None if found.positive is None else _relations(found.positive, write),
+        "negative": None if found.negative is None else _relations(found.negative, write),
+        "for_some_value_of": list(found.chosen),
+    }
+
+
+def _first(found: FirstApproximation, write: Write) -> dict[str, Any]:
+    return {
+        "zero_roots": found.zeros,
+        "factors_in_lambda_squared": [[write(x) for x in factor] for factor in found.factors],
+        "necessary": _relations(found.necessary, write),
+        "unstable": found.unstable,
+        "complete": found.complete,
+    }
+
+
+def _relations(relations: Sequence[Relation], write: Write) -> list[dict[str, Any]]:
+    return [
+        {"formula": write(one.formula), "relation": one.relation, "unless_zero": [write(x) for x in one.unless]}
+        for one in relations
+    ]
+
+
+def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    yield from map(filled, opening(found, PLAIN))
+    for family in found.families:
+        if not family.sets and not family.unfinished:
+            continue
+        yield f"K = {family_title(family, found)}"
+        yield from (f"  {filled(said)}" for said in of_family(family, PLAIN))
+        for k, one in enumerate(family.sets, start=1):
+            first, *rest = map(filled, of_set(one, k, PLAIN))
+            yield f"  {first}"
+            yield from (f"    {text}" for text in rest)
+    yield from map(filled, closing(found, PLAIN))
+
+
+def _short(x: Formula) -> str:
+    text = str(x)
+    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
+
+
+def even(factor: Sequence[Formula]) -> str:
+    """``A*lambda**4 + (B)*lambda**2 + (C)`` of a polynomial in lambda**2, lowest coefficient first."""
+    if any(len(str(x)) > LONGEST for x in factor):
+        return f"a polynomial of degree {2 * len(factor) - 2} (see the reports)"
+    powers = [f"*lambda**{2 * k}" if k else "" for k in range(len(factor))]
+    return " + ".join(f"({x}){power}" for x, power in reversed(list(zip(factor, powers, strict=True))) if not x.is_zero)
+
+
+PLAIN = Medium(
+    names=", ".join,
+    condition=lambda x, relation: f"{_short(x)} {relation} 0",
+    value=lambda name, x: f"{name} = {_short(x)}",
+    rate=lambda name, x: f"{name}' = {_short(x)}",
+    formula=_short,
+    even=even,
+    word=str,
+)

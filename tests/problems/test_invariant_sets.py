@@ -1,0 +1,195 @@
+"""Steady motions and invariant manifolds against the literature and derivations by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+import mbsym
+from mbsym.analysis.stages import Unavailable
+from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof
+from mbsym.problems.invariant_sets.arena import arena
+from mbsym.problems.invariant_sets.problem import invariant_sets
+from mbsym.problems.vector_field import in_speeds
+
+HEAVY = """
+mbsym: 1
+name: Heavy body about a fixed point
+parameters: {{g: {{sign: positive}}, m: {{sign: positive}}, {parameters}}}
+bodies:
+  - name: body
+    rotation: {{axes: [3, 1, 3], angles: [psi, theta, phi]}}
+    mass centre: {centre}
+    mass: m
+    inertia about: joint
+    inertia: {inertia}
+    speeds: {{p: omega1, q: omega2, r: omega3}}
+    orientation: {{gamma: 3}}
+loads:
+  - uniform gravity: {{acceleration: g, direction: [0, 0, -1]}}
+"""
+
+
+def _heavy(tmp_path, parameters, centre, inertia):
+    signs = ", ".join(f"{name}: {{sign: {'real' if name.endswith('0') else 'positive'}}}" for name in parameters)
+    path = tmp_path / "heavy.yaml"
+    path.write_text(HEAVY.format(parameters=signs, centre=centre, inertia=inertia))
+    return mbsym.load(path)
+
+
+def _value(formula, **numbers):
+    return Fraction(str(formula.subs(numbers)))
+
+
+@pytest.fixture(scope="module")
+def clebsch():
+    return mbsym.load("systems/clebsch-poisson.yaml").invariant_sets
+
+
+def test_the_manifolds_of_clebsch_tisserand_brun(clebsch):
+    """w_i = u_i gamma_i with u2 u3 = N + sigma A and its like (tests/references/orbit-gyrostat-and-clebsch, 3.2)."""
+    (family, *_) = clebsch.families
+    found = [one for one in family.sets if one.kind is Kind.MANIFOLD and len(one.free) == 3 and "p" not in one.free]
+    one = next(one for one in found if one.free == ("gamma1", "gamma2", "gamma3"))
+    assert one.invariant is Proof.PROVED
+    assert one.real
+    assert one.dimension == 2
+    # With lambda1^2 = N (1 + 2 A s)(1 + 2 B s)(1 + 2 C s), s = lambda2, sigma = 2 N s: numbers that make it a square.
+    numbers = {"A": 4, "B": Fraction(3, 2), "C": 1, "N": 300, "M": 1, "R": 1}
+    numbers |= {"lambda1": 180, "lambda2": 1, "lambda3": 0}
+    assert numbers["lambda1"] ** 2 == numbers["N"] * 9 * 4 * 3
+    u = [_value(value, **numbers, gamma1=1, gamma2=1, gamma3=1) for name, value in one.solved]
+    sigma = 2 * numbers["N"]
+    assert u[1] * u[2] == 300 + sigma * 4
+    assert u[2] * u[0] == 300 + sigma * Fraction(3, 2)
+    assert u[0] * u[1] == 300 + sigma
+    assert _value(one.relations[0], **numbers) == 0
+
+
+def test_permanent_rotations_of_clebsch_tisserand_brun(clebsch):
+    """A B S^4 + (N (A^2 + B^2 - A C - B C) + W^2 (2 A B - A C - B C + C^2)) S^2 + (A - C)(B - C)(N - W^2)^2."""
+    one = next(x for x in clebsch.families[0].sets if "r" in x.free and x.kind is Kind.STEADY)
+    ((free, middle, leading),) = one.first.factors
+    for A, B, C, N, W in ((4, 5, 6, 2, 3), (5, 7, 3, 1, 4)):
+        numbers = {"A": A, "B": B, "C": C, "N": N, "r": W}
+        scale = _value(leading, **numbers) / (A * B)
+        by_hand = N * (A**2 + B**2 - A * C - B * C) + W**2 * (2 * A * B - A * C - B * C + C**2)
+        assert _value(middle, **numbers) == scale * by_hand
+        assert _value(free, **numbers) == scale * (A - C) * (B - C) * (N - W**2) ** 2
+    assert one.first.zeros == 2
+    assert one.first.complete
+    assert not one.first.unstable
+    assert one.variation.outcome is Definiteness.CONDITIONAL
+    assert len(one.variation.chosen) == 1
+
+
+def test_the_euler_top_about_its_axes(tmp_path):
+    """Stable about the axes of the largest and the smallest moment, unstable about the middle one: both, exactly."""
+    found = _heavy(tmp_path, "ABC", [0, 0, 0], "[A, B, C]").invariant_sets
+    one = next(x for x in found.families[0].sets if x.free == ("r",))
+    assert {"p", "q"} == {name for name, _ in one.solved}
+    told = {x.relation: x.formula for x in one.variation.positive}
+    for A, B, C in ((2, 3, 4), (3, 4, 2), (2, 4, 3), (4, 2, 3)):
+        sides = [one.variation.positive, one.variation.negative]
+        stable = any(_all_hold(side, A=A, B=B, C=C, r=1) for side in sides if side is not None)
+        assert stable == (C not in (sorted((A, B, C))[1],))
+        assert _all_hold(one.first.necessary, A=A, B=B, C=C, r=1) == stable
+    assert one.gap is Gap.NONE_FOUND
+    assert told
+
+
+def _all_hold(relations, **numbers):
+    for one in relations:
+        x = _value(one.formula, **numbers)
+        if not {">": x > 0, ">=": x >= 0, "!=": x != 0}[one.relation]:
+            return False
+    return True
+
+
+def test_the_sleeping_top(tmp_path):
+    """C^2 r^2 > 4 A m g z0 is necessary and sufficient (Lagrange, Routh)."""
+    found = _heavy(tmp_path, ["A", "C", "z0"], "[0, 0, z0]", "[A, A, C]").invariant_sets
+    sets = found.families[0].sets
+    one = next(x for x in sets if x.free == ("r", "gamma3") and x.variation.chosen)
+    numbers = {"A": 2, "C": 1, "g": 10, "m": 1, "z0": Fraction(1, 4), "gamma3": 1}  # the border is r^2 = 20
+    for r, stable in ((5, True), (Fraction(9, 2), True), (Fraction(22, 5), False), (1, False)):
+        tried = [Fraction(k, 8) for k in range(-40, 41)] + [-Fraction(r) / 4]  # -C r/(2 A)
+        sides = [side for side in (one.variation.positive, one.variation.negative) if side is not None]
+        holds = any(_all_hold(side, **numbers, r=r, lambda1=x) for side in sides for x in tried)
+        assert holds == stable
+        assert _all_hold(one.first.necessary, **numbers, r=r) == stable
+    # The hanging top is stable at any rate.
+    assert _all_hold(one.first.necessary, **numbers | {"gamma3": -1}, r=1)
+
+
+def test_the_cone_of_staude(tmp_path):
+    """Axes of permanent rotation of a heavy body: c . (gamma x I gamma) = 0, w = -lambda1 gamma."""
+    found = _heavy(tmp_path, ["A", "B", "C", "x0", "y0", "z0"], "[x0, y0, z0]", "[A, B, C]").invariant_sets
+    (one,) = found.families[0].sets
+    assert one.kind is Kind.STEADY
+    assert one.union == 1
+    assert one.invariant is Proof.PROVED
+    numbers = {
+        "A": 3,
+        "B": 5,
+        "C": 7,
+        "x0": 2,
+        "y0": 3,
+        "z0": 1,
+        "g": 1,
+        "m": 1,
+        "lambda1": 2,
+        "gamma3": Fraction(1, 3),
+    }
+    values = {name: _value(x, **numbers) for name, x in one.solved}
+    gamma = [values["gamma1"], values["gamma2"], numbers["gamma3"]]
+    spin = [values["p"], values["q"], values["r"]]
+    assert spin == [-2 * x for x in gamma]
+    c, moments = (2, 3, 1), (3, 5, 7)
+    turned = [i * x for i, x in zip(moments, gamma, strict=True)]
+    cross = [gamma[1] * turned[2] - gamma[2] * turned[1], gamma[2] * turned[0] - gamma[0] * turned[2]]
+    cross.append(gamma[0] * turned[1] - gamma[1] * turned[0])
+    assert sum(a * b for a, b in zip(c, cross, strict=True)) == 0
+    # Euler's equation: the weight's moment c x gamma m g balances w x I w = lambda1^2 gamma x I gamma.
+    moment = [c[1] * gamma[2] - c[2] * gamma[1], c[2] * gamma[0] - c[0] * gamma[2], c[0] * gamma[1] - c[1] * gamma[0]]
+    assert [4 * x for x in cross] == [-x for x in moment]
+    assert found.generic  # where x0, y0 or z0 vanishes there are others, and that is said
+
+
+def test_orbital_equilibria_in_quaternions():
+    """Lagrange's region: the least moment radial, the largest along the orbit's normal; a branch left aside is told."""
+    found = mbsym.load("systems/gravity-gradient-quaternion.yaml").invariant_sets
+    (family,) = found.families
+    assert not found.complete
+    assert family.unfinished
+    assert all(one.kind is Kind.STEADY and one.invariant is Proof.PROVED for one in family.sets)
+    numbers = {"omega0": 1, "nu": 1, "R": 1, "m": 1}
+    for A, B, C in ((5, 4, 6), (4, 5, 6), (5, 6, 4), (6, 4, 5)):
+        for one in family.sets:
+            spin = {name: x for name, x in one.solved if name in "pqr" and str(x) != "0"}
+            (normal,) = spin  # the axis along the orbit's normal
+            sides = [side for side in (one.variation.positive, one.variation.negative) if side is not None]
+            if any(_all_hold(side, **numbers, A=A, B=B, C=C) for side in sides):
+                assert {"p": A, "q": B, "r": C}[normal] == 6
+                assert _all_hold(one.first.necessary, **numbers, A=A, B=B, C=C)
+
+
+def test_a_wrong_sign_in_the_equations_is_seen():
+    """The integrals, and so the sets, are those of other equations: what is not invariant is never called so."""
+    loaded = mbsym.load("systems/clebsch-poisson.yaml")
+    field, transfer = in_speeds(loaded.speed_form, loaded.equations, [x.formula.polynomial for x in loaded.integrals])
+    known = [(x.name, transfer.fraction(x.formula.polynomial)[0]) for x in loaded.integrals]
+    signs = {x.name: x.sign for x in loaded.system.parameters}
+    further = field.numerators[3] + field.generator("r") * field.generator("gamma3")  # gamma1' with a term too many
+    wrong = replace(field, numerators=(*field.numerators[:3], further, *field.numerators[4:]))
+    right = invariant_sets(arena(field, known, signs)).families[0].sets
+    assert {one.invariant for one in right} == {Proof.PROVED}
+    planted = invariant_sets(arena(wrong, known, signs)).families[0].sets
+    assert Proof.FAILED in {one.invariant for one in planted}
+
+
+def test_what_is_not_in_speeds_is_refused_by_name():
+    with pytest.raises(Unavailable, match="speeds"):
+        _ = mbsym.load("systems/double-pendulum.yaml").invariant_sets
