@@ -10,11 +10,12 @@ import click
 
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, read_description, status
 from mbsym_cli.options import Options
-from mbsym_cli.section_options import read_settings
+from mbsym_cli.section_options import read_axis, read_settings
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
+    from mbsym.maps.section import Axis
+    from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals
 
 #: More than any budget of monomials allows.
 MOST_DEGREE = 60
@@ -28,14 +29,28 @@ MOST_WEIGHT = 12
 @click.option(
     "--weight", "-w", "weights", multiple=True, metavar="NAME=N", help="Weight of a variable, or unit vector."
 )
+@click.option("--vary", "-v", metavar="NAME=LOW:HIGH", help="At which values of a parameter are there more?")
+@click.option("--cases", is_flag=True, help="Under which conditions on parameters are there more?")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
-def command(file: Path, degree: str, settings: tuple[str, ...], weights: tuple[str, ...], as_json: bool) -> None:
+def command(
+    file: Path,
+    degree: str,
+    settings: tuple[str, ...],
+    weights: tuple[str, ...],
+    vary: str | None,
+    cases: bool,
+    as_json: bool,
+) -> None:
     """Find all polynomial first integrals of FILE up to a weighted degree, or prove that there are no others.
 
     FILE has its equations in speeds and unit vectors (keys 'speeds' and 'orientation').  Parameters stay symbols, so
     that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
     A weighted degree counts each variable with its weight: those under which the equations are quasi-homogeneous where
     there are such, otherwise 1 for speeds and 2 for the rest.
+
+    --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
+    another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,
+    equalities and a polynomial condition besides.
 
     Exit codes: 0 found, or proved that there are none; 1 undecided, or the equations are not polynomial; 2 something is
     wrong.
@@ -44,17 +59,26 @@ def command(file: Path, degree: str, settings: tuple[str, ...], weights: tuple[s
     Examples:
       mbsym integrals systems/clebsch-poisson.yaml
       mbsym integrals systems/gyrostat-poisson.yaml --degree 6 --set lx=0 --set epsilon=0
+      mbsym integrals systems/euler-poisson.yaml -s B=2 -s C=1 -s x0=1 -s y0=0 -s z0=0 -s m=1 -s g=1 --vary A=1:5
+      mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases
     """
     system = read_description(file, unconstrained="integrals", moving="integrals")
     asked = Options()
     most = asked.whole("--degree", degree, 1, MOST_DEGREE)
     values = {} if system is None else read_settings(settings, system, asked)
     given = _weights(weights, asked)
+    axis = None if vary is None or system is None else read_axis(vary, "--vary", system, asked)
+    if vary is not None and cases:
+        asked.complain("--cases", "not-together", "with --vary other parameters are numbers", "choose one of them")
+    if axis is not None and axis.name in values:
+        asked.complain("--set", "repeated-name", f"'{axis.name}' has an interval and a number", "leave one of them out")
     if asked.refused(None if system is None else file) or system is None or most is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import integrals_of, setting
+    from mbsym.problems.polynomial_integrals import along
+    from mbsym.problems.polynomial_integrals import cases as all_cases
 
     try:
         with status(as_json, f"{file.name}: polynomial integrals"):
@@ -63,9 +87,13 @@ def command(file: Path, degree: str, settings: tuple[str, ...], weights: tuple[s
             for name in unknown:
                 known = ", ".join(there.field.variables)
                 asked.complain("--weight", "unknown-name", f"the field has no variable {name}", f"there are {known}")
+            _complain_unfit(there, axis, asked)
             if asked.refused(file):
                 sys.exit(BAD_INPUT)
             found = integrals_of(there, most, given)
+            line = None if axis is None else along(found, axis.low, axis.high)
+            positive = [one.name for one in system.parameters if one.sign == "positive"]
+            special = all_cases(found, positive) if cases else None
     except ZeroDivisionError as reason:
         complain(file, f"no integrals: {reason}")
         sys.exit(BAD_INPUT)
@@ -75,9 +103,9 @@ def command(file: Path, degree: str, settings: tuple[str, ...], weights: tuple[s
     if as_json:
         from mbsym.report.integrals_json import integrals_json
 
-        click.echo(integrals_json(system, values, there, found), nl=False)
+        click.echo(integrals_json(system, values, there, found, line, special), nl=False)
     else:
-        _show(file, system.name, there, found)
+        _show(file, system.name, there, found, line, special)
     sys.exit(OK if found.complete else FAILED)
 
 
@@ -94,7 +122,21 @@ def _weights(texts: tuple[str, ...], asked: Options) -> dict[str, int]:
     return found
 
 
-def _show(file: Path, name: str, there: Setting, found: PolynomialIntegrals) -> None:
+def _complain_unfit(there: Setting, axis: Axis | None, asked: Options) -> None:
+    """Of ``--vary``: a parameter that does not occur, or others without numbers."""
+    if axis is None:
+        return
+    if axis.name not in there.field.parameters:
+        asked.complain("--vary", "not-there", f"the equations do not depend on {axis.name}", "take another parameter")
+    lacking = [name for name in there.field.parameters if name != axis.name]
+    if lacking:
+        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
+        asked.complain("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
+
+
+def _show(
+    file: Path, name: str, there: Setting, found: PolynomialIntegrals, line: Along | None, special: Cases | None
+) -> None:
     from rich.text import Text
 
     from mbsym.report.integrals_words import HEADING, sentences, title, weights
@@ -111,3 +153,13 @@ def _show(file: Path, name: str, there: Setting, found: PolynomialIntegrals) -> 
         out.print(Text(f"      {there.formula(one.polynomial)}"), soft_wrap=True)
     for said in sentences(found):
         out.print(Text(f"    {filled(said)}"))
+    from mbsym_cli.integrals_cases import along_lines, cases_lines
+
+    for heading, lines in (
+        ("Special values", None if line is None else along_lines(there, line, found.degree)),
+        ("Special cases", None if special is None else cases_lines(there, special)),
+    ):
+        if lines is not None:
+            out.print(Text.assemble("  ", (heading, "bold cyan")))
+            for text in lines:
+                out.print(Text(f"    {text}"), soft_wrap=True)

@@ -36,8 +36,8 @@ class Setting:
     known: tuple[tuple[str, Any], ...]
 
     def formula(self, p: Any) -> Formula:
-        """A polynomial over ``field`` as a formula."""
-        places = [(*self.whole.parameters, *self.whole.variables).index(name) for name in self.field.context.names()]
+        """A polynomial over ``field``, or one with numbers in place of further parameters, as a formula."""
+        places = [(*self.whole.parameters, *self.whole.variables).index(name) for name in p.context().names()]
         terms = {}
         for monomial, c in p.to_dict().items():
             exponents = [0] * len(self.whole.context.names())

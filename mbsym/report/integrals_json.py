@@ -9,14 +9,21 @@ from typing import Any
 
 from mbsym.analysis.polynomial import Setting
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import PolynomialIntegrals
+from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Special
 from mbsym.report.schemas import version
 
 #: The version of ``schemas/integrals.json`` that it follows.
 FORMAT = 1
 
 
-def integrals_json(system: System, values: Mapping[str, Fraction], there: Setting, found: PolynomialIntegrals) -> str:
+def integrals_json(
+    system: System,
+    values: Mapping[str, Fraction],
+    there: Setting,
+    found: PolynomialIntegrals,
+    line: Along | None = None,
+    special: Cases | None = None,
+) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data: dict[str, Any] = {
         "format": FORMAT,
@@ -24,6 +31,8 @@ def integrals_json(system: System, values: Mapping[str, Fraction], there: Settin
         "system": system.name,
         "values": {name: str(value) for name, value in values.items()},
         **integrals_data(there, found),
+        "along": None if line is None else _along(there, line),
+        "cases": None if special is None else _cases(there, special),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
@@ -51,4 +60,40 @@ def integrals_data(there: Setting, found: PolynomialIntegrals) -> dict[str, Any]
             {"weight": one.weight, "monomials": one.monomials, "at_most": one.most, "found": one.products}
             for one in found.counts
         ],
+    }
+
+
+def _along(there: Setting, line: Along) -> dict[str, Any]:
+    return {
+        "parameter": line.name,
+        "low": str(line.low),
+        "high": str(line.high),
+        "values": [{"value": str(one.value), **_special(there, one)} for one in line.values],
+        "undecided_at_zeros_of": [[str(c) for c in p.coeffs()] for p in line.irrational],
+        "no_others": line.whole,
+    }
+
+
+def _cases(there: Setting, special: Cases) -> dict[str, Any]:
+    return {
+        "families": special.families,
+        "conditions_not_found": special.unread,
+        "cases": [
+            {"vanishing": [str(there.formula(p)) for p in case.conditions], **_special(there, case.special)}
+            for case in special.cases
+        ],
+    }
+
+
+def _special(there: Setting, one: Special) -> dict[str, Any]:
+    return {
+        "integrals": [{"weight": weight, "formula": str(there.formula(f))} for weight, f in one.integrals],
+        "on_levels": [
+            {
+                "zero": level.level.name,
+                "integrals": [{"weight": weight, "formula": str(there.formula(f))} for weight, f in level.integrals],
+            }
+            for level in one.levels
+        ],
+        "complete": one.complete,
     }

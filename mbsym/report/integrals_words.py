@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
-from mbsym.problems.polynomial_integrals import Generator, PolynomialIntegrals, Sure
+from mbsym.problems.polynomial_integrals import Case, Generator, OnLevel, PolynomialIntegrals, Sure
 from mbsym.report.said import Said
 
 HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
@@ -21,6 +22,30 @@ def weights(found: PolynomialIntegrals) -> str:
 def title(one: Generator) -> str:
     """What an integral is called."""
     return one.name or "further integral"
+
+
+def case_title(weight: int) -> str:
+    """Of an integral that holds in a special case."""
+    return f"further integral of weight {weight}"
+
+
+def level_title(weight: int, level: OnLevel) -> str:
+    """Of one that holds where another one vanishes."""
+    return f"where the integral of weight {level.level.weight} ({title(level.level)}) is zero, one of weight {weight}"
+
+
+def conditions_text(case: Case, write: Callable[[Any], str]) -> str:
+    """``A = B, x0 = 0``: differences of two names as equations between them."""
+    return ", ".join(_equation(p, write) for p in case.conditions)
+
+
+def _equation(p: Any, write: Callable[[Any], str]) -> str:
+    terms = sorted(p.to_dict().items(), key=lambda item: item[0], reverse=True)
+    if len(terms) == 2 and terms[0][1] * terms[1][1] < 0:
+        sign = 1 if terms[0][1] > 0 else -1
+        left, right = (p.context().from_dict({m: c * sign * k}) for (m, c), k in zip(terms, (1, -1), strict=True))
+        return f"{write(left)} = {write(right)}"
+    return f"{write(p)} = 0"
 
 
 def sentences(found: PolynomialIntegrals) -> Iterator[Said]:

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
-CLEBSCH = "systems/clebsch-poisson.yaml"
+CLEBSCH, TOP = "systems/clebsch-poisson.yaml", "systems/euler-poisson.yaml"
 
 
 def run(*words):
@@ -46,6 +46,35 @@ def test_the_table_says_what_is_proved():
     assert "There is none beyond those of problem 7." in generic.stdout
 
 
+NUMBERS = [f"--set={one}" for one in ("B=2", "C=1", "x0=1", "y0=0", "z0=0", "m=1", "g=1")]
+
+
+def test_kovalevskayas_value_is_found():
+    """A = B = 2 C (Acta Math. 12, 1889)."""
+    done = run(TOP, *NUMBERS, "--vary", "A=1:5", "--json")
+    assert done.exit_code == 0
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("integrals"))
+    assert [one["value"] for one in data["along"]["values"]] == ["2"]
+    assert data["along"]["no_others"] is True
+    told = run(TOP, *NUMBERS, "--vary", "A=1:5").stdout
+    assert "A = 2" in told
+    assert "At all other values of A from 1 to 5" in told
+
+
+def test_cases_are_conditions():
+    """The mass centre on the third axis: Euler without weight, Lagrange with A = B, the body with equal moments."""
+    done = run(TOP, "--set", "x0=0", "--set", "y0=0", "--degree", "2", "--cases", "--json")
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("integrals"))
+    told = [[w["weight"] for w in one["integrals"]] for one in data["cases"]["cases"]]
+    assert [2] in told
+    assert [1] in told
+    text = run(TOP, "--set", "x0=0", "--set", "y0=0", "--degree", "2", "--cases").stdout
+    assert "that there are no other cases is not" in text
+    assert "A = B" in text
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -53,6 +82,9 @@ def test_the_table_says_what_is_proved():
         ((CLEBSCH, "--degree", "x"), "error["),
         ((CLEBSCH, "--set", "Q=1"), "there is no parameter called Q"),
         ((CLEBSCH, "--set", "A=0"), "vanishes at these values"),
+        ((TOP, "--vary", "A=1:5"), "no number for B"),
+        ((TOP, *NUMBERS, "--vary", "B=1:5"), "has an interval and a number"),
+        ((TOP, *NUMBERS, "--vary", "A=1:5", "--cases"), "choose one of them"),
         ((CLEBSCH, "--weight", "s=1"), "the field has no variable s"),
         ((CLEBSCH, "--weight", "gamma1"), "a variable and its weight"),
     ],

@@ -29,6 +29,8 @@ REFUTED = {
 
 #: Problems without a result, and why: these descriptions give no unperturbed motion.
 NO_MOTION = {
+    "euler-poisson.yaml",
+    "kovalevskaya.yaml",
     "four-bar.yaml",
     "gyrostat.yaml",
     "gyrostat-poisson.yaml",

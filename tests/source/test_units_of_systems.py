@@ -39,6 +39,7 @@ TETHER = {
     **dict.fromkeys(("m_A", "m_B", "m1", "m2"), "kg"),
 }
 FIXED = {"g": "m/s^2", "x0": "m", "y0": "m", "z0": "m", "lx": "N*m*s", "lz": "kg*m^2/s"}
+HEAVY = {"m": "kg", "g": "m/s^2", "x0": "m", "psi": "rad", "p": "rad/s"}
 SMALL = dict.fromkeys(("epsilon", "delta1", "delta2"), "1")
 BICYCLE = {
     **dict.fromkeys(("w", "c", "rR", "rF", "xB", "zB", "xH", "zH"), "m"),
@@ -70,6 +71,8 @@ UNITS = {
     },
     "double-pendulum": {"m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad"},
     "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
+    "euler-poisson": {**BODY, **HEAVY, "y0": "m", "z0": "m"},
+    "kovalevskaya": {"C": MOMENTS, **HEAVY},
     "four-bar": {**dict.fromkeys(("l1", "l2", "l3", "l4"), "m"), "rho": "kg/m", "q1": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
     "gravity-gradient-quaternion": {**ORBIT, **BODY, "m": "kg", "chi": "rad", "p": "rad/s", "e1": "1"},

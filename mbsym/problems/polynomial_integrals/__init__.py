@@ -26,8 +26,38 @@ Example:
     ([(2, '')], True)
 """
 
+from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.result import Count, Generator, PolynomialIntegrals, Sure
+from mbsym.problems.polynomial_integrals.levels import levels, on_level
+from mbsym.problems.polynomial_integrals.result import (
+    Along,
+    Case,
+    Cases,
+    Count,
+    Generator,
+    OnLevel,
+    PolynomialIntegrals,
+    Special,
+    Sure,
+)
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+from mbsym.problems.polynomial_integrals.values import along
 
-__all__ = ["Count", "Generator", "Grading", "PolynomialIntegrals", "Sure", "grading", "polynomial_integrals"]
+__all__ = [
+    "Along",
+    "Case",
+    "Cases",
+    "Count",
+    "Generator",
+    "Grading",
+    "OnLevel",
+    "PolynomialIntegrals",
+    "Special",
+    "Sure",
+    "along",
+    "cases",
+    "grading",
+    "levels",
+    "on_level",
+    "polynomial_integrals",
+]

@@ -18,19 +18,30 @@ from mbsym.problems.polynomial_integrals.modular import SMALLER, Exponents
 MOST_SUPPORT, MOST_ENTRY = 120, 4000
 
 
-def lifted(field: PolynomialField, support: Sequence[Exponents], modulo: bool, leading: Exponents) -> Any | None:
+def lifted(
+    field: PolynomialField,
+    support: Sequence[Exponents],
+    modulo: bool,
+    leading: Exponents,
+    level: Any = None,
+    cofactor: Sequence[Exponents] = (),
+) -> Any | None:
     """The polynomial on these monomials with  df/dt = 0, primitive over ZZ[parameters], if it is one up to a factor.
 
-    ``leading``: a monomial that occurs in it.  None where there is none (or more than one that has ``leading``).
-    Raises NoClosedForm where it outgrows its bounds.
+    ``leading``: a monomial that occurs in it.  With a ``level`` V it is  df/dt = K V, K on the monomials ``cofactor``.
+    None where there is none (or more than one that has ``leading``).  Raises NoClosedForm where it outgrows its bounds.
     """
     if len(support) > MOST_SUPPORT:
         told = f"an integral has {len(support)} monomials, more than {MOST_SUPPORT}"
         raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
     order = [one for one in support if one != leading]
     columns = [*order, leading]
-    equations = _equations(field, columns, modulo)
-    solved = _eliminated(field, equations, len(order))
+    images = [field.derivative(monomial(field, one)) for one in columns]
+    if modulo:
+        images = [field.reduced(one) for one in images]
+    multiples = [monomial(field, one) * level for one in cofactor]
+    equations = _equations(field, [*images[:-1], *multiples, images[-1]])
+    solved = _eliminated(field, equations, len(order) + len(multiples))
     if solved is None:
         return None
     tops, bottoms = solved
@@ -38,10 +49,12 @@ def lifted(field: PolynomialField, support: Sequence[Exponents], modulo: bool, l
     for bottom in bottoms:
         common = common * (bottom / bottom.gcd(common))
     total = common * monomial(field, leading)
-    for one, top, bottom in zip(order, tops, bottoms, strict=True):
+    for one, top, bottom in zip(order, tops, bottoms, strict=False):  # those of the cofactor follow
         total -= top * (common / bottom) * monomial(field, one)
     found = primitive(field, total)
     rate = field.derivative(found)
+    if level is not None:  # the level is primitive over the parameters: by Gauss' lemma it divides there, too
+        return found if divmod(rate, level)[1] == 0 else None
     return found if (field.reduced(rate) if modulo else rate) == 0 else None
 
 
@@ -83,11 +96,11 @@ def primitive(field: PolynomialField, f: Any) -> Any:
     return -scaled if scaled.leading_coefficient() < 0 else scaled
 
 
-def _equations(field: PolynomialField, columns: Sequence[Exponents], modulo: bool) -> list[dict[int, Any]]:
+def _equations(field: PolynomialField, images: Sequence[Any]) -> list[dict[int, Any]]:
+    """sum_k c_k images_k = 0, coefficient by coefficient; short ones first."""
     rows: dict[Exponents, dict[int, Any]] = {}
-    for k, one in enumerate(columns):
-        image = field.derivative(monomial(field, one))
-        for key, c in coefficients(field, field.reduced(image) if modulo else image).items():
+    for k, image in enumerate(images):
+        for key, c in coefficients(field, image).items():
             rows.setdefault(key, {})[k] = c
     return sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values())))
 

@@ -10,7 +10,7 @@ import random
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -128,14 +128,36 @@ def _reduced(terms: Terms, leading: Exponents, tail: Terms, prime: int) -> Terms
     return {m: c for m, c in done.items() if c}
 
 
-def monomials(weights: Sequence[int], weight: int) -> Iterator[Exponents]:
+def times(a: Terms, b: Terms, prime: int) -> Terms:
+    """The product."""
+    found: Terms = {}
+    for m, c in a.items():
+        for n, d in b.items():
+            key = tuple(map(int.__add__, m, n))
+            found[key] = (found.get(key, 0) + c * d) % prime
+    return {m: c for m, c in found.items() if c}
+
+
+def remainder(f: Terms, level: Terms, prime: int) -> Terms:
+    """f modulo a homogeneous polynomial: without multiples of its leading monomial."""
+    leading = max(level)
+    inverse = pow(-level[leading], -1, prime)
+    return _reduced(f, leading, {m: c * inverse % prime for m, c in level.items() if m != leading}, prime)
+
+
+@lru_cache(maxsize=64)
+def monomials(weights: tuple[int, ...], weight: int) -> tuple[Exponents, ...]:
     """Every x^a with sum a_i weights_i = weight, those of the last variable first."""
+    return tuple(_monomials(weights, weight))
+
+
+def _monomials(weights: tuple[int, ...], weight: int) -> Iterator[Exponents]:
     if not weights:
         if weight == 0:
             yield ()
         return
     for power in range(weight // weights[0] + 1):
-        for rest in monomials(weights[1:], weight - power * weights[0]):
+        for rest in _monomials(weights[1:], weight - power * weights[0]):
             yield (power, *rest)
 
 
@@ -156,14 +178,22 @@ def kernel(there: ModularField, columns: Sequence[Exponents], modulo: bool) -> l
     images = [there.derivative(one) for one in columns]
     if modulo:
         images = [there.reduced(one) for one in images]
-    found: list[Terms] = []
+    return [{columns[k]: c for k, c in vector.items()} for vector in kernel_of(images, there.prime)]
+
+
+def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
+    """A basis of the combinations of ``images`` that are zero: coefficients by the places of the images.
+
+    Raises NoClosedForm where more of them are coupled than ``MOST_COUPLED``.
+    """
+    found: list[dict[int, int]] = []
     for part in coupled(images):
         if len(part) > MOST_COUPLED:
             told = f"{len(part)} monomials are coupled with each other, more than {MOST_COUPLED}"
             raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
-        matrix = matrix_of([images[k] for k in part], there.prime)
+        matrix = matrix_of([images[k] for k in part], prime)
         for vector in null_space(matrix):
-            found.append({columns[part[k]]: c for k, c in enumerate(vector) if c})
+            found.append({part[k]: c for k, c in enumerate(vector) if c})
     return found
 
 

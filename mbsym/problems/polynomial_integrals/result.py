@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
@@ -79,3 +80,67 @@ class PolynomialIntegrals:
     def new(self) -> tuple[Generator, ...]:
         """Those that problem 7 does not list, nor combinations of what it lists."""
         return tuple(one for one in self.generators if one.is_new)
+
+
+@dataclass(frozen=True)
+class OnLevel:
+    """Integrals on  V = 0, V the polynomial of ``level``: (weight, f) with  df/dt = K V, each proved by division."""
+
+    level: Generator
+    integrals: tuple[tuple[int, Any], ...]
+    counts: tuple[Count, ...]
+
+    @property
+    def complete(self) -> bool:
+        return all(one.complete for one in self.counts)
+
+
+@dataclass(frozen=True)
+class Special:
+    """A special case: what there is beyond what there is in general.
+
+    ``value`` of the parameter that was varied, if one was; ``field`` with it put in.  ``integrals``: (weight, f) over
+    that field, proved.  ``levels``: those that hold where an integral vanishes.  ``complete``: there are no others of
+    the weights that were looked at.
+    """
+
+    value: Fraction | None
+    field: PolynomialField
+    integrals: tuple[tuple[int, Any], ...]
+    levels: tuple[OnLevel, ...]
+    complete: bool
+
+
+@dataclass(frozen=True)
+class Along:
+    """The special values of a parameter in an interval.
+
+    ``irrational``: polynomials over QQ at whose zeros the rank may drop, too: undecided.  ``whole``: it is proved that
+    there is no other value, rational or not, but for algebraic numbers whose polynomials need coefficients beyond 10^9;
+    otherwise that is so of rational ones with numerator and denominator up to 10^9.
+    """
+
+    name: str
+    low: Fraction
+    high: Fraction
+    values: tuple[Special, ...]
+    irrational: tuple[Any, ...]
+    whole: bool
+
+
+@dataclass(frozen=True)
+class Case:
+    """Where all ``conditions`` (polynomials in the parameters) vanish there is what ``special`` holds, proved."""
+
+    conditions: tuple[Any, ...]
+    special: Special
+
+
+@dataclass(frozen=True)
+class Cases:
+    """The cases that were found in ``families`` families; ``unread``: drops of the rank whose condition was not."""
+
+    usual: PolynomialIntegrals
+    cases: tuple[Case, ...]
+    families: int
+    unread: int

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import permutations
@@ -25,6 +25,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     echelon,
     kernel,
     monomials,
+    times,
 )
 from mbsym.problems.polynomial_integrals.result import Count, Generator, PolynomialIntegrals
 
@@ -111,31 +112,9 @@ class Search:
     def products(self, weight: int) -> list[Terms]:
         """Products of the generators of that weight (up to it, with 1, where weights are not told apart)."""
         exactly = self.grading.homogeneous and not self.modulo
-        one: Terms = {(0,) * len(self.field.variables): 1}
-        reached: list[tuple[int, Terms]] = [(0, one)]
-        for generator in self.generators:
-            further = []
-            for start, terms in reached:
-                at, product = start, terms
-                further.append((at, product))
-                while at + generator.weight <= weight:
-                    at, product = at + generator.weight, self._times(product, generator.terms)
-                    further.append((at, product))
-            reached = further
-            if len(reached) > MOST_PRODUCTS:
-                told = f"the integrals have more than {MOST_PRODUCTS} products of weight {weight}"
-                raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
-        return [terms for at, terms in reached if at == weight or not exactly]
-
-    def _times(self, a: Terms, b: Terms) -> Terms:
-        prime = self.there.prime
-        found: Terms = {}
-        for m, c in a.items():
-            for n, d in b.items():
-                key = tuple(map(int.__add__, m, n))
-                found[key] = (found.get(key, 0) + c * d) % prime
-        found = {m: c for m, c in found.items() if c}
-        return self.there.reduced(found) if self.modulo else found
+        pairs = [(one.weight, one.terms) for one in self.generators]
+        reduce = self.there.reduced if self.modulo else lambda terms: terms
+        return products(pairs, weight, exactly, self.there.prime, len(self.field.variables), reduce)
 
     def _new(self, rows: list[Terms], most: list[Terms], columns: Sequence[Exponents]) -> Iterator[tuple[Any, Terms]]:
         """What the kernel has beyond the products, each in as few monomials as some order of the variables gives."""
@@ -162,6 +141,32 @@ class Search:
                     part = primitive(field, part)
                     found.append(Known(part, weight, name, self.there.terms(part)))
         return sorted(found, key=lambda one: one.weight)
+
+
+def products(
+    generators: Sequence[tuple[int, Terms]],
+    weight: int,
+    exactly: bool,
+    prime: int,
+    variables: int,
+    reduce: Callable[[Terms], Terms],
+) -> list[Terms]:
+    """All products of polynomials of given weights: of one weight, or (not ``exactly``) up to it, 1 among them."""
+    one: Terms = {(0,) * variables: 1}
+    reached: list[tuple[int, Terms]] = [(0, one)]
+    for own, factor in generators:
+        further = []
+        for start, terms in reached:
+            at, product = start, terms
+            further.append((at, product))
+            while at + own <= weight:
+                at, product = at + own, reduce(times(product, factor, prime))
+                further.append((at, product))
+        reached = further
+        if len(reached) > MOST_PRODUCTS:
+            told = f"the integrals have more than {MOST_PRODUCTS} products of weight {weight}"
+            raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+    return [terms for at, terms in reached if at == weight or not exactly]
 
 
 def _stem(field: PolynomialField, relation: Any) -> str:
