@@ -1,0 +1,355 @@
+"""The relative equilibria of a system over one parameter, as a curve: f(q, p) = 0 with the parameter p as an unknown.
+
+In one set of angles (``mechanics.charts``) f is made of polynomials in sines, cosines, lengths and p.  Along the curve
+the equilibria go on one by one, each a function of p, but for the places at which
+
+    f(q, p) = 0,    det df/dq (q, p) = 0,
+
+or at which an unknown goes to infinity, a square root to zero, or a denominator vanishes.  All of these are systems in
+(q, p) that are solved exactly (``algebra.polynomial_systems``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from flint import fmpq, fmpq_mat, fmpq_poly
+
+from mbsym.algebra.characteristic import determinant
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.charts import Chart, charts
+from mbsym.mechanics.rest import Rest, at_numbers, rest
+from mbsym.model.system import System
+from mbsym.problems.equilibria import WITHIN, _ChartSearch
+from mbsym.problems.rest_place import PRECISION, Place
+from mbsym.problems.rest_unknowns import Unknowns
+
+#: Values of coordinates (or of their sines and cosines) at which real points of a family are looked for.
+_TRIED = (fmpq(3, 5), fmpq(-4, 5), fmpq(5, 13), fmpq(1, 10), fmpq(-1, 10), fmpq(0), fmpq(1))
+
+
+@dataclass(frozen=True)
+class CurvePoint:
+    """A point (q, p) of the curve: ``place`` with p among its exact values, ``number`` is p itself."""
+
+    place: Place
+    number: Number
+    features: tuple[Any, ...]
+    curve: Curve
+
+    def same(self, other: CurvePoint) -> bool:
+        """Whether they are one configuration at one p: balls of features that are equal overlap."""
+        return (
+            len(self.features) == len(other.features)
+            and compare(self.number, other.number) == 0
+            and all(a.overlaps(b) for a, b in zip(self.features, other.features, strict=True))
+        )
+
+
+@dataclass(frozen=True)
+class Found:
+    """Isolated points with p in the range, numbers p over which there are infinitely many, and what was not done.
+
+    ``throughout``: there are infinitely many on a set along which p varies.
+    """
+
+    points: tuple[CurvePoint, ...]
+    continua: tuple[Number, ...]
+    throughout: bool
+    unfinished: tuple[str, ...]
+
+
+def with_parameter(system: System, name: str, values: Mapping[str, Fraction]) -> Rest:
+    """The equations of the steady motions with numbers for all parameters but one.
+
+    Raises KeyError for a missing value, NoClosedForm, SingularPoint.
+    """
+    kept = next(one for one in system.parameters if one.name == name)
+    numbers = {key: value for key, value in values.items() if key != name}
+    return rest(replace(at_numbers(system, numbers), parameters=(replace(kept, value=None),)))
+
+
+class _Search(_ChartSearch):
+    """The conditions of rest with a parameter that is an unknown, too."""
+
+    parameter = ""
+
+    def _obstacle(self, used: set[int]) -> str:
+        found = super()._obstacle(used - {self.ring.index("parameter", self.parameter)})
+        if found == f"{self.parameter} is transcendental":
+            return f"{self.parameter} stands in a root or a function"
+        return found
+
+
+class Curve:
+    """The curve in one set of angles.  Raises NoClosedForm where the equations are not of the kind needed."""
+
+    def __init__(self, chart: Chart, parameter: str, low: Fraction, high: Fraction, limits: Limits) -> None:
+        self.chart, self.parameter, self.limits = chart, parameter, limits
+        self.low, self.high = (fmpq(x.numerator, x.denominator) for x in (low, high))
+        search = _Search(chart, WITHIN, limits)
+        search.parameter = parameter
+        search._conditions()
+        self.search, self.found, self.ring = search, chart.found, chart.found.ring
+        self.index = self.ring.index("parameter", parameter)
+        self.label = chart.label
+        self.empty = search.impossible
+        self.names = () if self.empty else search.occurring
+        if self.empty:
+            return
+        if search.reason:
+            raise NoClosedForm(search.reason)
+        others = [x for name, x in self._rows.items() if name not in self.names and not x.is_zero()]
+        if others or search.remarks:
+            raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
+
+    @cached_property
+    def _rows(self) -> dict[str, Polynomial]:
+        found = self.found
+        return {name: self.ring.fraction(x)[0] for name, x in zip(found.system.coordinates, found.at_rest, strict=True)}
+
+    @cached_property
+    def forcing(self) -> list[Polynomial]:
+        """f, times what its rows divide by, for the coordinates that occur: the rows vanish with those of f."""
+        return [self._rows[name] for name in self.names]
+
+    @cached_property
+    def slopes(self) -> list[list[Polynomial]]:
+        """df/dq of ``forcing``."""
+        return [[self.ring.derivative(x, name) for name in self.names] for x in self.forcing]
+
+    @cached_property
+    def singular(self) -> Polynomial:
+        """det df/dq."""
+        return self.ring.reduce(determinant(self.slopes)) if self.names else self.ring.one
+
+    def along(self, x: Polynomial) -> Polynomial:
+        """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""
+        for k in occurring([x]):
+            g = self.ring.generators[k]
+            if g.argument is not None and self.index in self._reached(g.argument):
+                raise NoClosedForm(f"{self.parameter} stands in a root or a function")
+        return x.derivative(self.index)
+
+    def _reached(self, x: Polynomial) -> set[int]:
+        reached: set[int] = set()
+        pending = [*occurring([x])]
+        while pending:
+            k = pending.pop()
+            if k not in reached:
+                reached.add(k)
+                argument = self.ring.generators[k].argument
+                pending += [] if argument is None else [*occurring([argument])]
+        return reached
+
+    # --- places on the curve ---
+
+    def where(self, further: Sequence[Polynomial], at: Number | None = None) -> Found:
+        """The points of the curve, p within the range, at which ``further`` vanish, or at one number p."""
+        given = [self.ring.fraction(x)[0] for x in further]
+        table = self._table(given)
+        wanted = [table.polynomial(x) for x in (*self.search.equations, *given) if not x.is_zero()]
+        if at is not None:
+            wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
+        return self._solved(table, [*wanted, *table.relations()], at)
+
+    def where_on_components(self, further: Sequence[Polynomial]) -> Found:
+        """As ``where``, component by component of the curve: longer polynomials are short on one."""
+        given = [self.ring.fraction(x)[0] for x in further]
+        table = self._table(given)
+        equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
+        usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
+        whole = solve(equations, usable, table.bounded(), self.limits)
+        found = [Found((), (), False, whole.unfinished)]
+        wanted = [table.polynomial(x) for x in given]
+        for family in whole.families:
+            if any(part.dimension > 1 for part in whole.families):
+                return Found((), (), True, ())
+            found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None))
+        return joined(found)
+
+    def _table(self, given: Sequence[Polynomial]) -> Unknowns:
+        marked = [*self.search.equations, *given, *self.search.singular_where, self.ring.context.gen(self.index)]
+        return Unknowns(self.ring, marked)
+
+    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> Found:
+        usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
+        result = solve(equations, usable, table.bounded(), self.limits)
+        points = []
+        for one in result.points:
+            if table.roots_agree(one) and (p := self._number(table, one, at)) is not None:
+                points.append(self._point(table, one, p))
+        continua: list[Number] = []
+        throughout, unfinished = False, list(result.unfinished)
+        for family in result.families:
+            if not self._constant_on(table, family):
+                throughout = throughout or table.roots_agree(family.sample)
+                continue
+            for p in self._conjugates(table, family):
+                if at is None or compare(p, at) == 0:
+                    shown = self._shown_at(table, family, p)
+                    continua += [p] if shown else []
+                    unfinished += [] if shown else ["whether infinitely many equilibria at one value are real"]
+        return Found(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
+
+    def _conjugates(self, table: Unknowns, family: Family) -> list[Number]:
+        """The numbers in the range that p may have on a family, as it has one of them at the sample."""
+        k = table.indices.index(self.index)
+        minimal = _minimal(family.sample.values[k], family.sample.modulus)
+        ends = [x for x in (self.low, self.high) if minimal(x) == 0]
+        return [*ends, *map(number, roots_between(minimal, self.low, self.high))]
+
+    def _shown_at(self, table: Unknowns, family: Family, p: Number) -> bool:
+        """Whether a real point of the family with this p is found."""
+        gens = table.context.gens()
+        for value in _TRIED:
+            fixed = [gens[i] * int(value.q) - int(value.p) for i in family.free]
+            for one in [family.sample, *solve([*family.equations, *fixed], (), table.bounded(), self.limits).points]:
+                if table.roots_agree(one) and self._number(table, one, p) is not None:
+                    return True
+        return False
+
+    def _number(self, table: Unknowns, one: AlgebraicPoint, at: Number | None) -> Number | None:
+        """p there, if it lies in the range (and is ``at``)."""
+        value = one.values[table.indices.index(self.index)]
+        found = _algebraic(value, one, self.low, self.high)
+        return None if found is None or (at is not None and compare(found, at) != 0) else found
+
+    def _point(self, table: Unknowns, one: AlgebraicPoint, p: Number) -> CurvePoint:
+        place = self.search._place(table, one)
+        place.balls[self.parameter] = one.enclosure(one.values[table.indices.index(self.index)], PRECISION)
+        return CurvePoint(place, p, self.search._features(place), self)
+
+    def _constant_on(self, table: Unknowns, family: Family) -> bool:
+        """Whether p has one value on a family, near its sample: fixed there it does not make the family smaller."""
+        k = table.indices.index(self.index)
+        minimal = _minimal(family.sample.values[k], family.sample.modulus)
+        result = solve([*family.equations, _in_unknown(minimal, table.context, k)], (), table.bounded(), self.limits)
+        return any(x.dimension >= family.dimension and x.contains(family.sample) for x in result.families)
+
+    # --- places that are no points ---
+
+    def borders(self) -> Found:
+        """Where a square root vanishes, a denominator does, or a length goes to infinity."""
+        parts: list[Found] = []
+        angular = {str(x) for x in self.search.singular_where}
+        beside = [x for x in self.search.nonzero if str(x) not in angular]
+        roots = [
+            self.ring.context.gen(k) for k in occurring(self.search.equations) if self.ring.generators[k].kind == "root"
+        ]
+        for x in (*beside, *roots):
+            parts.append(self._without_conditions([x]))
+        parts += self._at_infinity()
+        return joined(parts)
+
+    def _without_conditions(self, further: Sequence[Polynomial]) -> Found:
+        kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
+        try:
+            return self.where(further)
+        finally:
+            self.search.nonzero = kept
+
+    def _at_infinity(self) -> list[Found]:
+        """Lengths are z/u with one z_j = 1; at u = 0 the forms of highest degree in z are left of the equations."""
+        ring = self.ring
+        lengths = [name for name in self.names if not self.search._periodic(name)]
+        if not lengths:
+            return []
+        kinds = {ring.generators[k].kind for k in occurring(self.search.equations)}
+        if kinds - {"sine", "cosine", "coordinate", "parameter"}:
+            return [Found((), (), False, ("whether branches go to infinity is not looked at: roots beside lengths",))]
+        table = Unknowns(ring, [*self.search.equations, ring.context.gen(self.index)])
+        equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
+        places = [table.indices.index(ring.index("coordinate", name)) for name in lengths]
+        k = table.indices.index(self.index)
+        return [self._gone(equations, places, at, table, k) for at in places]
+
+    def _gone(self, equations: Sequence[Any], places: Sequence[int], at: int, table: Unknowns, k: int) -> Found:
+        """The values of p (unknown ``k``) at which the length ``at`` may go to infinity, none of ``places`` faster."""
+        tops = []
+        for x in equations:
+            degree = max(sum(int(m[i]) for i in places) for m in x.monoms())
+            kept = {m: c for m, c in x.terms() if sum(int(m[i]) for i in places) == degree}
+            tops.append(table.context.from_dict(kept))
+        fixed = [table.context.gens()[at] - 1]
+        result = solve([*tops, *fixed], (), table.bounded(), self.limits)
+        numbers = [self._number(table, one, None) for one in result.points]
+        unfinished = list(result.unfinished)
+        for family in result.families:
+            if self._constant_on(table, family):
+                numbers += self._conjugates(table, family)
+            else:
+                unfinished.append("whether branches go to infinity is not decided")
+        return Found((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
+
+
+def joined(parts: Sequence[Found]) -> Found:
+    """What several searches found, together."""
+    return Found(
+        tuple(x for one in parts for x in one.points),
+        tuple(x for one in parts for x in one.continua),
+        any(one.throughout for one in parts),
+        tuple(dict.fromkeys(x for one in parts for x in one.unfinished)),
+    )
+
+
+def curves(
+    system: System, parameter: str, values: Mapping[str, Fraction], low: Fraction, high: Fraction, limits: Limits
+) -> tuple[Curve, ...]:
+    """The curve in every set of angles that is needed; those without points are left out."""
+    found = []
+    for chart in charts(with_parameter(system, parameter, values)):
+        one = Curve(chart, parameter, low, high, limits)
+        if not one.empty:
+            found.append(one)
+        if not one.empty and not one.search.equations:
+            break
+    return tuple(found)
+
+
+# --- numbers ----------------------------------------------------------------------------------------------------------
+
+
+def _minimal(value: Any, modulus: Any) -> Any:
+    """The integer minimal polynomial of an element of QQ[t]/modulus."""
+    n = int(modulus.degree())
+    if n == 1 or value.degree() <= 0:
+        return primitive(fmpq_poly([-value[0], 1]))
+    columns = [(value * fmpq_poly([0] * j + [1])) % modulus for j in range(n)]
+    table = fmpq_mat(n, n, [columns[j][i] for i in range(n) for j in range(n)])
+    return primitive(table.minpoly())
+
+
+def _algebraic(value: Any, one: AlgebraicPoint, low: Any, high: Any) -> Number | None:
+    """An element of the number field as a number in [low, high], None where it lies outside."""
+    minimal = _minimal(value, one.modulus)
+    if minimal.degree() == 1:
+        exact = fmpq(-minimal[0], minimal[1])
+        return exact if low <= exact <= high else None
+    bound = 1 + fmpq(max(abs(c) for c in minimal.coeffs()), 1)
+    roots, bits = roots_between(minimal, -bound, bound), 64
+    while True:
+        ball = one.enclosure(value, bits)
+        near = [root for root in roots if root.enclosure(bits).overlaps(ball)]
+        if len(near) == 1:
+            found = number(near[0])
+            return found if compare(found, low) >= 0 and compare(found, high) <= 0 else None
+        bits *= 2
+
+
+def _of_number(at: Number, context: Any, k: int) -> Any:
+    """The minimal polynomial of a number, in the unknown k."""
+    return _in_unknown([-at.p, at.q] if isinstance(at, fmpq) else at.polynomial.coeffs(), context, k)
+
+
+def _in_unknown(coefficients: Any, context: Any, k: int) -> Any:
+    n = context.nvars()
+    return context.from_dict({tuple(e * (i == k) for i in range(n)): c for e, c in enumerate(coefficients) if c})

@@ -1,0 +1,243 @@
+"""What happens to equilibria at a singular point of their curve, named by exact tests of derivatives.
+
+At a point with f(q, p) = 0 and a null space of df/dq of dimension one, spanned by v (and w on the left), Lyapunov and
+Schmidt's reduction leaves one equation g(y, p) = 0.  Its derivatives at the point are
+
+    g_p   = w.f_p                              g_yy  = w.f_qq[v, v]
+    g_yp  = w.(f_qp v + f_qq[v, q_p])          g_pp  = w.(f_pp + 2 f_qp q_p + f_qq[q_p, q_p])
+    g_yyy = w.(f_qqq[v, v, v] + 3 f_qq[v, q_yy])
+
+with  f_q q_p = -f_p  and  f_q q_yy = -f_qq[v, v]  wherever they are used (their right sides are orthogonal to w then).
+
+* g_p != 0, g_yy != 0: a fold.  g = 0 is p = -g_yy y^2 / (2 g_p) + ...: two equilibria on one side, none on the other.
+* g_p != 0, g_yy = 0, g_yyy != 0: one equilibrium on both sides (the branch turns steep, and goes on).
+* g_p = 0, g_yy != 0, g_yp^2 > g_yy g_pp: transcritical, two curves cross; < : an isolated point.
+* g_p = 0, g_yy = 0, g_yp != 0, g_yyy != 0: a pitchfork, three on the side where g_yp p / g_yyy < 0, one on the other.
+
+(Golubitsky & Schaeffer, Singularities and Groups in Bifurcation Theory I, ch. II and IV.)  Anything else is not named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from flint import fmpq_poly
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.polynomial_systems import inverse_modulo
+from mbsym.algebra.ring import Polynomial
+from mbsym.maps.branches_curve import Curve, CurvePoint
+
+Element = Any  # a flint.fmpq_poly: an element of a number field
+
+
+class Event(StrEnum):
+    """What a point of the curve is at a critical value."""
+
+    REGULAR = "goes on"
+    FOLD = "fold"
+    STEEP = "vertical tangent"
+    TRANSCRITICAL = "transcritical"
+    ISOLATED = "isolated point"
+    PITCHFORK = "pitchfork"
+    CONTINUUM = "continuum"
+    DEGENERATE = "degenerate, not named"
+
+
+#: Of the events that are named: how many equilibria near the point on the side with fewer, and with more.
+SIDES = {
+    Event.REGULAR: (1, 1),
+    Event.FOLD: (0, 2),
+    Event.STEEP: (1, 1),
+    Event.TRANSCRITICAL: (2, 2),
+    Event.ISOLATED: (0, 0),
+    Event.PITCHFORK: (1, 3),
+}
+
+
+@dataclass(frozen=True)
+class Named:
+    """``below`` and ``above``: equilibria near the point at smaller and larger values of the parameter; None: unknown.
+
+    ``derivatives``: enclosures (midpoints) of those that decided, by name.
+    """
+
+    event: Event
+    below: int | None
+    above: int | None
+    derivatives: tuple[tuple[str, float], ...] = ()
+
+
+def named(point: CurvePoint) -> Named:
+    """The event at a point of a curve; DEGENERATE where the tests above do not tell."""
+    try:
+        return _Reduction(point).named()
+    except Failure:
+        return _unnamed()
+
+
+def _unnamed() -> Named:
+    return Named(Event.DEGENERATE, None, None)
+
+
+class _Unknown(Failure):
+    """A derivative that is not known in the number field."""
+
+
+class _Reduction:
+    """The derivatives of the reduced equation at one point."""
+
+    def __init__(self, point: CurvePoint) -> None:
+        self.curve: Curve = point.curve
+        self.place, self.modulus = point.place, point.place.modulus
+        self.names, self.ring = self.curve.names, self.curve.ring
+        self.slopes = [[self.value(x) for x in row] for row in self.curve.slopes]
+
+    def value(self, x: Polynomial) -> Element:
+        found = self.place.residue(x)
+        if found is None:
+            raise _Unknown("a derivative outside of the number field")
+        return found
+
+    def sign(self, x: Element) -> int:
+        """Exact: 0 only where the element vanishes."""
+        if x == 0:
+            return 0
+        ball = self.place.enclose(x)
+        if ball.contains(0):
+            raise _Unknown("the sign of a derivative is not found at this precision")
+        return 1 if ball > 0 else -1
+
+    def named(self) -> Named:
+        n = len(self.names)
+        right = null_space(self.slopes, self.modulus)
+        if not right:
+            return Named(Event.REGULAR, 1, 1)
+        if len(right) > 1:
+            return _unnamed()
+        self.v = right[0]
+        self.w = null_space([[self.slopes[i][j] for i in range(n)] for j in range(n)], self.modulus)[0]
+        by_p = [self.value(self.curve.along(x)) for x in self.curve.forcing]
+        g_p, g_yy = self.dot(self.w, by_p), self.dot(self.w, self.second(self.v, self.v))
+        first, curved = self.sign(g_p), self.sign(g_yy)
+        told = [("g_p", g_p), ("g_yy", g_yy)]
+        if first and curved:
+            more_above = first * curved < 0
+            return self.found(Event.FOLD, more_above, told)
+        if not first and curved:
+            q_p = self.solved([-x for x in by_p])
+            g_yp = self.dot(self.w, self.mixed(self.v)) + self.dot(self.w, self.second(self.v, q_p))
+            g_pp = self.dot(self.w, self.twice_by_p())
+            g_pp += 2 * self.dot(self.w, self.mixed(q_p)) + self.dot(self.w, self.second(q_p, q_p))
+            split = self.sign((g_yp * g_yp - g_yy * g_pp) % self.modulus)
+            told += [("g_yp", g_yp % self.modulus), ("g_pp", g_pp % self.modulus)]
+            if split:
+                return self.found(Event.TRANSCRITICAL if split > 0 else Event.ISOLATED, True, told)
+            return _unnamed()
+        q_yy = self.solved([-x for x in self.second(self.v, self.v)])
+        g_yyy = self.dot(self.w, self.third()) + 3 * self.dot(self.w, self.second(self.v, q_yy))
+        cubic = self.sign(g_yyy % self.modulus)
+        told.append(("g_yyy", g_yyy % self.modulus))
+        if first:
+            return self.found(Event.STEEP, True, told) if cubic else _unnamed()
+        q_p = self.solved([-x for x in by_p])
+        g_yp = self.dot(self.w, self.mixed(self.v)) + self.dot(self.w, self.second(self.v, q_p))
+        crossing = self.sign(g_yp % self.modulus)
+        told.append(("g_yp", g_yp % self.modulus))
+        return self.found(Event.PITCHFORK, crossing * cubic < 0, told) if crossing and cubic else _unnamed()
+
+    def found(self, event: Event, more_above: bool, told: Sequence[tuple[str, Element]]) -> Named:
+        few, many = SIDES[event]
+        below, above = (few, many) if more_above else (many, few)
+        return Named(event, below, above, tuple((name, float(self.place.enclose(x).mid())) for name, x in told))
+
+    # --- derivatives ---
+
+    def second(self, a: Sequence[Element], b: Sequence[Element]) -> list[Element]:
+        """f_qq[a, b]."""
+        ring, total = self.ring, []
+        for row in self.curve.slopes:
+            parts = [
+                self.value(ring.derivative(x, name)) * a[i] % self.modulus * b[j] % self.modulus
+                for i, x in enumerate(row)
+                if a[i] != 0
+                for j, name in enumerate(self.names)
+                if b[j] != 0
+            ]
+            total.append(sum(parts, fmpq_poly([0])))
+        return total
+
+    def third(self) -> list[Element]:
+        """f_qqq[v, v, v]."""
+        ring, v, total = self.ring, self.v, []
+        active = [(i, name) for i, name in enumerate(self.names) if v[i] != 0]
+        for row in self.curve.slopes:
+            parts = [fmpq_poly([0])]
+            for i, _ in active:
+                for j, second in active:
+                    x = ring.derivative(row[i], second)
+                    for k, third in active:
+                        weight = v[i] * v[j] % self.modulus * v[k] % self.modulus
+                        parts.append(self.value(ring.derivative(x, third)) * weight % self.modulus)
+            total.append(sum(parts, fmpq_poly([0])))
+        return total
+
+    def mixed(self, a: Sequence[Element]) -> list[Element]:
+        """f_qp a."""
+        return [self.dot([self.value(self.curve.along(x)) for x in row], a) for row in self.curve.slopes]
+
+    def twice_by_p(self) -> list[Element]:
+        """f_pp."""
+        return [self.value(self.curve.along(self.curve.along(x))) for x in self.curve.forcing]
+
+    # --- linear algebra in the number field ---
+
+    def dot(self, a: Sequence[Element], b: Sequence[Element]) -> Element:
+        return sum((x * y % self.modulus for x, y in zip(a, b, strict=True)), fmpq_poly([0]))
+
+    def solved(self, right: Sequence[Element]) -> list[Element]:
+        """One solution of f_q x = right, which is orthogonal to w."""
+        n = len(self.names)
+        rows = [[*row, y] for row, y in zip(self.slopes, right, strict=True)]
+        reduced, pivots = echelon(rows, self.modulus, n)
+        found = [fmpq_poly([0])] * n
+        for row, column in zip(reduced, pivots, strict=False):
+            found[column] = row[n]
+        return found
+
+
+def echelon(rows: Sequence[Sequence[Element]], modulus: Any, columns: int) -> tuple[list[list[Element]], list[int]]:
+    """Reduced row echelon form over QQ[t]/modulus in the first ``columns``, with the pivots' columns."""
+    table = [[x % modulus for x in row] for row in rows]
+    pivots: list[int] = []
+    for column in range(columns):
+        at = len(pivots)
+        chosen = next((i for i in range(at, len(table)) if table[i][column] != 0), None)
+        if chosen is None:
+            continue
+        table[at], table[chosen] = table[chosen], table[at]
+        inverse = inverse_modulo(table[at][column], modulus)
+        table[at] = [x * inverse % modulus for x in table[at]]
+        for i in range(len(table)):
+            if i != at and table[i][column] != 0:
+                factor = table[i][column]
+                table[i] = [(x - factor * y) % modulus for x, y in zip(table[i], table[at], strict=True)]
+        pivots.append(column)
+    return table, pivots
+
+
+def null_space(rows: Sequence[Sequence[Element]], modulus: Any) -> list[list[Element]]:
+    """A basis of {x: rows x = 0}."""
+    n = len(rows[0]) if rows else 0
+    reduced, pivots = echelon(rows, modulus, n)
+    basis = []
+    for free in (k for k in range(n) if k not in pivots):
+        vector = [fmpq_poly([0])] * n
+        vector[free] = fmpq_poly([1])
+        for row, column in zip(reduced, pivots, strict=False):
+            vector[column] = -row[free]
+        basis.append(vector)
+    return basis
