@@ -42,6 +42,7 @@ COMMANDS = {
     "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
+    "nonlinear": Listed("nonlinear", "List where terms of higher order decide otherwise."),
     "convert": Listed("convert", "Convert YAML, plain text, and robots (URDF, MJCF)."),
     "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
     "lsp": Listed("lsp", "Serve an editor: complaints, completion, hover."),

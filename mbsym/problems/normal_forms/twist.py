@@ -183,7 +183,7 @@ def _two(
     if 4 in by_order:
         vector = by_order[4].vector
         left = abs(_at(_quadratic(form), [arb(abs(k)) for k in vector]))
-        right = 2 * (27 * _amplitude(form, vector, omega)).sqrt()
+        right = 2 * _root(27 * _amplitude(form, vector, omega))
         known["sides"] = (left, right)
         if left < right:
             return Judged(Outcome.UNSTABLE, Theorem.FOURTH, **known)
@@ -219,6 +219,11 @@ def _amplitude(form: NormalForm, vector: Sequence[int], omega: Sequence[arb]) ->
     """|h h'| of the resonant part h xi^k + h' eta^k."""
     one, other = (form.hamiltonian[key] for key in _keys(vector, omega))
     return abs(acb(one) * acb(other))
+
+
+def _root(square: arb) -> arb:
+    """The square root of what is not negative, be its enclosure so or not."""
+    return square.sqrt() if square > 0 else arb(0).union(square.upper().sqrt())
 
 
 def _absent(form: NormalForm, vector: Sequence[int], omega: Sequence[arb]) -> bool:

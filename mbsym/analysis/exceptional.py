@@ -1,0 +1,44 @@
+"""Problem 11 along one parameter, from an analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from mbsym.analysis.higher import ignorable
+from mbsym.analysis.stages import NoResult, Unavailable
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.normal_forms.along import Along
+
+
+def exceptional(
+    analysis: Analysis, name: str, interval: tuple[Fraction, Fraction], values: Mapping[str, Fraction]
+) -> Along:
+    """All exceptional values of a parameter between two numbers, the others at ``values``.
+
+    Raises Unavailable where the system has constraints, is given by matrices or has no motion; NotAlong and what
+    expansions raise.
+    """
+    from mbsym.problems.normal_forms.along import along
+
+    if analysis.system.speeds:
+        return exceptional(analysis.in_coordinates, name, interval, values)
+    if analysis.system.constraints or analysis.system.linear is not None:
+        reason = "normal forms are of systems without constraints that are given by bodies and loads"
+        raise Unavailable("normal forms", NoResult(reason, "", "not supported", "not-supported"))
+    with analysis.strictly():
+        found = analysis.equilibrium
+        analysis.judgeable  # noqa: B018  raises where no theorem applies
+    if len(found.conditions) > len(found.solved):
+        reason = "the motion exists under conditions that were not solved: parameters are not independent then"
+        raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    solved = {one for one, _ in found.solved}
+    if name in solved:
+        reason = f"the motion needs one value of {name}, which the other parameters give"
+        raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
+    conservative, cyclic = ignorable(analysis)
+    numbers = {key: value for key, value in values.items() if key != name and key not in solved}
+    return along(analysis.parameters_scene, analysis.system, found, name, interval, numbers, conservative, cyclic)

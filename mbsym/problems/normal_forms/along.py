@@ -1,0 +1,242 @@
+"""Problem 11 along one parameter, the others at numbers: all exceptional values, exactly, and what holds between them.
+
+Exceptional are the roots of polynomials in the parameter: of Hamiltonian systems of two frequencies those of the
+product and the discriminant of w_1^2, w_2^2 (borders of the first approximation), of the resonances 1:2 and 1:3 and of
+D_4; with applied forces those of the last two Hurwitz determinants, where a root of the characteristic polynomial is
+zero or a pair imaginary.  Between two of them nothing that the theorems ask for changes its sign, so that a verdict at
+one point there holds for all.  At each of them the verdict is that of the enclosed value, with what vanishes there
+known exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.normal_forms.centre import matrix_of
+from mbsym.problems.normal_forms.dissipative import judged_field, state_field
+from mbsym.problems.normal_forms.exact import over_tower
+from mbsym.problems.normal_forms.expansion import Expansion, expansion, faddeev
+from mbsym.problems.normal_forms.pairs import judged_on_border
+from mbsym.problems.normal_forms.problem import PRECISION, at_numbers, twist
+from mbsym.problems.normal_forms.result import Judged
+
+
+class NotAlong(Failure):
+    """There is no list of exceptional values."""
+
+    code = "not-along"
+
+
+@dataclass(frozen=True, repr=False)
+class Special(Shown):
+    """A value of the parameter: a root of the irreducible ``polynomial`` (low to high), enclosed; ``exactly`` if it is
+    rational.  ``vanishing`` names what is zero there."""
+
+    enclosure: Any
+    exactly: Fraction | None
+    polynomial: tuple[int, ...]
+    vanishing: tuple[str, ...]
+    judged: Judged
+
+
+@dataclass(frozen=True, repr=False)
+class Between(Shown):
+    """What holds between neighbouring exceptional values, by one rational ``sample``."""
+
+    sample: Fraction
+    judged: Judged
+
+
+@dataclass(frozen=True, repr=False)
+class Along(Shown):
+    """``specials`` in order, ``between`` one more than these: below the first, ..., above the last."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+    hamiltonian: bool
+    coordinates: tuple[str, ...]
+    cyclic: tuple[str, ...]
+    specials: tuple[Special, ...]
+    between: tuple[Between, ...]
+
+
+def along(
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium,
+    name: str,
+    interval: tuple[Fraction, Fraction],
+    values: Mapping[str, Fraction],
+    conservative: bool,
+    cyclic: Collection[str],
+) -> Along:
+    """All exceptional values of ``name`` in an open interval; ``values`` are the numbers of the other parameters.
+
+    Raises NotAlong where the system is of another kind, NotExpanded, NoClosedForm.
+    """
+
+    @cache
+    def to(order: int) -> Expansion:
+        return expansion(scene, whole, equilibrium, order, cyclic)
+
+    with ctx.workprec(PRECISION):
+        found = to(4)
+        tower, wanted = (_of_two_frequencies if conservative else _of_roots)(found, name, values)
+        roots = _roots(tower, wanted, interval)
+
+        def judge(value: Any, zero: Sequence[str]) -> Judged:
+            there = {**values, name: value}
+            if not conservative:
+                exact = isinstance(value, Fraction)
+                return judged_field(found, there) if exact else judged_on_border(found, there, zero)
+            decides = None if isinstance(value, Fraction) else _decides(tower, wanted, value, zero)
+            return at_numbers(to, there, decides)
+
+        specials = []
+        for enclosure, factor in roots:
+            zero = tuple(key for key, x in wanted.items() if _vanishes(tower, x, name, factor, enclosure))
+            if zero:
+                exactly = _fraction(-factor[0] / factor[1]) if factor.degree() == 1 else None
+                judged = judge(enclosure if exactly is None else exactly, zero)
+                told = tuple(int(x) for x in (factor * factor.denom()).coeffs())
+                specials.append(Special(enclosure, exactly, told, zero, judged))
+        ends = [interval[0], *(one.enclosure if one.exactly is None else one.exactly for one in specials), interval[1]]
+        between = [Between(sample, judge(sample, ())) for sample in (_between(a, b) for a, b in pairwise(ends))]
+        kept = [k for k, one in enumerate(specials) if _matters(one, between[k], between[k + 1])]
+    return Along(
+        name=name,
+        low=interval[0],
+        high=interval[1],
+        hamiltonian=conservative,
+        coordinates=tuple(one for i, one in enumerate(found.coordinates) if i not in found.cyclic),
+        cyclic=tuple(found.coordinates[i] for i in found.cyclic),
+        specials=tuple(specials[k] for k in kept),
+        between=(*(between[k] for k in kept), between[-1]),
+    )
+
+
+def _matters(special: Special, below: Between, above: Between) -> bool:
+    """Whether something else is said than on both sides: where the first approximation decides D4 = 0 is nothing."""
+    said = {(one.judged.outcome, one.judged.theorem) for one in (special, below, above)}
+    return len(said) > 1
+
+
+def _of_two_frequencies(
+    found: Expansion, name: str, values: Mapping[str, Fraction]
+) -> tuple[Tower, dict[str, Element]]:
+    """What may vanish: trace, product and discriminant of the squares of the frequencies, resonances, D4."""
+    if len(found.coordinates) - len(found.cyclic) != 2:
+        raise NotAlong("exceptional values are listed for Hamiltonian systems of two frequencies")
+    _, tower, named = twist(found, values)
+    if name not in tower.parameters:
+        raise NotAlong(f"the expansion does not depend on {name}")
+    for key, x in named.items():
+        if x.is_zero():
+            raise NotAlong(f"for all values of {name} this vanishes: {key}")
+    return tower, named
+
+
+def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tuple[Tower, dict[str, Element]]:
+    """The last two Hurwitz determinants, but for the factor that the last one has of the one before."""
+    tower = Tower([name])
+    field, _ = state_field(over_tower(found, tower, {k: v for k, v in values.items() if k != name}))
+    coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1][::-1]
+    m = len(coefficients) - 1
+    if coefficients[m].is_zero():
+        raise NotAlong(f"for all values of {name} a root is zero")
+    rows = [[_entry(coefficients, 2 * (j + 1) - (i + 1), tower) for j in range(m - 1)] for i in range(m - 1)]
+    last = faddeev(rows, tower.zero, tower.one)[1][0] if rows else tower.one
+    if last.is_zero():
+        raise NotAlong(f"for all values of {name} there are roots whose sum is zero")
+    return tower, {"root": coefficients[m], "pair": last}
+
+
+def _entry(coefficients: Sequence[Element], index: int, tower: Tower) -> Element:
+    return coefficients[index] if 0 <= index < len(coefficients) else tower.zero
+
+
+# --- exceptional values ---
+
+
+def _norm(tower: Tower, x: Element) -> fmpq_poly:
+    """The product of the conjugates of the numerator: a polynomial in the one parameter."""
+    norm = x
+    for k in reversed(range(len(tower.squares))):
+        if norm.top.degrees()[MOST_ROOTS - 1 - k] > 0:
+            norm = norm * tower.conjugate(norm, k)
+    coefficients = [fmpq(0)] * (1 + max(0, int(norm.top.total_degree())))
+    for monomial, coefficient in norm.top.terms():
+        coefficients[int(monomial[MOST_ROOTS])] = coefficient
+    return fmpq_poly(coefficients)
+
+
+def _roots(
+    tower: Tower, wanted: Mapping[str, Element], interval: tuple[Fraction, Fraction]
+) -> list[tuple[arb, fmpq_poly]]:
+    """The real roots of all of them within the interval, in order, each with its irreducible polynomial."""
+    factors: dict[tuple[Any, ...], fmpq_poly] = {}
+    for x in wanted.values():
+        for factor, _ in _norm(tower, x).factor()[1]:
+            monic = factor / factor[factor.degree()]
+            factors[tuple(map(str, monic.coeffs()))] = factor
+    low, high = (arb(end.numerator) / end.denominator for end in interval)
+    found = []
+    for factor in factors.values():
+        for root in acb_poly(factor).roots(tol=arb(2) ** (-(ctx.prec * 2 // 3))):
+            if root.imag.contains(0) and root.real > low and root.real < high:
+                found.append((root.real, factor))
+    return sorted(found, key=lambda one: float(one[0]))
+
+
+def _vanishes(tower: Tower, x: Element, name: str, factor: fmpq_poly, enclosure: arb) -> bool:
+    """Whether x is zero at the root: exactly, by its norm, and by enclosures of its conjugates."""
+    if _norm(tower, x) % factor != 0:
+        return False
+    if all(x.top.degrees()[MOST_ROOTS - 1 - k] <= 0 for k in range(len(tower.squares))):
+        return True
+    return bool(tower.enclosed(x, {name: enclosure}).contains(0))
+
+
+def _between(low: Any, high: Any) -> Fraction:
+    """A rational number of few digits between two numbers or enclosures."""
+    a, b = (_bound(low, upper=True), _bound(high, upper=False))
+    return ((a + b) / 2).limit_denominator(int(8 / (b - a)) + 1)
+
+
+def _bound(x: Any, upper: bool) -> Fraction:
+    if isinstance(x, Fraction):
+        return x
+    mantissa, exponent = (x.upper() if upper else x.lower()).mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _fraction(x: fmpq) -> Fraction:
+    return Fraction(int(x.p), int(x.q))
+
+
+def _decides(
+    tower: Tower, wanted: Mapping[str, Element], value: arb, zero: Sequence[str]
+) -> Callable[[tuple[int, ...], Sequence[arb]], bool | None]:
+    """Resonances at an algebraic value: those that vanish there exactly."""
+    known = {tuple(sorted(map(int, key.split(":")))) for key in zero if ":" in key}
+
+    def decides(vector: tuple[int, ...], found: Sequence[arb]) -> bool | None:
+        total = sum((k * w for k, w in zip(vector, found, strict=True)), arb(0))
+        if total != 0:
+            return False
+        return True if tuple(sorted(map(abs, vector))) in known else None
+
+    return decides

@@ -1,0 +1,119 @@
+"""Exceptional values along a parameter: the restricted problem of three bodies, the top, a flutter border by hand."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from flint import arb
+
+import mbsym
+from mbsym.analysis.exceptional import exceptional
+from mbsym.analysis.stages import Unavailable
+from mbsym.problems.normal_forms import Outcome, Theorem
+from mbsym.problems.normal_forms.along import NotAlong
+from mbsym_cli.main import main
+
+SYSTEMS = Path(__file__).parents[3] / "systems"
+
+#: Meyer & Schmidt (1986), Deprit & Deprit-Bartholome (1967), Markeev (1969), Routh: 27 mu (1 - mu)/4 = w1^2 w2^2.
+TRIANGULAR = [
+    ("0.010913667677200662890", Outcome.STABLE, Theorem.ARNOLD_MOSER_6),
+    ("0.013516016022452526756", Outcome.UNSTABLE, Theorem.FOURTH),
+    ("0.024293897142052321666", Outcome.UNSTABLE, Theorem.THIRD),
+    ("0.038520896504551397079", Outcome.UNDECIDED, Theorem.NONE),
+]
+
+
+def test_triangular_points() -> None:
+    one = Fraction(1)
+    analysis = mbsym.load(SYSTEMS / "three-bodies.yaml")
+    found = exceptional(analysis, "mu", (Fraction(0), Fraction(1, 2)), {"a": one, "n": one, "m": one})
+    assert [(x.judged.outcome, x.judged.theorem) for x in found.specials] == [x[1:] for x in TRIANGULAR]
+    for special, (value, _, _) in zip(found.specials, TRIANGULAR, strict=True):
+        assert special.enclosure.str(20, radius=False) == value
+    assert [x.judged.outcome for x in found.between] == [Outcome.STABLE] * 4 + [Outcome.UNSTABLE]
+    # 36 - 541 p + 644 p^2 with p = 27 mu (1 - mu)/4, divided by 9/4
+    assert found.specials[0].polynomial == (16, -1623, 14664, -26082, 13041)
+
+
+def test_the_sleeping_top_has_no_exception_above_its_border() -> None:
+    """C^2 W^2 = 4 A m g l is the border; at w1 = 3 w2 the resonant term is zero, by symmetry."""
+    analysis = mbsym.load(SYSTEMS / "heavy-top.yaml")
+    values = {name: Fraction(1) for name in ("A", "C", "m", "l", "g")}
+    found = exceptional(analysis, "Omega", (Fraction(1), Fraction(3)), values)
+    border, *others = found.specials
+    assert border.exactly == 2
+    assert found.between[0].judged.outcome is Outcome.UNSTABLE
+    assert all(x.judged.outcome is Outcome.STABLE for x in (*found.between[1:], *others))
+
+
+FLUTTER = """
+mbsym: 1
+name: van der Pol
+parameters: {d: {}, s: {}, k: {}}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - {potential: k*x**2/2 + x**4/4}
+  - {generalized force: {x: "(d**3/3 - d - s*x**2)*x_dot"}}
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize(("s", "outcome"), [(1, Outcome.ASYMPTOTIC), (-1, Outcome.UNSTABLE)])
+def test_flutter_borders(s: int, outcome: Outcome) -> None:
+    """x'' - (d^3/3 - d - s x^2) x' + x + x^3: borders d = 0, +-sqrt(3), all with a = -s/8 (x^3 adds nothing)."""
+    values = {"s": Fraction(s), "k": Fraction(1)}
+    found = exceptional(mbsym.loads(FLUTTER), "d", (Fraction(-2), Fraction(2)), values)
+    assert [x.exactly for x in found.specials] == [None, 0, None]
+    for special in found.specials:
+        assert special.judged.outcome is outcome
+        a = special.judged.coefficient
+        assert abs(a + arb(s) / 8) < 1e-30 if isinstance(a, arb) else str(a) == f"{-s}/8"
+    stable, unstable = Outcome.ASYMPTOTIC, Outcome.UNSTABLE
+    assert [x.judged.outcome for x in found.between] == [stable, unstable, stable, unstable]
+
+
+def test_a_zero_root_by_its_cubic_term() -> None:
+    """Damped (d = 1: -2/3 x'), k through 0: V = x^4/4 there: asymptotically stable."""
+    values = {"s": Fraction(1), "d": Fraction(1)}
+    found = exceptional(mbsym.loads(FLUTTER), "k", (Fraction(-1), Fraction(1)), values)
+    assert [x.exactly for x in found.specials] == [0]
+    assert found.specials[0].judged.outcome is Outcome.ASYMPTOTIC
+    assert found.specials[0].judged.theorem is Theorem.REDUCTION
+    assert [x.judged.outcome for x in found.between] == [Outcome.UNSTABLE, Outcome.ASYMPTOTIC]
+
+
+def test_a_planted_mistake_is_not_taken_for_a_root() -> None:
+    """A wrong coefficient moves the list away from Routh's value: the polynomials are those of the description."""
+    text = (SYSTEMS / "three-bodies.yaml").read_text(encoding="utf-8").replace("+ mu/sqrt((x", "+ 2*mu/sqrt((x")
+    with pytest.raises(Unavailable):
+        exceptional(mbsym.loads(text), "mu", (Fraction(0), Fraction(1, 2)), dict.fromkeys("anm", Fraction(1)))
+
+
+def test_refusals() -> None:
+    one, interval = Fraction(1), (Fraction(0), Fraction(1))
+    satellite = mbsym.load(SYSTEMS / "gravity-gradient.yaml")
+    values = {parameter.name: one for parameter in satellite.system.parameters}
+    with pytest.raises(NotAlong, match="two frequencies"):
+        exceptional(satellite, "A", interval, values)
+    with pytest.raises(Unavailable, match="constraints"):
+        exceptional(mbsym.load(SYSTEMS / "rolling-disc.yaml"), "m", interval, {})
+    with pytest.raises(NotAlong, match="sum is zero"):
+        exceptional(mbsym.load(SYSTEMS / "ziegler.yaml"), "P", interval, dict.fromkeys("mlk", one))
+
+
+def test_the_command(tmp_path: Path) -> None:
+    runner = CliRunner()
+    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--vary", "mu=1/100:1/50"])
+    assert done.exit_code == 0
+    assert "mu = 0.010913667677200662890: stable (Arnold-Moser, order 6)" in done.output
+    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--vary", "mu=1/100:1/50", "--json"])
+    assert [one["verdict"] for one in json.loads(done.output)["values"]] == ["stable", "unstable"]
+    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--set", "b=1", "--set", "a=x"])
+    assert done.exit_code == 2
+    assert [code in done.output for code in ("missing-option", "unknown-name", "bad-number")] == [True] * 3
