@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from flint import fmpq
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
@@ -145,7 +146,7 @@ def remarks(found: Stack) -> list[str]:
         "regions are deformed into each other with their verdicts"
     ]
     if unseen:
-        irrational = sum(one.missing == "at an irrational value: not looked at" for one in unseen)
+        irrational = sum(not isinstance(one.z, fmpq) for one in unseen)
         told.append(f"at {len(unseen)} of these values nothing was looked at ({irrational} are irrational)")
     if any(one.unseen and len(one.layers) > 1 for one in found.pictures):
         told.append(f"* but for single values of {name} that were not looked at: map.json lists them")

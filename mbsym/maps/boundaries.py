@@ -103,7 +103,7 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     for number, part in enumerate(section.parts):
         found += conditions_of(part, number, section=section)
     if section.constant is not None:
-        found = [replace(x, polynomial=_norm(section, x.polynomial)) for x in found]
+        found = [replace(x, polynomial=norm_of_factors(section, x.polynomial)) for x in found]
     factors: list[Polynomial] = []
     places: dict[str, int] = {}
     conditions: list[list[Condition]] = []
@@ -124,10 +124,10 @@ def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundarie
     return Boundaries(tuple(factors), tuple(map(tuple, conditions)), tuple(vanishing))
 
 
-def _norm(section: Section, p: Polynomial) -> Polynomial:
+def norm_of_factors(section: Section, p: Polynomial) -> Polynomial:
     """A polynomial in the axes that vanishes wherever p does, from the norms of its factors, each once."""
     p = section.reduced(p)
-    if p == 0:
+    if p == 0 or section.constant is None:
         return p
     total = p.context().constant(1)
     for factor, _ in irreducible_factors(p)[1]:

@@ -19,7 +19,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 from mbsym.algebra.factors import Polynomial
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.fields import Extension, Over
-from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between
+from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between, sign
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import linear_form
@@ -59,6 +59,11 @@ class Constant:
             if worst > MOST_IN_A_PLANE:
                 raise TooLargeError(f"a resultant of degree up to {worst}, more than {MOST_IN_A_PLANE}")
         return self._modulus(context).resultant(p, context.names()[-1])
+
+    def sign(self, p: Polynomial) -> int:
+        """The sign of a polynomial in which the axes do not occur."""
+        over = self.polynomial_at(p, [fmpq(0)] * (p.context().nvars() - 1))
+        return self.number.sign(over) if over.degree() > 0 else sign(over[0])
 
     def polynomial_at(self, p: Polynomial, point: Sequence[Any]) -> Any:
         """p(point, .) modulo the minimal polynomial: with the axes put in, a polynomial in the number."""

@@ -23,17 +23,18 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import fmpq
 
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane import Arrangement, Point, decompose
+from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Point, decompose
 from mbsym.algebra.plane.likeness import alike, corresponding
 from mbsym.algebra.plane.line import Line
-from mbsym.algebra.plane.numbers import Number, between_simply
+from mbsym.algebra.plane.numbers import Number, between_simply, sign
 from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand, admissibility
-from mbsym.maps.boundaries import Boundaries, boundaries
+from mbsym.maps.boundaries import Boundaries, boundaries, norm_of_factors
+from mbsym.maps.constant import Constant, context_of
 from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched
 from mbsym.maps.result import Of, PlaneMap, Shape, Shown
 from mbsym.maps.section import Axis, Complaint, Fault, Law, Section, Unfit, section
@@ -41,6 +42,8 @@ from mbsym.maps.seen import seen
 
 #: Slices take seconds each: with more critical values than this none is begun.
 MOST_LEVELS = 120
+#: Slices are made at irrational values of up to this degree.
+MOST_DEGREE = 4
 
 
 class Missing(StrEnum):
@@ -178,7 +181,7 @@ class _Slicing:
             self.watch(f"slice {number + 1} of {whole}, {text}", done, of)
 
         self.watch(f"slice {number + 1} of {whole}", 0, 1)
-        if not isinstance(z, fmpq):
+        if isinstance(z, AlgebraicNumber) and z.polynomial.degree() > MOST_DEGREE:
             return Layer(number, z, critical, missing=Missing.IRRATIONAL)
         cut, kept = at_level(self.section, self.kept, z)
         if kept.broken:
@@ -199,7 +202,8 @@ class _Slicing:
         Where one vanishes on the whole slice, other verdicts are possible in it than near it: what bounds them is
         looked for in the slice itself.
         """
-        flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
+        flat = [cut.reduced(flattened(p, last_of(cut, z), cut.context)) for p in self.boundaries.factors]
+        flat = [p if p == 0 else norm_of_factors(cut, p) for p in flat]
         if all(p != 0 for p in flat):
             return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
         own = boundaries(cut, [*(one.condition for one in kept.demands), *asked(cut)])
@@ -248,37 +252,57 @@ class _Fixed(Law):
         return self._law((*signs, self._sign))
 
 
-def at_level(there: Section, kept: Admissibility, z: Any) -> tuple[Section, Admissibility]:
-    """A section of three axes where the last is the rational number z, and what its points have to keep."""
+def last_of(cut: Section, z: Any) -> Any:
+    """What stands for the third axis in a slice: its value, or the generator of an irrational one."""
+    return z if cut.constant is None else cut.context.gen(2)
+
+
+def at_level(there: Section, kept: Admissibility, z: Number) -> tuple[Section, Admissibility]:
+    """A section of three axes where the last has the value z, and what its points have to keep.
+
+    An irrational z is the constant of the section.
+    """
     axes = there.axes[:2]
-    plane = fmpq_mpoly_ctx.get([axis.name for axis in axes], Ordering.lex)
+    constant = Constant(z, {}, there.axes[2].name) if isinstance(z, AlgebraicNumber) else None
+    plane = context_of([axis.name for axis in axes], constant)
+    last = z if constant is None else plane.gen(2)
 
     def flat(p: Any) -> Any:
-        return flattened(p, z, plane)
+        found = flattened(p, last, plane)
+        return found if constant is None else constant.reduced(found)
+
+    def known(p: Any) -> Any:
+        """The number that a polynomial is in the whole slice, or one of its sign; None where it depends on the axes."""
+        if p == 0:
+            return fmpq(0)
+        if any(p.degrees()[:2]):
+            return None
+        return p.leading_coefficient() if constant is None else fmpq(constant.sign(p))
 
     parts = []
     for part in there.parts:
         m, d, g, k, n = (tuple(tuple(map(flat, row)) for row in matrix) for matrix in part.matrices)
         parts.append(replace(part, M=m, D=d, G=g, K=k, N=n, turned=tuple(map(flat, part.turned))))
-    value = Fraction(int(z.p), int(z.q))
-    name = there.axes[2].name
+    values = {} if constant is not None else {there.axes[2].name: Fraction(int(z.p), int(z.q))}
     cut = replace(
         there,
         axes=axes,
         context=plane,
         parts=tuple(parts),
-        law=_Fixed(there.law, (z > 0) - (z < 0)),
-        undefined=tuple(x for x in map(flat, there.undefined) if x == 0 or not x.is_constant()),
-        numbers={**there.numbers, name: value},
-        told={**there.told, name: value},
+        law=_Fixed(there.law, sign(z) if constant is None else z.compare(fmpq(0))),
+        undefined=tuple(x for x in map(flat, there.undefined) if not known(x)),
+        numbers={**there.numbers, **values},
+        told={**there.told, **values},
+        constant=constant,
     )
     demands, broken = [], []
     for one in kept.demands:
         polynomial = flat(one.condition.polynomial)
         told = replace(one, condition=replace(one.condition, polynomial=polynomial))
-        if polynomial != 0 and not polynomial.is_constant():
+        value = known(polynomial)
+        if value is None:
             demands.append(told)
-        elif not told.kept(polynomial.leading_coefficient() if polynomial != 0 else fmpq(0)):
+        elif not told.kept(value):
             broken.append(told)
     return cut, Admissibility(tuple(demands), tuple(broken), kept.left_out)
 
