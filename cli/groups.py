@@ -47,7 +47,7 @@ def command(file: Path, out: Path | None, quiet: bool) -> None:
     analysis = Analysis(system)
     try:
         with status(quiet, "deriving"):
-            found = groups(analysis.scene, analysis.equations)
+            found = groups(analysis.scene, analysis.equations) if system.linear is None else _of_linear(analysis)
     except Failure as error:
         complain(file, f"the groups cannot be found: {error}")
         sys.exit(FAILED)
@@ -63,7 +63,10 @@ def _print(file: Path, analysis: Analysis, found: Groups) -> None:
 
     out = console()
     out.print(Text.assemble((analysis.system.name, "bold"), (f"  {printable(file)}", "dim")))
-    for title, lines in (("equations of motion", _told(found)), ("first approximation", _linear(analysis))):
+    sections = [("first approximation", _linear(analysis))]
+    if analysis.system.linear is None:
+        sections.insert(0, ("equations of motion", _told(found)))
+    for title, lines in sections:
         out.print(Text.assemble("  ", (title, "bold cyan")))
         for line in lines:
             out.print(Text(f"    {line}"))
@@ -93,15 +96,21 @@ def _told(found: Groups) -> Iterator[str]:
         yield f"without effect on the motion: {', '.join(found.idle)}"
 
 
-def _linear(analysis: Analysis) -> Iterator[str]:
-    from mbsym.algebra.failures import Failure
+def _of_linear(analysis: Analysis) -> Groups:
+    """The groups of the first approximation.  Raises Failure where there is none in closed form."""
     from mbsym.problems.scaling import linear_groups
     from mbsym.problems.stability.problem import prepared_parts
 
+    motion = analysis.equilibrium
+    parts = prepared_parts(analysis.parameters_scene, analysis.balance, analysis.judgeable, motion, analysis.signs)
+    return linear_groups(analysis.parameters_scene, [(part.ring, part.system) for part in parts])
+
+
+def _linear(analysis: Analysis) -> Iterator[str]:
+    from mbsym.algebra.failures import Failure
+
     try:
-        motion = analysis.equilibrium
-        parts = prepared_parts(analysis.parameters_scene, analysis.balance, analysis.judgeable, motion, analysis.signs)
-        found = linear_groups(analysis.parameters_scene, [(part.ring, part.system) for part in parts])
+        found = _of_linear(analysis)
     except Failure as error:
         yield f"none: {error}"
         return

@@ -144,7 +144,8 @@ def conditions_of(
     def told(origin: Origin, polynomial: Polynomial, about: str = "") -> Condition:
         return Condition(origin, polynomial, part, about, reduced)
 
-    yield told(Origin.MASS, determinant(system.kinetic))
+    if system.kinetic:  # of x' = A x it is empty
+        yield told(Origin.MASS, determinant(system.kinetic))
     if not is_zero(system.K):
         for coefficient in deciding_zeros(_coefficients(system.K, constant), constant):
             yield told(Origin.STIFFNESS, coefficient)

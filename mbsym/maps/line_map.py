@@ -114,4 +114,4 @@ class LineJudge:
 
     @cached_property
     def _minors(self) -> list[tuple[Any, ...]]:
-        return [leading_minors(part.kinetic) for part in self.section.parts]
+        return [leading_minors(part.kinetic) for part in self.section.parts if part.kinetic]

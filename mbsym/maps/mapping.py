@@ -178,9 +178,11 @@ class Judge:
         """Whether M of every part is positive definite: its leading minors are."""
         if point.rational and self.section.constant is None:
             place = (point.x, point.y)
-            return all(inertia(matrix_at(m, place))[0] == len(m) for m in (x.kinetic for x in self.section.parts))
+            return all(
+                inertia(matrix_at(m, place))[0] == len(m) for m in (x.kinetic for x in self.section.parts if x.kinetic)
+            )
         return all(place.sign(minor) > 0 for minors in self._minors for minor in minors)
 
     @cached_property
     def _minors(self) -> list[tuple[Any, ...]]:
-        return [leading_minors(part.kinetic) for part in self.section.parts]
+        return [leading_minors(part.kinetic) for part in self.section.parts if part.kinetic]

@@ -2,7 +2,7 @@
 
     M x'' + C x' + S x = B u,    C = D + G,    S = K + N
 
-M is the unit matrix where it was left out, everything else zero.
+M is the unit matrix where it was left out, everything else zero.  Of  x' = A x + B u:  M = 0, C = 1, S = -A.
 """
 
 from __future__ import annotations
@@ -47,6 +47,9 @@ def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
             first = first + one
         return first
 
+    if linear.of_first_order:
+        nothing = lowered("D", size)
+        return Given(nothing, lowered("M", size), -lowered("A", size), lowered("B", inputs))
     return Given(lowered("M", size), total(("D", "G", "C")), total(("K", "N", "S")), lowered("B", inputs))
 
 

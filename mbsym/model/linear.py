@@ -3,7 +3,11 @@
     M x'' + (D + G) x' + (K + N) x = B u
 
 with M, D, K symmetric and G, N skew.  In place of D and G a description may give any square C = D + G, in place of K
-and N any square S = K + N; M left out is the unit matrix, what else is left out is zero.
+and N any square S = K + N; M left out is the unit matrix, what else is left out is zero.  Or equations of first order,
+
+    x' = A x + B u
+
+with any square A: then M = 0, C = 1, S = -A.
 """
 
 from __future__ import annotations
@@ -28,11 +32,12 @@ MATRICES: Mapping[str, str] = {
     "K": SYMMETRIC,
     "N": SKEW,
     "S": "",
+    "A": "",
     "B": "",
 }
 
-#: Matrices that make no sense beside others: their symmetric and skew parts.
-PARTS: Mapping[str, tuple[str, str]] = {"C": ("D", "G"), "S": ("K", "N")}
+#: Matrices that make no sense beside others: their symmetric and skew parts; all others beside A.
+PARTS: Mapping[str, tuple[str, ...]] = {"C": ("D", "G"), "S": ("K", "N"), "A": ("M", "D", "G", "C", "K", "N", "S")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +66,11 @@ class LinearModel:
     coordinates: tuple[str, ...]
     matrices: tuple[GivenMatrix, ...]
     span: Span | None = _span()
+
+    @property
+    def of_first_order(self) -> bool:
+        """Whether the equations are x' = A x + B u."""
+        return self.matrix("A") is not None
 
     def matrix(self, key: str) -> GivenMatrix | None:
         """The matrix of that key, or None where it was left out."""

@@ -70,6 +70,7 @@ LINEAR_SYSTEM = {
     "K": "stiffness, symmetric",
     "N": "circulatory matrix, skew",
     "S": "in place of K and N: their sum, any square matrix",
+    "A": "in place of all these: x' = A x, any square matrix",
     "B": "where the inputs act: a row for each coordinate, a column for each of 'inputs'",
 }
 

@@ -103,7 +103,8 @@ class StabilityMeasure:
             return WORDS.index(OUTSIDE), -1
         if any(x(*numbers) == 0 for x in self.section.undefined):
             return WORDS.index(UNDEFINED), -1
-        if any(inertia(matrix_at(part.kinetic, numbers))[0] < len(part.kinetic) for part in self.section.parts):
+        kinetic = [part.kinetic for part in self.section.parts if part.kinetic]
+        if any(inertia(matrix_at(matrix, numbers))[0] < len(matrix) for matrix in kinetic):
             return WORDS.index(MASSLESS), -1
         try:
             found = verdict_at(self.section, numbers)

@@ -56,7 +56,8 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     there = None if values is None or not few else at_values(scene, linear, values)
     parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
     turning, damping, energies = [], [], []
-    for at in parts:
+    given = scene.system.linear
+    for at in () if given is not None and given.of_first_order else parts:  # x' = A x has no energy
         names = tuple(linear.coordinates[i] for i in at)
         mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
         if not circulatory.is_zero:

@@ -173,8 +173,11 @@ def _spectrum(
         return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
     if point is not None:
         return None
-    about = linear.constrained
-    following = [i for i, name in enumerate(part.coordinates) if about is not None and name in about.following]
+    about, given = linear.constrained, scene.system.linear
+    first_order = set() if about is None else set(about.following)
+    if given is not None and given.of_first_order:
+        first_order = set(part.coordinates)
+    following = [i for i, name in enumerate(part.coordinates) if name in first_order]
     return from_matrices(part.coordinates, _matrices_at(scene, linear, part.coordinates, values), following)
 
 
@@ -253,6 +256,17 @@ def prepared_parts(
         _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
         for part in linear.subsystems
     )
+    if scene.system.linear is not None and scene.system.linear.of_first_order:
+        # x' = A x: judged by its roots alone, as nonholonomic systems are.
+        return tuple(
+            replace(
+                part,
+                system=replace(
+                    part.system, cyclic=(), nonholonomic=NonholonomicForm(following=tuple(range(part.system.size)))
+                ),
+            )
+            for part in prepared
+        )
     if linear.constrained is None or linear.constrained.holonomic:
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared

@@ -83,8 +83,8 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "No root has a positive real part, but some are imaginary besides those of the turned steady spins."
     ),
     Because.IMAGINARY_NONHOLONOMIC: (
-        "No root has a positive real part, but some are imaginary; where velocities are constrained no theorem on "
-        "energy or gyroscopic stabilisation is applied."
+        "No root has a positive real part, but some are imaginary; where velocities are constrained, or equations are "
+        "of first order, no theorem on energy or gyroscopic stabilisation is applied."
     ),
     Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem that was tried covers both.",
     Because.HIGHER_ORDER: HIGHER_ORDER,

@@ -157,7 +157,7 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
 def _analyse(system: LinearSystem, signs: Signs) -> Theory:
     written = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
     raw = tuple(signs.normalised(c) for c in written[: len(written) - len(system.following)])
-    mass = definiteness(system.kinetic, signs, "M")
+    mass = definiteness(system.kinetic, signs, "M") if system.kinetic else Definiteness(Definite.POSITIVE, ())
     # A mass matrix is positive definite, so its minors may be used to judge everything else.
     # Long ones would cost the search for combinations more than they can give.
     minors = [r.polynomial for r in mass.requirements]

@@ -53,6 +53,8 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
         from mbsym.report.constraint_words import Writer, filled, reduction_sentences
 
         yield from map(filled, reduction_sentences(found.constrained, Writer(", ".join)))
+    if analysis.system.linear is not None and analysis.system.linear.of_first_order:
+        yield "x' = A x, as M = 0, D = 1, K + N = -A"
     present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
     yield f"matrices that are not zero: {', '.join(present)}"
     if found.B is not None:
