@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 import mbsym
@@ -193,3 +194,41 @@ def test_a_wrong_sign_in_the_equations_is_seen():
 def test_what_is_not_in_speeds_is_refused_by_name():
     with pytest.raises(Unavailable, match="speeds"):
         _ = mbsym.load("systems/double-pendulum.yaml").invariant_sets
+
+
+def test_definiteness_agrees_with_eigenvalues(clebsch):
+    """The second variation on the tangent space of the integrals, by hand and in floating point, at random points."""
+    chance = np.random.default_rng(5)
+    compared = 0
+    for one in clebsch.families[0].sets:
+        if one.kind is not Kind.STEADY or one.variation.outcome is not Definiteness.CONDITIONAL:
+            continue
+        for _ in range(40):
+            numbers = {name: Fraction(int(chance.integers(2, 30)), 7) for name in ("A", "B", "C", "N", "R", "M")}
+            numbers |= {name: Fraction(int(chance.integers(-20, 20)), 9) or Fraction(1, 3) for name in one.free}
+            numbers |= {name: Fraction(int(chance.choice((-1, 1)))) for name in one.free if name.startswith("gamma")}
+            numbers |= {name: Fraction(int(chance.integers(-20, 20)), 8) for name, x in one.multipliers if x is None}
+            numbers |= {name: _value(x, **numbers) for name, x in one.multipliers if x is not None}
+            numbers |= {name: _value(x, **numbers) for name, x in one.solved}
+            x = np.array([float(numbers[name]) for name in ("p", "q", "r", "gamma1", "gamma2", "gamma3")])
+            N, A = float(numbers["N"]), np.array([float(numbers[name]) for name in "ABC"])
+            others = np.array([A[1] * A[2], A[2] * A[0], A[0] * A[1]])
+            zero = np.zeros((3, 3))
+            energy = np.diag([*A, *(N * A)])
+            area = np.block([[zero, np.diag(A)], [np.diag(A), zero]])
+            fourth = 2 * np.diag([*A**2, *(-N * others)])
+            norm = 2 * np.diag([0, 0, 0, 1, 1, 1])
+            by_name = {"generalised energy": energy, "fourth integral": fourth, "geometry": norm}
+            forms = [by_name.get(name, area) for name in clebsch.families[0].integrals]
+            weights = [1.0, *(float(numbers[name]) for name in clebsch.families[0].multipliers)]
+            whole = sum(w * form for w, form in zip(weights, forms, strict=True))
+            assert np.allclose(whole @ x, 0, atol=1e-9 * np.abs(whole).max())  # grad K = 0
+            _, singular, rows = np.linalg.svd(np.array([form @ x for form in forms]))
+            tangent = rows[np.sum(singular > 1e-9 * singular[0]) :].T
+            eigenvalues = np.linalg.eigvalsh(tangent.T @ whole @ tangent)
+            if np.abs(eigenvalues).min() < 1e-6 * np.abs(eigenvalues).max():
+                continue
+            compared += 1
+            for side, sign in ((one.variation.positive, 1), (one.variation.negative, -1)):
+                assert (side is not None and _all_hold(side, **numbers)) == bool((sign * eigenvalues > 0).all())
+    assert compared > 60
