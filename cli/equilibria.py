@@ -58,7 +58,8 @@ def command(
     Needs a number for every parameter, from the description (values:) or from --set, taken exactly.  Where the
     equations are polynomials in sines and cosines the solution is exact; elsewhere each equilibrium is proved to exist
     in a small box.  The list says whether it is complete.  Orientations behind the singularity of the description's
-    angles are found with other angles.  Each equilibrium is judged as in problem 6.
+    angles are found with other angles.  Each equilibrium is judged as in problem 6.  For a body about a fixed point the
+    axes and rates of all permanent rotations are printed besides (Staude's cone).
 
     With --vary a parameter runs through an interval: how many equilibria there are between exact critical values,
     where branches fold, cross or split (named by exact derivatives), and how stable each is.  Written are branches.svg,
@@ -87,11 +88,13 @@ def command(
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.problems.equilibria import equilibria
+    from mbsym.problems.permanent_rotations import permanent_rotations
 
     started = time.perf_counter()
     try:
         with status(False, f"{file.name}: relative equilibria"):
             found = equilibria(system, values, reach)
+            permanent = permanent_rotations(system, values)
             withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
         if withdrawn is not None:
             complain(file, f"no equilibria listed: {withdrawn.reason}")
@@ -102,11 +105,11 @@ def command(
     if as_json:
         from mbsym.report.equilibria_json import equilibria_json
 
-        click.echo(equilibria_json(system, values, found), nl=False)
+        click.echo(equilibria_json(system, values, found, permanent), nl=False)
     else:
         from mbsym_cli.equilibria_table import show_equilibria
 
-        show_equilibria(system, found, file, time.perf_counter() - started)
+        show_equilibria(system, found, file, time.perf_counter() - started, permanent)
     sys.exit(OK)
 
 

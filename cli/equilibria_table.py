@@ -14,6 +14,7 @@ from mbsym.expressions.counting import counted
 from mbsym.model.quantities import unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
+from mbsym.problems.permanent_rotations import PermanentRotations
 from mbsym.problems.stability.word import Word
 from mbsym.report.unit_text import labelled, pretty
 from mbsym_cli.console import console, printable
@@ -22,7 +23,9 @@ from mbsym_cli.console import console, printable
 _LONGEST = 100
 
 
-def show_equilibria(system: System, found: Equilibria, file: Path, seconds: float) -> None:
+def show_equilibria(
+    system: System, found: Equilibria, file: Path, seconds: float, permanent: PermanentRotations | None = None
+) -> None:
     """Prints all that was found, and how far the list is complete."""
     out = console()
     out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
@@ -44,6 +47,8 @@ def show_equilibria(system: System, found: Equilibria, file: Path, seconds: floa
     for number, family in enumerate(found.families, 1):
         _show_family(system, number, family)
     _show_summary(found)
+    if permanent is not None:
+        _show_permanent(permanent)
 
 
 def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
@@ -103,6 +108,34 @@ def _show_family(system: System, number: int, family: EquilibriumFamily) -> None
         f"{item.name} = {with_unit(_text(item), pretty(unit_of(system, item.name)))}" for item in family.sample
     )
     out.print(Text(f"    for example {sample}: {family.verdict.word}"))
+
+
+def _show_permanent(found: PermanentRotations) -> None:
+    """The family that a steady turn at the description's rate is a member of."""
+    out = console()
+    out.print(Text(f"permanent rotations about the fixed axis of {found.angle}, at whatever rate", style="bold"))
+    out.print(Text(f"  g: that axis in the axes of {found.body}, g1**2 + g2**2 + g3**2 = 1", style="dim"))
+    acts = [found.loaded, found.gyrostatic, found.inertial]
+    if found.axes:
+        polynomial = "*".join(f"({x})" if len(found.axes) > 1 else x for x in found.axes)
+        if len(polynomial) > 3 * _LONGEST:
+            polynomial = "(a long polynomial, which --json prints)"
+        where = "a one-parameter family, the axes on a cone" if found.family else "necessary for an axis"
+        out.print(Text(f"  {where}: {polynomial} = 0"))
+    elif acts == [False, False, True]:
+        out.print(Text("  nothing acts at rest: each axis that satisfies these equations, at any rate"))
+    elif found.everywhere and not found.gyrostatic:
+        out.print(Text("  a two-parameter family: every axis for which these equations give a real rate"))
+    elif not any(acts):
+        out.print(Text("  nothing acts: every axis, at any rate"))
+    for row in zip(found.constant, found.linear, found.quadratic, strict=True):
+        if any(x != "0" for x in row):
+            parts = (("", row[0]), ("rate*", row[1]), ("rate**2*", row[2]))
+            terms = [f"{front}({x})" if front else x for front, x in parts if x != "0"]
+            out.print(Text(f"    {' + '.join(terms)} = 0"))
+    if found.either and (found.axes or found.everywhere):
+        out.print(Text("  one of g and -g carries a rotation, the other none, unless what acts at rest"))
+        out.print(Text("  or what grows with the square of the rate vanishes at g"))
 
 
 def _show_summary(found: Equilibria) -> None:

@@ -14,6 +14,7 @@ from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.study import leave, prevented
 
 KINDS = ("stability", "signature")
+ROUTES = ("regions", "boxes")
 FORMATS = ("svg", "pdf", "png", "json", "tex")
 
 
@@ -26,6 +27,7 @@ FORMATS = ("svg", "pdf", "png", "json", "tex")
 @click.option(
     "--of", "of", default="stability", show_default=True, metavar="WHAT", help="stability, or signature: of K."
 )
+@click.option("--by", "route", default="regions", show_default=True, metavar="HOW", help="regions (exact), or boxes.")
 @click.option("--locate", type=click.Path(path_type=Path), metavar="CSV", help="Points: where each lies, the verdict.")
 @click.option(
     "--format", "formats", default=",".join(FORMATS), show_default=True, metavar="LIST", help="Files to write."
@@ -40,6 +42,7 @@ def command(
     deep: str | None,
     settings: tuple[str, ...],
     of: str,
+    route: str,
     locate: Path | None,
     formats: str,
     language: str,
@@ -53,7 +56,8 @@ def command(
     rational point, every arc and corner at an algebraic one, each with its theorem.  With --x alone a line is divided
     into intervals; with --z the plane is shown at the critical values of a third parameter and between them, on pages
     map.pdf, map-2.pdf, ....  Numbers are taken exactly, from the description (values:) or --set; axes and settings
-    are parameters, or symbols of the notation.
+    are parameters, or symbols of the notation.  Where the arrangement of a plane is too large, and with --by boxes,
+    boxes are halved until one verdict is proved on each, or they are small: white, nothing is proved of them.
 
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
@@ -65,11 +69,12 @@ def command(
       mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --locate points.csv
       mbsym map systems/triangular-points.yaml --x mu=0:1/2
       mbsym map systems/gravity-gradient.yaml --x A=0:2 --y B=0:2 --z C=1/2:3/2
+      mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --by boxes
     """
     leave(
         file,
         lambda: _command(
-            file, folder_for(file, out), (across, up, deep), settings, of, locate, formats, language, quiet
+            file, folder_for(file, out), (across, up, deep), settings, of, route, locate, formats, language, quiet
         ),
     )
 
@@ -80,6 +85,7 @@ def _command(
     texts: tuple[str | None, str | None, str | None],
     settings: tuple[str, ...],
     of: str,
+    route: str,
     locate: Path | None,
     formats: str,
     language: str,
@@ -91,7 +97,7 @@ def _command(
 
     system = read_held(file, "map", constrained=True, moving=False)
     asked = Options()
-    what = asked.word("--of", of, KINDS, "map")
+    what, how = asked.word("--of", of, KINDS, "map"), asked.word("--by", route, ROUTES, "route")
     wanted = asked.words("--format", formats, FORMATS, "format")
     asked.word("--language", language, LANGUAGES, "language")
     if system is None:
@@ -99,9 +105,10 @@ def _command(
         return BAD_INPUT
     if texts[2] is not None and texts[1] is None:
         asked.complain("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
+    if how == "boxes" and (texts[1] is None or texts[2] is not None):
+        asked.complain("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     further = [(name, text) for name, text in (("--y", texts[1]), ("--z", texts[2])) if text is not None]
-    named = [("--x", texts[0]), *further]
-    axes = [read_axis(text, name, system, asked) for name, text in named]
+    axes = [read_axis(text, name, system, asked) for name, text in (("--x", texts[0]), *further)]
     found = [axis for axis in axes if axis is not None]
     values = read_settings(settings, system, asked)
     distinct(found, values, asked)
@@ -110,4 +117,4 @@ def _command(
     code = prevented(file, folder, True, asked)
     if code:
         return code
-    return run(Request(file, folder, system, found, values, str(what), wanted, language, points, quiet))
+    return run(Request(file, folder, system, found, values, str(what), wanted, language, points, quiet, str(how)))

@@ -42,6 +42,7 @@ class Request:
     language: str
     points: Points | None
     quiet: bool
+    route: str = "regions"
 
 
 def read_located(path: Path, axes: Sequence[str], asked: Options) -> Points | None:
@@ -72,7 +73,7 @@ def read_located(path: Path, axes: Sequence[str], asked: Options) -> Points | No
 
 def run(request: Request) -> int:
     """The exit code."""
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, TooLargeError
     from mbsym.analysis import Analysis
     from mbsym.maps.line_map import line_map
     from mbsym.maps.mapping import plane_map
@@ -83,6 +84,10 @@ def run(request: Request) -> int:
         from mbsym_cli.map_slices import run_slices
 
         return run_slices(request)
+    if request.route == "boxes":
+        from mbsym_cli.map_boxes import run_boxes
+
+        return run_boxes(request)
     started = time.perf_counter()
     try:
         with watched(request.quiet, request.file.name) as watch:
@@ -102,6 +107,10 @@ def run(request: Request) -> int:
         asked.refused(request.file)
         return BAD_INPUT
     except Failure as failure:
+        if isinstance(failure, TooLargeError) and len(request.axes) == 2:
+            from mbsym_cli.map_boxes import run_boxes
+
+            return run_boxes(request, str(failure))
         complain(request.file, f"no map: {failure}")
         return FAILED
     except OSError as error:

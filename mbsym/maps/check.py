@@ -42,6 +42,7 @@ from mbsym.maps.verdicts import Judged, verdict_at
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis
 from mbsym.problems.stability.exact import RationalPoint, evaluated
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix
+from mbsym.problems.stability.word import Word
 
 #: In maps of few cells every cell is tried more than once, until so many points are.
 FEWEST = 96
@@ -124,6 +125,23 @@ def check(
     return one.result()
 
 
+def check_boxes(
+    section: Section,
+    tried: Sequence[tuple[int, Judged, tuple[Rational, Rational]]],
+    seed: int = 20261123,
+    progress: Callable[[str, int, int], None] = nothing,
+) -> Check:
+    """(number, verdict, a point) of boxes: the exact verdict at the point, and balls, have to allow the box's one.
+
+    Where a box's counts are not known its verdict may say less than that of a point; unstable and not must not mix.
+    """
+    one = _Checking(section, Random(seed))
+    for at, (number, judged, point) in enumerate(tried):
+        progress("check", at, len(tried))
+        one.box(number, judged, point)
+    return one.result()
+
+
 class _Checking:
     def __init__(self, section: Section, source: Random) -> None:
         self.section, self.source = section, source
@@ -187,6 +205,16 @@ class _Checking:
                 wrong.append(Mistake.BALLS)
         near = tuple(map(float, point))
         self.findings += [Finding(mistake, region=number, near=near) for mistake in wrong]
+
+    def box(self, number: int, judged: Judged, point: tuple[Rational, Rational]) -> None:
+        """A point of a box; findings count it as a region."""
+        if judged.right is not None:
+            self.region(number, judged, point, (), ())
+            return
+        self.points += 1
+        there = self._judged(point)
+        if (there.verdict.word is Word.UNSTABLE) != (judged.verdict.word is Word.UNSTABLE):
+            self.findings.append(Finding(Mistake.VERDICT, region=number, near=tuple(map(float, point))))
 
     def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:
         """A second exact point of an arc."""

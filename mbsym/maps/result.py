@@ -32,6 +32,8 @@ class Shape(StrEnum):
     #: Of a line.
     INTERVAL = "interval"
     ZERO = "point"
+    #: Of a plane without an arrangement.
+    BOX = "box"
 
 
 class Standing(StrEnum):
@@ -76,6 +78,11 @@ class Shown:
     """What maps of planes and of lines have in common."""
 
     of: Of
+
+    @property
+    def partial(self) -> bool:
+        """Whether Ctrl-C ended the work."""
+        return bool(getattr(self, "interrupted", False))
 
     def look(self, stratum: Stratum) -> tuple[object, ...]:
         """What a picture tells apart."""

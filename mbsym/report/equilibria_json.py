@@ -10,6 +10,7 @@ from typing import Any
 from mbsym.model.quantities import units_by_name
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
+from mbsym.problems.permanent_rotations import PermanentRotations
 from mbsym.report.schemas import version
 from mbsym.report.sections.stability import verdict_data
 
@@ -17,7 +18,12 @@ from mbsym.report.sections.stability import verdict_data
 FORMAT = 1
 
 
-def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equilibria) -> str:
+def equilibria_json(
+    system: System,
+    values: Mapping[str, Fraction],
+    found: Equilibria,
+    permanent: PermanentRotations | None = None,
+) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data = {
         "format": FORMAT,
@@ -42,6 +48,7 @@ def equilibria_json(system: System, values: Mapping[str, Fraction], found: Equil
             }
             for family in found.families
         ],
+        "permanent_rotations": None if permanent is None else _permanent(permanent),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
@@ -54,6 +61,21 @@ def _equilibrium(one: RelativeEquilibrium) -> dict[str, Any]:
         "descriptions": one.described,
         "proof": one.proof,
         "stability": verdict_data(one.verdict),
+    }
+
+
+def _permanent(found: PermanentRotations) -> dict[str, Any]:
+    return {
+        "body": found.body,
+        "angle": found.angle,
+        "axes": list(found.axes),
+        "everywhere": found.everywhere,
+        "one_parameter_family": found.family,
+        "one_direction_of_each_line": found.either,
+        "equations": [
+            {"constant": constant, "linear": linear, "quadratic": quadratic}
+            for constant, linear, quadratic in zip(found.constant, found.linear, found.quadratic, strict=True)
+        ],
     }
 
 

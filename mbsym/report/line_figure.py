@@ -15,7 +15,7 @@ from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
-from mbsym.report.map_figure import RESOLUTION, SMALL, TEXT, WIDTH, hatch_of, look, named
+from mbsym.report.map_figure import RESOLUTION, SMALL, TEXT, WIDTH, hatch_of, look, named, partial
 from mbsym.report.map_words import condition_words, look_words, telling
 from mbsym.report.unit_text import labelled
 
@@ -53,6 +53,7 @@ def _drawn(system: System, found: LineMap, language: Language) -> Figure:
             (Patch(facecolor=shown.colour, edgecolor=hatch_of(shown), linewidth=0.3, hatch=shown.hatch or None), words)
         )
     entries += [(letter, f"{x:.6g}   {words}") for letter, x, words in told]
+    entries += partial(found, language)
     figure = Figure(figsize=(WIDTH, _BAR + 0.62 + _LINE * len(entries)), dpi=RESOLUTION, layout="constrained")
     axes = figure.subplots()
     axes.grid(False)

@@ -21,14 +21,14 @@ from matplotlib.ticker import MaxNLocator
 from mbsym.algebra.plane import polyline
 from mbsym.algebra.plane.drawing import Branches
 from mbsym.formulas.latex import LatexNames
-from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
+from mbsym.maps.result import Of, PlaneMap, Shown, Standing, Stratum
 from mbsym.maps.seen import drawn, stands_out
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_language import say
-from mbsym.report.map_words import condition_words, look_words, telling
+from mbsym.report.map_words import INTERRUPTED, condition_words, look_words, telling
 from mbsym.report.unit_text import labelled
 from mbsym.report.verdict_colours import NONE, Look, look_of_degree, look_of_roots
 
@@ -58,7 +58,7 @@ def map_figure(system: System, found: PlaneMap, language: Language, formats: Seq
     return pictures({"map": lambda: _drawn(system, found, language)}, ordered)
 
 
-def look(found: PlaneMap | LineMap, stratum: Stratum) -> Look:
+def look(found: Shown, stratum: Stratum) -> Look:
     """Colour and hatch of a region."""
     judged = stratum.judged
     if judged is None:
@@ -285,7 +285,12 @@ def _numbers(axes: Axes, found: PlaneMap, branches: Branches, points: float, lea
 
 
 def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> list[tuple[Any, str]]:
-    return entries_of([(found, told)], language)
+    return [*entries_of([(found, told)], language), *partial(found, language)]
+
+
+def partial(found: Shown, language: Language) -> list[tuple[Any, str]]:
+    """What a legend says of a map that was interrupted."""
+    return [("!", say(language, INTERRUPTED))] if found.partial else []
 
 
 def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: Language) -> list[tuple[Any, str]]:

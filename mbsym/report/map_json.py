@@ -11,6 +11,7 @@ from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.admissible import Demand
 from mbsym.maps.boundaries import Boundaries, Condition
+from mbsym.maps.boxes import BoxMap
 from mbsym.maps.check import Check
 from mbsym.maps.result import LineMap, PlaneMap, Stratum
 from mbsym.maps.slices import Stack
@@ -41,7 +42,7 @@ def written(data: dict[str, Any]) -> str:
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
-def head(system: System, found: PlaneMap | LineMap | Stack) -> dict[str, Any]:
+def head(system: System, found: PlaneMap | LineMap | Stack | BoxMap) -> dict[str, Any]:
     """What maps over any number of axes have in common."""
     return {
         "format": FORMAT,
@@ -124,10 +125,13 @@ def check_data(found: Check | None) -> dict[str, Any] | None:
 
 
 def _stratum(one: Stratum, point: list[dict[str, Any]]) -> dict[str, Any]:
+    return {"number": one.number, "point": point} | judged_data(one)
+
+
+def judged_data(one: Stratum) -> dict[str, Any]:
+    """What is proved at a place, or why nothing is."""
     judged = one.judged
     return {
-        "number": one.number,
-        "point": point,
         "standing": one.standing.value,
         "broken": [x.condition.about or str(x.condition.polynomial) for x in one.broken],
         "stability": None if judged is None else verdict_data(judged.verdict),

@@ -44,6 +44,11 @@ _RUSSIAN = {
     "degrees": "степени",
     "in": "по",
     "terms": "членов",
+    "white: nothing is proved": "белое: ничего не доказано",
+    "of the area": "площади",
+    "Interrupted: incomplete and not checked": "Прервано: неполно и не проверено",
+    "less than": "менее",
+    "Every coloured box is proved as a whole": "Каждый закрашенный прямоугольник доказан целиком",
 }
 
 _SPANISH = {
@@ -86,6 +91,11 @@ _SPANISH = {
     "degrees": "grados",
     "in": "en",
     "terms": "términos",
+    "white: nothing is proved": "blanco: nada está demostrado",
+    "of the area": "del área",
+    "Interrupted: incomplete and not checked": "Interrumpido: incompleto y sin comprobar",
+    "less than": "menos de",
+    "Every coloured box is proved as a whole": "Cada rectángulo coloreado está demostrado entero",
 }
 
 WORDS = {"ru": _RUSSIAN, "es": _SPANISH}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.formulas.latex import LatexNames
+from mbsym.maps.boxes import BoxMap
 from mbsym.maps.result import LineMap, Of, PlaneMap
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
@@ -12,7 +13,7 @@ from mbsym.report.language import Language
 from mbsym.report.line_figure import changes
 from mbsym.report.map_figure import lettered
 from mbsym.report.map_language import say
-from mbsym.report.map_words import condition_words, telling
+from mbsym.report.map_words import INTERRUPTED, condition_words, telling
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
@@ -43,12 +44,13 @@ def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> st
     return "\n".join(lines) + "\n"
 
 
-def caption_of(system: System, found: PlaneMap | LineMap | Stack, plane: str, language: Language) -> str:
+def caption_of(system: System, found: PlaneMap | LineMap | Stack | BoxMap, plane: str, language: Language) -> str:
     """What is shown, over which axes, and what has a number."""
     fixed = LatexNames(list(found.section.told))
     values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
     what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
-    return f"{say(language, what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
+    told = f"{say(language, what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
+    return told + f" {say(language, INTERRUPTED)}." if found.interrupted else told
 
 
 def figure_lines(file: str, caption: str) -> list[str]:

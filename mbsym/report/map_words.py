@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Condition, Origin
-from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
+from mbsym.maps.result import Of, Shown, Standing, Stratum
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word
@@ -44,6 +44,9 @@ _CONDITIONS = {
     Origin.UNDEFINED: "division by zero",
 }
 
+#: Of every file of a map that Ctrl-C ended.
+INTERRUPTED = "Interrupted: incomplete and not checked"
+
 STANDINGS = {
     Standing.OUTSIDE: "not admissible",
     Standing.MASSLESS: "kinetic energy not positive definite",
@@ -71,7 +74,7 @@ def condition_words(condition: Condition, section: Section, language: Language =
     return f"{words} ({', '.join(section.coordinates[condition.part])})"
 
 
-def look_words(found: PlaneMap | LineMap, stratum: Stratum, language: Language = ENGLISH) -> str:
+def look_words(found: Shown, stratum: Stratum, language: Language = ENGLISH) -> str:
     """What is shown of a stratum, for a legend."""
     if stratum.judged is None:
         return say(language, STANDINGS[stratum.standing])
