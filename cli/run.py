@@ -66,7 +66,7 @@ def command(
 
     Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals,
     8 stabilisation (where it is named, and of systems that are given by their matrices), and where they are named
-    10 steady motions and invariant manifolds, 11 terms of higher order.
+    9 polynomial integrals, 10 steady motions and invariant manifolds, 11 terms of higher order.
     One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
     failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,

@@ -26,6 +26,7 @@ from mbsym.analysis import (
     higher,
     invariant,
     judging,
+    polynomial,
     second_routes,
 )
 from mbsym.analysis.forms import FORMS
@@ -52,6 +53,7 @@ from mbsym.problems import (
     stability,
 )
 from mbsym.problems import invariant_sets as problem_10
+from mbsym.problems import polynomial_integrals as problem_9
 from mbsym.problems.checks import Check, oracles
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
@@ -74,6 +76,7 @@ if TYPE_CHECKING:
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.polynomial_integrals import Polynomials
     from mbsym.problems.reduction import Reduced
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -113,6 +116,7 @@ KNOW_SPEEDS = frozenset(
         "integrals",
         "first_order",
         "invariant_sets",
+        "polynomial_integrals",
         "claims",
         "checks",
     )
@@ -326,6 +330,15 @@ class Analysis(Stages):
 
     stabilisation: Problem[Stabilisation] = Problem(
         8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+    )
+
+    polynomial_integrals: Problem[Polynomials] = Problem(
+        9,
+        "polynomial integrals",
+        problem_9,
+        polynomial.polynomials_of,
+        ("equations of motion", "polynomial integrals"),
+        says=True,
     )
 
     invariant_sets: Problem[InvariantSets] = Problem(

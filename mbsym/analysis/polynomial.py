@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
-from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.formulas.formula import Formula
+from mbsym.problems import perturbation
+from mbsym.problems.integrals import PROVED, Integral
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.levels import levels, on_level
+from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals, Polynomials
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.vector_field import Transfer, in_speeds
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.checks import Check
 
 
 @dataclass(frozen=True)
@@ -50,11 +55,14 @@ class Setting:
 def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Setting:
     """The equations of motion as a polynomial field, with numbers in place of some parameters.
 
-    Raises NoClosedForm where they are no such field, ZeroDivisionError where it divides by zero at these numbers.
+    Raises Unavailable for systems without speeds, NoClosedForm where they are no such field, ZeroDivisionError where it
+    divides by zero at these numbers.
     """
     form = analysis.speed_form
     if form is None:
-        raise NoClosedForm("the system has no speeds: its equations are in angles")
+        reason = "polynomial integrals are looked for of equations in speeds (and unit vectors)"
+        hint = "declare 'speeds' and 'orientation' (mbsym explain description)"
+        raise Unavailable("speeds", NoResult(reason, hint, "no speeds", "no-speeds"))
     equations: Any = analysis.equations
     listed = analysis.integrals
     whole, transfer = in_speeds(form, equations, [one.formula.polynomial for one in listed])
@@ -106,3 +114,35 @@ def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grad
 def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
     """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
     return polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
+
+
+#: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.
+DEGREE = 4
+
+
+def polynomials_of(analysis: Analysis) -> Polynomials:
+    """Problem 9 for the symbols of the description."""
+    there = setting(analysis)
+    found = integrals_of(there, DEGREE)
+    on = [one for one in (on_level(found, level) for level in levels(found)) if one.integrals]
+    return Polynomials(
+        found,
+        tuple(there.formula(one.polynomial) for one in found.generators),
+        tuple(on),
+        tuple(tuple(there.formula(f) for _, f in one.integrals) for one in on),
+    )
+
+
+def check(analysis: Analysis) -> Check | None:
+    """Only where somebody has asked for it: dI/dt of those found, by d'Alembert's principle along the motion."""
+    found = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
+    if found is None:
+        return None
+    new = [
+        Integral(f"integral of weight {one.weight}", "polynomial", "", formula, PROVED)
+        for one, formula in zip(found.found.generators, found.formulas, strict=True)
+        if one.is_new
+    ]
+    if not new:
+        return None
+    return replace(perturbation.check_integrals(analysis.oracles, analysis.programs, new), name="polynomial integrals")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.analysis import constrained, forms, higher
+from mbsym.analysis import constrained, forms, higher, polynomial
 from mbsym.formulas.formula import Column
 from mbsym.mechanics import motion
 from mbsym.problems import checks as comparison
@@ -205,6 +205,7 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "first approximation in speeds": _first_order,
     "first integrals": _integrals,
     "stabilisation": _stabilisation,
+    "polynomial integrals": polynomial.check,
     "normal forms": higher.check,
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 #: The numbers under which ``mbsym.analysis`` lists them; here for those who only have to know what may be asked for.
-NUMBERS = (*range(1, 9), 10, 11)
+NUMBERS = tuple(range(1, 12))
 
 
 def ranges(numbers: Iterable[int] = NUMBERS) -> str:

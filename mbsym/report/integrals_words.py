@@ -8,6 +8,14 @@ from typing import Any
 from mbsym.problems.polynomial_integrals import Case, Generator, OnLevel, PolynomialIntegrals, Sure
 from mbsym.report.said import Said
 
+#: One integral of a list, and one that holds where another is zero.
+LISTED = "Weight [[weight]], [[name]]:"
+LEVEL = "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:"
+#: What the list is about.
+OPENING = (
+    "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; "
+    "weights of the variables: [[weights]]."
+)
 HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
 
 

@@ -29,6 +29,7 @@ from mbsym.report.conditions import Shown, cases, factors, provided, statements
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.integrals_words import OPENING
 from mbsym.report.language import Language
 from mbsym.report.latex_description import (
     call,
@@ -55,6 +56,7 @@ from mbsym.report.latex_formulas import (
     row,
     tensor,
 )
+from mbsym.report.latex_integrals import of_integrals, of_list, weights_of
 from mbsym.report.latex_invariant import of_invariant_sets
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_normal_forms import of_normal_forms
@@ -142,6 +144,10 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
+        "polynomial_integrals": lambda one: of_integrals(one, tongue),
+        "polynomial_weights": lambda one: weights_of(one, names),
+        "polynomial_sentences": lambda one: of_list(one, tongue),
+        "OPENING": OPENING,
         "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
         "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),
         "FEEDBACK": FEEDBACK,

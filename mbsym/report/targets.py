@@ -103,6 +103,7 @@ _FRAGMENTS = (
     ("stability", 6, "stability"),
     ("integrals", 7, "first integrals"),
     ("stabilisation", 8, "stabilisation"),
+    ("polynomial_integrals", 9, "polynomial integrals"),
     ("invariant_sets", 10, "steady motions and invariant manifolds"),
     ("normal_forms", 11, "terms of higher order"),
     ("claims", None, "claims"),

@@ -30,7 +30,7 @@ from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_prin
 from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
 from mbsym.report.said import filled
-from mbsym.report.sections import invariant_sets
+from mbsym.report.sections import invariant_sets, polynomial_integrals
 from mbsym.report.sections.normal_forms import PLAIN as HIGHER
 from mbsym.report.sections.stabilisation import PLAIN
 from mbsym.report.stabilisation_words import sentences
@@ -82,6 +82,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         names=names,
         found=found,
         stabilisation_sentences=[filled(said) for said in sentences(found[8], PLAIN)] if 8 in found else [],
+        polynomial_lines=list(polynomial_integrals.lines(found[9], analysis)) if 9 in found else [],
+        polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
         normal_form_sentences=[filled(said) for said in higher_sentences(found[11], HIGHER)] if 11 in found else [],
         invariant_lines=list(invariant_sets.lines(found[10], analysis)) if 10 in found else [],
         forms=forms,

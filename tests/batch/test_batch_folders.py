@@ -114,7 +114,7 @@ def test_a_file_keeps_its_folder_when_others_are_left_out(tmp_path: Path, monkey
         (["in", "--timeout", "nan"], "--timeout: error[bad-number]"),
         (["in", "--memory", "-1"], "--memory: error[bad-number]"),
         (["in", "--format", "jsn"], "did you mean 'json'?"),
-        (["in", "--problems", "9"], "there is no problem 9"),
+        (["in", "--problems", "99"], "there is no problem 99"),
         (["in", "--out", "in/a.yaml"], "is no folder"),
     ],
 )

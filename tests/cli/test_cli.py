@@ -91,7 +91,7 @@ def test_only_what_the_formats_show_is_derived(
 @pytest.mark.parametrize(
     ("option", "value", "hint"),
     [
-        ("--problems", "99", "1 to 8"),
+        ("--problems", "99", "1 to 11"),
         ("--problems", "x", "1-5"),
         ("--problems", "5-1", "problem"),
         ("--format", "word", "latex"),
@@ -253,7 +253,7 @@ def test_explain(number: int) -> None:
 
 def test_explain_lists_and_refuses() -> None:
     assert mbsym("explain").stdout.count("\n") == len(PROBLEMS) + len(TOPICS)
-    assert mbsym("explain", "9").exit_code == 2
+    assert mbsym("explain", "99").exit_code == 2
     assert "did you mean claims" in mbsym("explain", "clams").stderr
 
 

@@ -39,6 +39,7 @@ GCC = shutil.which("gcc")
 NOT_ALWAYS = {
     "fragments/claims.tex",
     "fragments/stabilisation.tex",
+    "fragments/polynomial_integrals.tex",
     "fragments/invariant_sets.tex",
     "fragments/normal_forms.tex",
 }

@@ -145,7 +145,7 @@ def test_all_options_of_simulate_at_once(tmp_path: Path) -> None:
 
 def test_the_description_is_read_even_if_the_options_are_wrong(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED.replace("mass: m", "mass: mm"))
-    for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "9")):
+    for words in (("simulate", "--method", "rk5"), ("tradeoff", "--methods", "rk5"), ("run", "--problems", "99")):
         done = mbsym(words[0], path, *words[1:], "--out", tmp_path / "out")
         assert done.exit_code == 2
         assert "error[unknown-name]: unknown name 'mm'" in done.stderr
@@ -212,7 +212,7 @@ def test_all_options_of_run_at_once(tmp_path: Path) -> None:
         "--terms: error[bad-number]: -1 is out of bounds: at least 1",
     ]
     assert "hint: a range goes upwards: write 3-5" in done.stderr
-    assert "hint: problems are numbered 1 to 8, 10 to 11" in done.stderr
+    assert "hint: problems are numbered 1 to 11" in done.stderr
     assert not (tmp_path / "out").exists()
 
 
@@ -223,7 +223,7 @@ def test_all_options_of_run_at_once(tmp_path: Path) -> None:
         (" 6 , 1 - 2,2", (1, 2, 6), []),
         ("5-3", (), ["bad-range"]),
         ("0", (), ["unknown-problem"]),
-        ("2,6-9", (2,), ["unknown-problem"]),
+        ("2,6-99", (2,), ["unknown-problem"]),
         ("1-999999999", (), ["unknown-problem"]),
         ("1-99999999999999999999", (), ["bad-number"]),
         ("", (), ["bad-number"]),

@@ -13,15 +13,16 @@ Weights are looked for under which the equations are quasi-homogeneous (Euler's 
 vector 2; without forces that are linear in it 1): then each weight stands for itself.  Integrals are told apart as
 functions by the rank of their gradients at a random state.
 
+Particular integrals have derivatives that vanish where another one does: df/dt = K V.  ``mbsym integrals`` asks more:
+at which values of a parameter, or under which conditions on parameters, there are others.
+
 Source: H. Yoshida, Necessary condition for the existence of algebraic first integrals, Celest. Mech. 31 (1983), on
 weights; the integrals themselves are those of Euler, Lagrange, Kovalevskaya and Clebsch.
 
 Example:
 
     >>> import mbsym
-    >>> from mbsym.analysis.polynomial import integrals_of, setting
-    >>> there = setting(mbsym.load("systems/clebsch-poisson.yaml"))
-    >>> found = integrals_of(there, 4)
+    >>> found = mbsym.load("systems/clebsch-poisson.yaml").polynomial_integrals.found
     >>> [(one.weight, one.name) for one in found.generators if one.is_new], found.complete
     ([(2, '')], True)
 """
@@ -37,6 +38,7 @@ from mbsym.problems.polynomial_integrals.result import (
     Generator,
     OnLevel,
     PolynomialIntegrals,
+    Polynomials,
     Special,
     Sure,
 )
@@ -52,6 +54,7 @@ __all__ = [
     "Grading",
     "OnLevel",
     "PolynomialIntegrals",
+    "Polynomials",
     "Special",
     "Sure",
     "along",

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals.gradings import Grading
 
 
@@ -144,3 +145,16 @@ class Cases:
     cases: tuple[Case, ...]
     families: int
     unread: int
+
+
+@dataclass(frozen=True)
+class Polynomials:
+    """What problem 9 tells of a system: the integrals found, and those that hold where one of them is zero.
+
+    ``formulas`` of the generators, ``on_levels`` of ``levels``, one by one.
+    """
+
+    found: PolynomialIntegrals
+    formulas: tuple[Formula, ...]
+    levels: tuple[OnLevel, ...]
+    on_levels: tuple[tuple[Formula, ...], ...]

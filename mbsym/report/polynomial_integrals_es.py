@@ -1,0 +1,23 @@
+"""Spanish sentences of problem 9."""
+
+# ruff: noqa: E501
+
+SENTENCES = {
+    "Problem 9. Polynomial integrals": "Problema 9. Integrales polinómicas",
+    "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; weights of the variables: [[weights]].": "Polinomios de grado ponderado hasta [[degree]] cuyas derivadas se anulan por las ecuaciones del movimiento; pesos de las variables: [[weights]].",
+    "Weight [[weight]], [[name]]:": "Peso [[weight]], [[name]]:",
+    "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:": "Peso [[weight]], donde la de peso [[own]] ([[name]]) es cero:",
+    "There is none (proved for almost all values of the parameters).": "No hay ninguna (demostrado para casi todos los valores de los parámetros).",
+    "There is none (proved).": "No hay ninguna (demostrado).",
+    "None was found.": "No se encontró ninguna.",
+    "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Como funciones son independientes al menos [[count]] de ellas (demostrado: rango de los gradientes).",
+    "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas, para casi todos los valores de los parámetros (demostrado).",
+    "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas (demostrado).",
+    "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "De peso [[weight]] hay como mucho [[more]] más; no se encontraron dentro del presupuesto.",
+    "There is none beyond those of problem 7.": "No hay ninguna además de las del problema 7.",
+    "That of weight [[weight]] ([[name]]) depends on those before it as a function (proved: no more can be).": "La de peso [[weight]] ([[name]]) depende de las anteriores como función (demostrado: no puede haber más).",
+    "That of weight [[weight]] ([[name]]) depends on those before it as a function (verified at a random state).": "La de peso [[weight]] ([[name]]) depende de las anteriores como función (verificado en un estado al azar).",
+    "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.": "No está decidido si la de peso [[weight]] ([[name]]) es independiente de las anteriores.",
+}
+
+WORDS = {"further integral": "integral nueva"}

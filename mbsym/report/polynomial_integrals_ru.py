@@ -1,0 +1,23 @@
+"""Russian sentences of problem 9."""
+
+# ruff: noqa: E501
+
+SENTENCES = {
+    "Problem 9. Polynomial integrals": "Задача 9. Полиномиальные интегралы",
+    "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; weights of the variables: [[weights]].": "Многочлены взвешенной степени не выше [[degree]], производные которых равны нулю в силу уравнений движения; веса переменных: [[weights]].",
+    "Weight [[weight]], [[name]]:": "Вес [[weight]], [[name]]:",
+    "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:": "Вес [[weight]], на нулевом уровне интеграла веса [[own]] ([[name]]):",
+    "There is none (proved for almost all values of the parameters).": "Таких нет (доказано для почти всех значений параметров).",
+    "There is none (proved).": "Таких нет (доказано).",
+    "None was found.": "Ничего не найдено.",
+    "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Как функции независимы по меньшей мере [[count]] из них (доказано: ранг градиентов).",
+    "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них при почти всех значениях параметров (доказано).",
+    "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них (доказано).",
+    "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "Веса [[weight]] есть ещё не более [[more]]; в пределах бюджета они не найдены.",
+    "There is none beyond those of problem 7.": "Сверх интегралов задачи 7 их нет.",
+    "That of weight [[weight]] ([[name]]) depends on those before it as a function (proved: no more can be).": "Интеграл веса [[weight]] ([[name]]) как функция зависит от предыдущих (доказано: больше независимых быть не может).",
+    "That of weight [[weight]] ([[name]]) depends on those before it as a function (verified at a random state).": "Интеграл веса [[weight]] ([[name]]) как функция зависит от предыдущих (проверено в случайном состоянии).",
+    "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.": "Независим ли интеграл веса [[weight]] ([[name]]) от предыдущих, не выяснено.",
+}
+
+WORDS = {"further integral": "новый интеграл"}

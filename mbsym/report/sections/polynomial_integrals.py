@@ -1,0 +1,68 @@
+"""Problem 9, polynomial integrals: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.formulas.formula import Formula
+from mbsym.model.system import System
+from mbsym.problems.polynomial_integrals import Polynomials
+from mbsym.report.integrals_words import level_title, sentences, title, weights
+from mbsym.report.plain import LONGEST, Write
+from mbsym.report.said import filled
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(result: Polynomials, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    found = result.found
+    return {
+        "degree": found.degree,
+        "weights": dict(zip(found.field.variables, found.grading.weights, strict=True)),
+        "quasi_homogeneous": found.grading.homogeneous,
+        "complete": found.complete,
+        "independent": found.independent,
+        "integrals": [
+            {
+                "weight": one.weight,
+                "name": one.name,
+                "new": one.is_new,
+                "formula": write(formula),
+                "independent": one.independent,
+                "independence": one.sure.value,
+            }
+            for one, formula in zip(found.generators, result.formulas, strict=True)
+        ],
+        "on_levels": [
+            {
+                "zero": one.level.name,
+                "integrals": [
+                    {"weight": weight, "formula": write(formula)}
+                    for (weight, _), formula in zip(one.integrals, formulas, strict=True)
+                ],
+                "complete": one.complete,
+            }
+            for one, formulas in zip(result.levels, result.on_levels, strict=True)
+        ],
+    }
+
+
+def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    found = result.found
+    yield f"up to weighted degree {found.degree}; weights {weights(found)}"
+    for one, formula in zip(found.generators, result.formulas, strict=True):
+        if one.is_new:
+            yield f"{title(one)} of weight {one.weight}: {_short(formula)}"
+    for level, formulas in zip(result.levels, result.on_levels, strict=True):
+        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
+            yield f"{level_title(weight, level)}: {_short(formula)}"
+    yield from map(filled, sentences(found))
+
+
+def _short(formula: Formula) -> str:
+    text = str(formula)
+    return text if len(text) <= LONGEST else f"({formula.terms} terms; see the reports)"

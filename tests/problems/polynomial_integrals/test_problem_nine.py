@@ -1,0 +1,93 @@
+"""Problem 9 in the pipeline: Kovalevskaya's top, Goryachev and Chaplygin's, and what reports say of them."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.analysis import polynomial
+from mbsym.analysis.pipeline import Analysis
+from mbsym.formulas.formula import Formula
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+SYSTEMS = Path(__file__).parents[3] / "systems"
+KOVALEVSKAYA = (SYSTEMS / "kovalevskaya.yaml").read_text(encoding="utf-8")
+CHAPLYGIN = KOVALEVSKAYA.replace("[2*C, 2*C, C]", "[4*C, 4*C, C]").split("claims:")[0]
+
+
+@pytest.fixture(scope="module")
+def kovalevskaya():
+    return Analysis(mbsym.loads(KOVALEVSKAYA).system, problems=(9,))
+
+
+def test_kovalevskayas_integral_is_the_fourth(kovalevskaya):
+    result = kovalevskaya.polynomial_integrals
+    assert [one.weight for one in result.found.generators] == [2, 3, 4, 4]
+    assert [one.is_new for one in result.found.generators] == [False, False, False, True]
+    assert (result.found.independent, result.found.complete) == (4, True)
+    # Hers: (C (p^2 - q^2) - m g x0 gamma1)^2 + (2 C p q - m g x0 gamma2)^2 is a polynomial in those found.
+    there = polynomial.setting(kovalevskaya)
+    C, x0, m, g, p, q, g1, g2 = map(there.whole.generator, ("C", "x0", "m", "g", "p", "q", "gamma1", "gamma2"))
+    hers = (C * (p**2 - q**2) - m * g * x0 * g1) ** 2 + (2 * C * p * q - m * g * x0 * g2) ** 2
+    assert there.whole.derivative(hers) == 0
+    energy, _, _, new = (one.polynomial for one in result.found.generators)
+    assert energy**2 - 4 * hers == new
+
+
+def test_a_mistake_is_found_by_the_self_check(kovalevskaya):
+    assert kovalevskaya.check("polynomial integrals").outcome == "exact"
+    result = kovalevskaya.polynomial_integrals
+    ring = result.formulas[-1].ring
+    wrong = Formula(ring, result.formulas[-1].polynomial + ring.generator("coordinate", "r"))
+    other = Analysis(kovalevskaya.system, problems=(9,))
+    other.polynomial_integrals  # noqa: B018
+    other.stage(9)
+    planted = replace(result, formulas=(*result.formulas[:-1], wrong))
+    object.__setattr__(other, "optional", lambda name: planted if name == "polynomial_integrals" else None)
+    assert polynomial.check(other).failed
+
+
+def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
+    path = tmp_path / "chaplygin.yaml"
+    path.write_text(CHAPLYGIN, encoding="utf-8")
+    result = mbsym.load(path).polynomial_integrals
+    assert result.found.new == ()
+    assert [(one.level.weight, [w for w, _ in one.integrals]) for one in result.levels] == [(3, [3])]
+    words = ["run", path, "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
+    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    told = "where the integral of weight 3 (angular momentum about axis 3) is zero, one of weight 3"
+    assert told in " ".join(done.output.split())
+    data = json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))
+    jsonschema.validate(data, schema("results"))
+    (level,) = data["polynomial_integrals"]["on_levels"]
+    assert level["zero"] == "angular momentum about axis 3"
+    assert "donde la de peso 3" in (tmp_path / "out" / "report.tex").read_text("utf-8")
+    assert told in (tmp_path / "out" / "report.html").read_text("utf-8")
+    assert "polynomialIntegrals = {" in (tmp_path / "out" / "report.wl").read_text("utf-8")
+
+
+def test_systems_in_angles_are_told_what_is_missing():
+    stage = Analysis(mbsym.load(SYSTEMS / "heavy-top.yaml").system, problems=(9,)).stage(9)
+    assert stage.value is None
+    assert "speeds" in str(stage.failure)
+
+
+def test_every_sentence_has_its_translations():
+    from mbsym.report import integrals_words, polynomial_integrals_es, polynomial_integrals_ru
+
+    source = Path(integrals_words.__file__).read_text("utf-8")
+    for catalogue in (polynomial_integrals_ru.SENTENCES, polynomial_integrals_es.SENTENCES):
+        assert {integrals_words.LISTED, integrals_words.LEVEL, integrals_words.OPENING} <= set(catalogue)
+        assert {*integrals_words._DEPENDENT.values(), *integrals_words._NONE.values()} <= set(catalogue)
+        for english, other in catalogue.items():
+            assert english[:30] in source or english.startswith("Problem 9")
+            assert set(re.findall(r"\[\[\w+\]\]", english)) == set(re.findall(r"\[\[\w+\]\]", other))
