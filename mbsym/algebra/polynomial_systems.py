@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import combinations, product
 from typing import Any
 
@@ -69,18 +70,22 @@ class AlgebraicPoint:
 
     def root(self, bits: int) -> Any:
         """A ball around t, of relative size about 2^-bits."""
-        return real_roots(self.modulus, bits)[self.index]
+        return _known_roots(tuple(self.modulus.numer().coeffs()), bits)[self.index]
 
     def enclosures(self, bits: int = 200) -> tuple[Any, ...]:
         """Balls around the coordinates."""
         return tuple(self.enclosure(value, bits) for value in self.values)
 
     def enclosure(self, element: Univariate, bits: int = 200) -> Any:
-        """A ball around an element of the number field, at this root."""
+        """A ball around an element of the number field, at this root: of about ``bits`` bits where cancelling allows."""
         if element.degree() <= 0:
             return _ball(element[0], bits)
-        with ctx.workprec(bits):
-            return arb_poly(element.coeffs())(self.root(bits))
+        for working in (bits << k for k in range(6)):
+            with ctx.workprec(working):
+                ball = arb_poly(element.coeffs())(self.root(working))
+            if ball.rad() * arb(2) ** (bits - 20) < abs(ball).mid():
+                break
+        return ball
 
 
 @dataclass(frozen=True)
@@ -125,6 +130,12 @@ def real_roots(p: Univariate, bits: int = 64) -> list[Any]:
         # Arb encloses real roots in balls whose imaginary part is exactly 0, and the others in balls off the axis.
         real = (root.real for root, _ in p.numer().complex_roots() if root.imag == 0)
         return sorted(real, key=lambda root: root.mid())
+
+
+@lru_cache(maxsize=64)
+def _known_roots(coefficients: tuple[Any, ...], bits: int) -> list[Any]:
+    """``real_roots``, once for all the points of a field that are asked for together."""
+    return real_roots(fmpq_poly(list(coefficients)), bits)
 
 
 def residue(x: Polynomial, values: Sequence[Univariate], modulus: Univariate) -> Univariate:

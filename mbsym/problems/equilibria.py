@@ -411,8 +411,9 @@ class _ChartSearch:
         found = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
         if found is None or any(not self._may_rest(place) for place in found.places):
             return False
+        known = [x.place for x in self.points]
         for place in found.places:
-            if not self._known([float(place.balls[name].mid()) for name in self.occurring], 1e-12):
+            if not any(self._same(place, other) for other in known):
                 self._add(place, EXACT)
         self.remarks.append(f"solved exactly in the direction cosines of {', '.join(found.joints)}")
         return True
@@ -424,7 +425,7 @@ class _ChartSearch:
         for name in self.occurring:
             if ring.has("sine", name) and ring.index("sine", name) in exact:
                 s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
-                balls[name] = angle_of(s, c) * ring.angles[name]
+                balls[name] = angle_of(s, c, ring.angles[name])
             else:
                 balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
         for name in self.free:  # any value does; 0 is one
@@ -588,6 +589,16 @@ class _ChartSearch:
         """Whether no equation is proved not to vanish there: the second route of every list in balls."""
         with ctx.workprec(PRECISION):
             return all(self.ring.evaluate(x, place.balls).contains(0) for x in self.equations)
+
+    def _same(self, one: Place, other: Place) -> bool:
+        """Whether two places have coordinates that balls of PRECISION bits cannot tell apart."""
+        ring = self.ring
+        compared = [
+            ring.generator(kind, name)
+            for name in self.occurring
+            for kind in (("sine", "cosine") if self._periodic(name) else ("coordinate",))
+        ]
+        return all(one.ball(x).overlaps(other.ball(x)) for x in compared)
 
     def _known(self, place: Sequence[float], tolerance: float) -> bool:
         """Whether a solution is listed already, within ``tolerance``."""

@@ -13,7 +13,7 @@ orientation (sine and cosine of x2 exchanged where the first axis is repeated).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -25,6 +25,9 @@ from mbsym.mechanics.charts import Chart, Joint, moment_components
 from mbsym.problems.rest_cosines import Choice, Cosines, choices
 from mbsym.problems.rest_place import PRECISION, Place, angle_of, exact_rates
 from mbsym.problems.rest_unknowns import Unknowns
+
+#: How many times the bits of a coefficient that are allowed in sines and cosines: there are fewer of them here.
+BITS = 20
 
 Split = Callable[[Polynomial], Iterable[Polynomial]]
 
@@ -144,7 +147,7 @@ class _System:
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
         if used != set(range(self.context.nvars())):
             return None
-        result = solve(self.equations, (), bounded, limits)
+        result = solve(self.equations, (), bounded, replace(limits, bits=BITS * limits.bits))
         if result.unfinished or result.families:
             return None
         places: list[Place] = []
@@ -191,7 +194,7 @@ class _System:
                         exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
                 elif ring.has("sine", name) and ring.index("sine", name) in exact:
                     s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
-                    balls[name] = angle_of(s, c) * ring.angles[name]
+                    balls[name] = angle_of(s, c, ring.angles[name])
                 elif ring.index("coordinate", name) in exact:
                     balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
                 else:
@@ -237,7 +240,8 @@ def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: S
     found = []
     for sign in (1, -1):
         exact = {index: inner}
-        balls = {index: point.enclosure(inner, PRECISION), other: length * sign}
+        with ctx.workprec(PRECISION):
+            balls = {index: point.enclosure(inner, PRECISION), other: length * sign}
         if root is not None:
             exact[other] = fmpq_poly([root * sign])
         for key, value in seen:
@@ -252,7 +256,7 @@ def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: S
             s, c = (balls.get(ring.index(kind, name)) for kind in ("sine", "cosine"))
             if s is None or c is None:
                 return None
-            angles[name] = angle_of(s, c) * ring.angles[name]
+            angles[name] = angle_of(s, c, ring.angles[name])
         inside = {ring.index(kind, name) for name in angles for kind in ("sine", "cosine")}
         found.append(_Angles(angles, {k: value for k, value in exact.items() if k in inside}))
     return found

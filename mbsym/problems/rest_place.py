@@ -23,12 +23,12 @@ def exact_rates(found: Rest) -> dict[int, Any]:
     return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
 
 
-def angle_of(s: Any, c: Any) -> Any:
-    """A ball around the angle of a sine and a cosine, in (-pi, pi]."""
+def angle_of(s: Any, c: Any, scale: int = 1) -> Any:
+    """A ball around ``scale`` times the angle of a sine and a cosine, which is in (-pi, pi]."""
     with ctx.workprec(PRECISION):
         if c < 0 and s.contains(0):  # atan2 is cut here
-            return arb.pi() - (s / -c).atan()
-        return arb.atan2(s, c)
+            return (arb.pi() - (s / -c).atan()) * scale
+        return arb.atan2(s, c) * scale
 
 
 class Place:

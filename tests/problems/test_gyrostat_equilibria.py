@@ -127,9 +127,17 @@ def test_every_equilibrium_of_the_general_gyrostat(
 
 
 def test_a_list_that_outgrows_its_limits_stays_open() -> None:
-    found = listed(("4", "5", "3"), ("1/20", "3/100", "1/50"), Limits(bits=40))
+    found = listed(("4", "5", "3"), ("1/20", "3/100", "1/50"), Limits(bits=4))
     assert not found.complete
     assert any("may be" in x or "not finished" in x for x in found.remarks)
+
+
+def test_equilibria_beside_singular_angles_are_told_apart_from_them() -> None:
+    """As h goes to 0 there are 24: eight of those of h = 0 have cos theta = 0, and now cos theta is about 1e-15."""
+    found = listed(("4", "5", "3"), ("1/1000000000000000", "1/500000000000000", "3/1000000000000000"))
+    assert found.complete
+    assert len(found.equilibria) == 24
+    assert not found.singular
 
 
 def test_a_wrong_third_axis_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
