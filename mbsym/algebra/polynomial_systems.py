@@ -77,7 +77,7 @@ class AlgebraicPoint:
         return tuple(self.enclosure(value, bits) for value in self.values)
 
     def enclosure(self, element: Univariate, bits: int = 200) -> Any:
-        """A ball around an element of the number field, at this root: of about ``bits`` bits where cancelling allows."""
+        """A ball around an element of the number field, at this root: about ``bits`` bits where cancelling allows."""
         if element.degree() <= 0:
             return _ball(element[0], bits)
         for working in (bits << k for k in range(6)):
