@@ -88,10 +88,10 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
     if found.check is not None and found.check.holds:
         arcs = f" and {counted(found.check.arcs, 'arc')}" if found.check.arcs else ""
-        told.append(
-            f"check: {counted(found.check.points, 'more point')} in regions{arcs} agree; at {found.check.enclosed} of "
-            "them eigenvalues in balls confirm the counts"
-        )
+        by_balls = f"at {found.check.enclosed} of them eigenvalues in balls confirm the counts"
+        if not found.check.enclosed:
+            by_balls = "eigenvalues in balls exclude none of the counts, and decide none"
+        told.append(f"check: {counted(found.check.points, 'more point')} in regions{arcs} agree; {by_balls}")
     return told
 
 

@@ -24,7 +24,7 @@ from functools import cached_property
 from random import Random
 from typing import Any
 
-from flint import acb_mat, arb, arb_mat, arb_poly, ctx, fmpq
+from flint import acb_mat, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
@@ -39,9 +39,10 @@ from mbsym.maps.constant_points import beside
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged, verdict_at
-from mbsym.problems.stability.enclosed import eigenvalues, on_axis
+from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
 from mbsym.problems.stability.exact import RationalPoint, evaluated
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix
+from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.word import Word
 
 #: In maps of few cells every cell is tried more than once, until so many points are.
@@ -288,7 +289,10 @@ def _counted(
     """
     m, d, g, k, n = (_in_balls(matrix, point, constant, bits) for matrix in part.matrices)
     try:
-        roots, simple = eigenvalues(m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
+        if constant is None:
+            roots, simple = _nonzero_roots(part, point)
+        else:
+            roots, simple = eigenvalues(m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
     except ZeroDivisionError:
         return None
     stiffness = _spectrum(k)
@@ -298,7 +302,34 @@ def _counted(
     symmetric = part.nonholonomic is None and all(x == 0 for rows in (d, n) for x in rows.entries())  # exactly zero
     if symmetric and simple:
         most -= sum(1 for x in roots if x.real.contains(0) and on_axis(x, roots))
-    return (least, most), (sum(bool(x < 0) for x in stiffness), sum(not x > 0 for x in stiffness))
+    negative = sum(bool(x < 0) for x in stiffness)
+    null = [x for x in stiffness if x.contains(0)]
+    known = constant is None and len(null) == part.size - _rank(part.K, point)
+    return (least, most), (negative, negative if known else sum(not x > 0 for x in stiffness))
+
+
+def _nonzero_roots(part: LinearSystem, point: Sequence[Rational]) -> tuple[list[Any] | None, bool]:
+    """(balls around the roots that are not zero at a rational point, whether they are isolated from each other).
+
+    They are the eigenvalues of A, an N x N matrix, on the image of A^N, of which a basis B is found exactly:
+    those of X with A B = B X.
+    """
+    at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
+    m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
+    first = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
+    power = first
+    for _ in range(first.nrows() - 1):
+        power = power * first
+    rows, rank = power.transpose().rref()
+    if not rank:
+        return [], True
+    basis = fmpq_mat(rows.tolist()[:rank]).transpose()
+    turned = basis.transpose()
+    return spectrum(acb_mat((turned * basis).solve(turned * first * basis)))
+
+
+def _rank(matrix: Matrix, point: Sequence[Rational]) -> int:
+    return int(fmpq_mat(len(matrix), len(matrix), [fmpq(x(*point)) for row in matrix for x in row]).rank())
 
 
 def _in_balls(matrix: Matrix, point: Sequence[Rational], constant: Constant | None, bits: int) -> Any:

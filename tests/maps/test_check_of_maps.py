@@ -13,6 +13,7 @@ import mbsym
 from mbsym.algebra.plane import Arrangement, Box, Point, decompose, decompose_line
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import Check, Mistake, check
+from mbsym.maps.line_map import line_map
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Judged
@@ -120,3 +121,27 @@ def test_a_line() -> None:
     assert check(made, found, verdicts).holds
     lost = decompose_line([p for p in factors if p(fmpq(4)) != 0], 0, 10)
     assert not check(made, lost, [judge(interval.sample) for interval in lost.intervals]).holds
+
+
+@pytest.mark.parametrize(
+    ("name", "axis", "low", "high", "settings"),
+    [("rolling-disc", "w", "1/10", "1/2", "mrg"), ("chaplygin-sleigh", "v", 1, 2, "")],
+)
+def test_balls_confirm_counts_where_zero_roots_have_blocks(
+    name: str, axis: str, low: Any, high: Any, settings: str
+) -> None:
+    """Idle coordinates, whose roots are zero in blocks, do not keep balls from deciding the others: at every point."""
+    values = dict.fromkeys(settings, Fraction(1))
+    found = line_map(mbsym.load(f"systems/{name}.yaml"), Axis(axis, Fraction(low), Fraction(high)), values)
+    assert found.check is not None
+    assert found.check.holds
+    assert found.check.enclosed == found.check.points > 90
+
+
+def test_a_wrong_count_beside_zero_roots_is_excluded_by_balls() -> None:
+    """The disc falls where w^2 < g/(3 r): with no root to the right planted there, balls exclude that."""
+    values = dict.fromkeys("mrg", Fraction(1))
+    found = line_map(mbsym.load("systems/rolling-disc.yaml"), Axis("w", Fraction(1, 10), Fraction(1, 2)), values)
+    planted = [replace(one.judged, right=0) if one.judged else None for one in found.regions]
+    wrong = check(found.section, found.line, planted)
+    assert Mistake.BALLS in {one.mistake for one in wrong.findings}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -11,7 +12,7 @@ from click.testing import CliRunner, Result
 
 import mbsym
 from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import PlaneMap, Shape
+from mbsym.maps.result import Of, PlaneMap, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.report.map_located import stratum_at
@@ -138,3 +139,49 @@ def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path)
             assert there.judged.right == sum(roots > 0)
             told += 1
     assert told > 250
+
+
+def test_the_signature_of_a_diagonal_stiffness(tmp_path: Path) -> None:
+    """K = diag(a, b): its negative eigenvalues are the negative ones of a and b; on a = 0 or b = 0 one vanishes."""
+    path = tmp_path / "system.yaml"
+    path.write_text(HEAD.format("signature").replace("[x]", "[x, y]") + "  K: [[a, 0], [0, b]]\n")
+    axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
+    found = plane_map(mbsym.load(path), axes, {}, Of.SIGNATURE)
+    for a in (Fraction(-1, 2), Fraction(0), Fraction(1, 2)):
+        for b in (Fraction(-1, 3), Fraction(0), Fraction(1, 3)):
+            there = stratum_at(found, a, b)
+            assert there is not None
+            assert there.judged is not None
+            assert (there.judged.degree, there.judged.null) == ((a < 0) + (b < 0), (a == 0) + (b == 0))
+    assert len({found.look(one) for one in found.regions}) == 3
+    assert all(found.separates(one) or None in found.beside(one) for one in found.arcs)
+    words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--of", "signature", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    for count in (0, 1, 2):
+        assert f"degree of instability {count}" in done.stdout
+    data = json.loads((tmp_path / "out" / "map.json").read_text())
+    assert data["of"] == "signature"
+    assert sorted(one["negative_eigenvalues_of_K"] for one in data["regions"]) == [0, 1, 1, 2]
+
+
+def test_one_axis_is_absent_from_the_conditions(tmp_path: Path) -> None:
+    """K = a: the line a = 0, whatever b is; and K = 1: one region, no line."""
+    found = mapped(described(tmp_path, "a"))
+    assert (len(found.regions), len(found.arcs)) == (2, 1)
+    assert [one.judged and one.judged.right for one in found.regions] == [1, 0]
+    found = mapped(described(tmp_path, "1"))
+    assert (len(found.regions), len(found.arcs), len(found.corners)) == (1, 0, 0)
+    done = called(tmp_path / "system.yaml")
+    assert done.exit_code == 0, done.output
+    assert "no condition of stability depends on the axes" in done.stdout
+
+
+def test_a_region_without_inner_points(tmp_path: Path) -> None:
+    """K = -(a - b)^2: unstable everywhere but on a = b, where the root is zero twice; nothing is stable."""
+    found = mapped(described(tmp_path, "-(a - b)**2"))
+    assert {one.word for one in found.regions} == {"unstable"}
+    on = stratum_at(found, Fraction(1, 3), Fraction(1, 3))
+    assert on is not None
+    assert on.word not in ("unstable", "stable")
+    assert found.singles_out(on)

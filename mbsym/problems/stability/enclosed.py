@@ -117,7 +117,11 @@ def _semidefinite(rows: Rows) -> bool:
 
 def eigenvalues(m: Rows, c: Rows, k: Rows, following: Sequence[int] = ()) -> tuple[list[Any] | None, bool]:
     """(balls around all roots of M x'' + C x' + K x = 0, whether they are isolated from each other)."""
-    first = acb_mat(state_matrix(arb_mat, m, c, k, following))
+    return spectrum(acb_mat(state_matrix(arb_mat, m, c, k, following)))
+
+
+def spectrum(first: Any) -> tuple[list[Any] | None, bool]:
+    """(balls around all eigenvalues of a matrix, whether they are isolated from each other)"""
     try:
         return list(first.eig()), True
     except ValueError:
