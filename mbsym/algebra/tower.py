@@ -21,9 +21,9 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
 
 #: As many roots can be adjoined, and so many terms may an element have.
-MOST_ROOTS, MOST_TERMS = 8, 20_000
-#: So many products of terms may be formed in all: some ten seconds.
-MOST_WORK = 20_000_000
+MOST_ROOTS, MOST_TERMS = 8, 4_000
+#: So many products of terms may be formed in all: some seconds.
+MOST_WORK = 40_000_000
 
 
 class Element:
@@ -38,7 +38,9 @@ class Element:
         other = self.tower.element(other)
         if self.bottom == other.bottom:
             return self.tower.made(self.top + other.top, self.bottom)
-        return self.tower.made(self.top * other.bottom + other.top * self.bottom, self.bottom * other.bottom)
+        common = self.bottom.gcd(other.bottom)
+        one, two = divmod(self.bottom, common)[0], divmod(other.bottom, common)[0]
+        return self.tower.made(self.top * two + other.top * one, self.bottom * two)
 
     __radd__ = __add__
 
@@ -121,6 +123,7 @@ class Tower(Algebra[Element]):
         if top.is_zero():
             return self.zero
         if not bottom.is_constant():
+            self.spend(len(top) * len(bottom))
             common = top.gcd(bottom)
             if not common.is_constant():
                 top, bottom = divmod(top, common)[0], divmod(bottom, common)[0]
@@ -155,12 +158,13 @@ class Tower(Algebra[Element]):
         return Element(self, self._conjugate(x.top, k), x.bottom)
 
     def square_root(self, x: Element) -> Element:
-        """A root of x: rational where x is the square of a rational number, else adjoined, once."""
-        number = self.rational(x)
-        if number is not None and number >= 0:
-            top, bottom = number.p.isqrt(), number.q.isqrt()
-            if top * top == number.p and bottom * bottom == number.q:
-                return self.element(fmpq(top, bottom))
+        """A root of x: in the parameters where x is a square of their field, of either sign; else adjoined, once.
+
+        That matters: with s^2 = 4 adjoined s - 2 would be neither zero nor have a reciprocal.
+        """
+        known = self._square_root(x.top * x.bottom)
+        if known is not None:
+            return self.made(known, x.bottom)
         for square, root in self._asked:
             if square == x:
                 return root
@@ -170,6 +174,21 @@ class Tower(Algebra[Element]):
         root = self.made(self._roots[len(self.squares) - 1], x.bottom)
         self._asked.append((x, root))
         return root
+
+    def _square_root(self, x: fmpq_mpoly) -> fmpq_mpoly | None:
+        """The polynomial whose square x is, where x holds no root; None where there is none."""
+        if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]):
+            return None
+        content, factors = x.factor_squarefree()
+        top, bottom = abs(content.p).isqrt(), content.q.isqrt()
+        if content < 0 or top * top != content.p or bottom * bottom != content.q:
+            return None
+        found = self.context.constant(fmpq(top, bottom))
+        for factor, exponent in factors:
+            if exponent % 2:
+                return None
+            found = found * factor ** (int(exponent) // 2)
+        return found
 
     def rational(self, x: Element) -> fmpq | None:
         """The number that x is, if it is written as one."""

@@ -59,7 +59,7 @@ def _said(judged: Judged) -> str:
 
 
 def _numbers(judged: Judged) -> Iterator[str]:
-    if judged.coefficient is not None and judged.frequencies:
+    if judged.coefficient is not None and judged.amplitude_of:
         border = "soft" if judged.outcome is Outcome.ASYMPTOTIC else "hard"
         yield (
             f"a {border} border: +-i w with w = {decimal(judged.frequencies[0])}, r' = a r^3 with "

@@ -44,6 +44,8 @@ THEOREMS = {
     Theorem.ARNOLD_MOSER_6: "No resonance up to order 6 holds and D6 is not zero: the motion is stable, whether D4 is "
     "zero or not (Arnold-Moser, order 6).",
     Theorem.THIRD: "The resonant term of third order is not zero: the motion is unstable (Markeev).",
+    Theorem.EQUAL: "The frequencies are equal exactly, with one eigenvector for each root: by the sign of a "
+    "coefficient of the normal form of fourth order the motion is [[word]] (Sokolskii).",
     Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
     "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
     Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori surround the motion, "
@@ -129,9 +131,12 @@ def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
     elif found.theorem is Theorem.REDUCTION:
         yield from _centre(found, write)
     elif found.theorem in THEOREMS:
-        yield THEOREMS[found.theorem], {}
+        word = {"word": write.word(found.outcome.value)} if found.theorem is Theorem.EQUAL else {}
+        yield THEOREMS[found.theorem], dict[str, object](word)
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
         yield REASONS[found.why], {}
+        if whole.first is not None and not whole.first.open:
+            yield "That is no matter: problem 6 has decided already.", {}
 
 
 def _centre(found: Judged, write: Medium) -> Iterator[Said]:

@@ -29,8 +29,9 @@ from mbsym.problems.normal_forms.dissipative import judged_field, state_field
 from mbsym.problems.normal_forms.exact import over_tower
 from mbsym.problems.normal_forms.expansion import Expansion, expansion, faddeev
 from mbsym.problems.normal_forms.pairs import judged_on_border
-from mbsym.problems.normal_forms.problem import PRECISION, at_numbers, twist
+from mbsym.problems.normal_forms.problem import PRECISION, at_numbers, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged
+from mbsym.problems.normal_forms.twist import equal_frequencies
 
 
 class NotAlong(Failure):
@@ -95,13 +96,16 @@ def along(
     with ctx.workprec(PRECISION):
         found = to(4)
         tower, wanted = (_of_two_frequencies if conservative else _of_roots)(found, name, values)
-        roots = _roots(tower, wanted, interval)
+        roots = _roots([_norm(tower, x) for x in wanted.values()], interval)
+        _refuse_singular(tower, wanted, [factor for _, factor in roots], interval, name)
 
         def judge(value: Any, zero: Sequence[str]) -> Judged:
             there = {**values, name: value}
             if not conservative:
                 exact = isinstance(value, Fraction)
                 return judged_field(found, there) if exact else judged_on_border(found, there, zero)
+            if "discriminant" in zero and "product" not in zero:
+                return equal_frequencies(enclosed(to(4), there).hamiltonian())
             decides = None if isinstance(value, Fraction) else _decides(tower, wanted, value, zero)
             return at_numbers(to, there, decides)
 
@@ -183,13 +187,31 @@ def _norm(tower: Tower, x: Element) -> fmpq_poly:
     return fmpq_poly(coefficients)
 
 
-def _roots(
-    tower: Tower, wanted: Mapping[str, Element], interval: tuple[Fraction, Fraction]
-) -> list[tuple[arb, fmpq_poly]]:
+def _refuse_singular(
+    tower: Tower,
+    wanted: Mapping[str, Element],
+    known: Sequence[fmpq_poly],
+    interval: tuple[Fraction, Fraction],
+    name: str,
+) -> None:
+    """Raises NotAlong where a denominator, or what stands under a root, vanishes within the interval elsewhere.
+
+    Beyond such a value other verdicts may hold, or none: they are not told from those before it by what is listed.
+    """
+    polynomials = [_norm(tower, Element(tower, x.bottom, tower.one.top)) for x in wanted.values()]
+    rational = [x for x in tower.squares if not any(degree > 0 for degree in x.degrees()[:MOST_ROOTS])]
+    polynomials += [_norm(tower, Element(tower, x, tower.one.top)) for x in rational]
+    for root, factor in _roots([x for x in polynomials if x.degree() > 0], interval):
+        if factor not in known:
+            at = root.str(8, radius=False)
+            raise NotAlong(f"the expansion is singular at {name} = {at}: choose an interval without this value")
+
+
+def _roots(polynomials: Sequence[fmpq_poly], interval: tuple[Fraction, Fraction]) -> list[tuple[arb, fmpq_poly]]:
     """The real roots of all of them within the interval, in order, each with its irreducible polynomial."""
     factors: dict[tuple[Any, ...], fmpq_poly] = {}
-    for x in wanted.values():
-        for factor, _ in _norm(tower, x).factor()[1]:
+    for whole in polynomials:
+        for factor, _ in whole.factor()[1]:
             monic = factor / factor[factor.degree()]
             factors[tuple(map(str, monic.coeffs()))] = factor
     low, high = (arb(end.numerator) / end.denominator for end in interval)

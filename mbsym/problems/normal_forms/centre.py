@@ -53,10 +53,50 @@ def on_pair(
     """The pair ``root``, -root, simple.  Raises what ``inverse`` raises where the root is not simple, or 0 or 2 root is
     one."""
     source = field[0].space
-    m, zero, one = len(field), source.zero, source.one
+    zero, one = source.zero, source.one
     matrix = matrix_of(field)
     q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
     conjugate = [row[column] for row in _adjugate(matrix, -root, zero, one)]
+    third = _third(field, root, q, conjugate, matrix, inverse)
+    return Reduced(zero, _dot(p, third, zero), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+
+
+def on_double_pair(
+    field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
+) -> Any:
+    """c of z_1' = lambda z_1 + z_2, z_2' = lambda z_2 + c z_1^2 z_1* + ... for a double ``root`` lambda with one
+    eigenvector q: (A - lambda) q_1 = q, p A = lambda p, p q_1 = 1.  |z_1| then obeys r'' = c r^3 + ...
+
+    q and q_1 are a column of adj(s - A) and of its derivative at s = lambda.  Raises what ``inverse`` raises
+    where there are two eigenvectors.
+    """
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix = matrix_of(field)
+    whole, places = _adjugate(matrix, root, zero, one), range(m)
+    i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
+    q, p = [row[j] for row in whole], whole[i]
+    conjugate = [row[j] for row in _adjugate(matrix, -root, zero, one)]
+    generalised = [row[j] for row in _adjugate_slope(matrix, root, zero, one)]
+    factor = inverse(_dot(p, generalised, zero))
+    third = _third(field, root, q, conjugate, matrix, inverse)
+    length = zero
+    for a, b in zip(q, conjugate, strict=True):
+        length = length + a * b
+    return _dot(p, third, zero) * factor * inverse(length)
+
+
+def _third(
+    field: Sequence[Truncated],
+    root: Any,
+    q: Sequence[Any],
+    conjugate: Sequence[Any],
+    matrix: Sequence[Sequence[Any]],
+    inverse: Callable[[Any], Any],
+) -> list[Any]:
+    """The coefficients of z^2 z* in the field on x = q z + q* z* + h20 z^2/2 + h11 z z* + ..."""
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
     space = Space(2, 3, zero, one)
     plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
     second = [row.beyond(1).composed(plane) for row in field]
@@ -64,8 +104,7 @@ def on_pair(
     h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second], zero)
     h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second], zero)]
     bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
-    third = [row.beyond(1).composed(bent)[2, 1] for row in field]
-    return Reduced(zero, _dot(p, third, zero), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+    return [row.beyond(1).composed(bent)[2, 1] for row in field]
 
 
 def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Callable[[Any], float]) -> Reduced:
@@ -113,6 +152,17 @@ def _adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -
     for further in adjugates[1:]:
         whole = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(whole, further, strict=True)]
     return whole
+
+
+def _adjugate_slope(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+    """d/ds adj(s - A) at the root: Horner's rule for the derivative of sum B_k s^(m-1-k)."""
+    adjugates, _ = faddeev(matrix, zero, one)
+    m = len(matrix)
+    whole, slope = adjugates[0], [[zero] * m for _ in range(m)]
+    for further in adjugates[1:]:
+        slope = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(slope, whole, strict=True)]
+        whole = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(whole, further, strict=True)]
+    return slope
 
 
 def _applied(matrix: Sequence[Sequence[Any]], vector: Sequence[Any], zero: Any) -> list[Any]:

@@ -55,6 +55,14 @@ class Resonant:
         self.tower, self.coefficients = tower, coefficients
         self._squares = None if coefficients is None else _rational_squares(tower, coefficients)
 
+    @property
+    def equal(self) -> bool:
+        """Whether there are two frequencies that are equal exactly."""
+        if self.coefficients is None or self.tower is None or len(self.coefficients) != 3:
+            return False
+        constant, trace = self.coefficients[:2]
+        return (trace * trace - constant * 4).is_zero()
+
     def __call__(self, vector: tuple[int, ...], frequencies: Sequence[arb]) -> bool | None:
         total = sum((k * w for k, w in zip(vector, frequencies, strict=True)), arb(0))
         if total != 0:

@@ -30,7 +30,7 @@ from mbsym.problems.normal_forms.exact import (
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
-from mbsym.problems.normal_forms.twist import judged
+from mbsym.problems.normal_forms.twist import equal_frequencies, judged
 
 #: Working precision of enclosures, in bits.
 PRECISION = 320
@@ -86,6 +86,8 @@ def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resona
 
     if resonant is None:
         resonant = _exactly(to(4), values)
+        if resonant.equal:
+            return equal_frequencies(lowered(4))
     return judged(lowered, resonant, ORDER)
 
 

@@ -36,6 +36,7 @@ class Theorem(StrEnum):
     ARNOLD_MOSER_6 = "Arnold-Moser, order 6"
     THIRD = "Markeev, resonance of third order"
     FOURTH = "Markeev, resonance of fourth order"
+    EQUAL = "Sokolskii, equal frequencies"
     BRUNO = "Bruno"
     ARNOLD = "Arnold"
     REDUCTION = "Lyapunov, Pliss: centre manifold"

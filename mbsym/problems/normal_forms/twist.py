@@ -12,6 +12,8 @@ Frequencies are enclosed; whatever is said to be different from zero is so by it
       H_4 = t^2 (H_4(k) + 2 sqrt(h h' 27) cos psi)
 
   unstable if |H_4(k)| < 2 sqrt(27 h h'), stable if it is greater (Markeev);
+* w_1 = w_2 with one eigenvector for each root: z'' = c z^2 z* + ... in axes that turn with the phase, stable for c < 0,
+  unstable for c > 0 (Sokolskii, J. Appl. Math. Mech. 38 (1974) 741);
 * more degrees of freedom, no resonance up to order 4: if H_4 does not vanish in the cone Omega.I = 0, I >= 0: formally
   stable (Bruno); if det d^2 H_4/dI^2 or the determinant bordered by Omega is not zero: stable for most initial states.
 
@@ -26,11 +28,12 @@ from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any
 
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, arb, arb_mat, ctx
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.birkhoff import NormalForm, diagonalised, matrix_of, normal_form
+from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
 from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why
@@ -77,6 +80,24 @@ def frequencies(hamiltonian: Truncated) -> list[arb] | Judged:
     return sorted(((-z).sqrt() for z in real), key=float, reverse=True)
 
 
+def definite(hamiltonian: Truncated) -> Judged | None:
+    """Stable where H_2 is definite: the minors of its matrix are positive, or those of its negative (Sylvester)."""
+    m = hamiltonian.space.variables
+    rows = [hamiltonian.part(2).derivative(k) for k in range(m)]
+    unit = [tuple(int(j == k) for j in range(m)) for k in range(m)]
+    matrix = [[rows[i][unit[j]].real for j in range(m)] for i in range(m)]
+    for sign in (1, -1):
+        minors = (arb_mat([[sign * x for x in row[:k]] for row in matrix[:k]]).det() for k in range(1, m + 1))
+        if all(minor > 0 for minor in minors):
+            try:
+                found = squares(hamiltonian)
+            except ValueError:  # frequencies that are equal
+                return Judged(Outcome.STABLE, Theorem.DEFINITE)
+            known = sorted((abs(z.real).sqrt() * sign for z in found), key=abs, reverse=True)
+            return Judged(Outcome.STABLE, Theorem.DEFINITE, frequencies=tuple(known))
+    return None
+
+
 def signed(hamiltonian: Truncated, found: Sequence[arb]) -> list[arb]:
     """Omega_k: w_k with the sign of the energy of its oscillation, by the eigenvector: Im v.J conj(v) < 0 for it."""
     result = []
@@ -96,6 +117,9 @@ def signed(hamiltonian: Truncated, found: Sequence[arb]) -> list[arb]:
 def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 6) -> Judged:
     """What is decided; ``lowered`` gives H to an order.  Raises NotVerified where a normal form fails its check."""
     quadratic = lowered(2)
+    sure = definite(quadratic)
+    if sure is not None:
+        return sure
     found = frequencies(quadratic)
     if isinstance(found, Judged):
         return found
@@ -118,6 +142,33 @@ def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 
     if len(omega) > 2:
         return _many(lowered, omega, exact, known)
     return _two(lowered, omega, exact, least_open, order, known)
+
+
+def equal_frequencies(hamiltonian: Truncated) -> Judged:
+    """Two degrees of freedom with w_1 = w_2 exactly; H is needed to order 4.
+
+    Where the roots have one eigenvector each c of ``centre.on_double_pair`` decides: stable for c < 0, unstable for
+    c > 0 (Sokolskii).
+    """
+    sure = definite(hamiltonian)
+    if sure is not None:
+        return sure
+    _, coefficients = faddeev(matrix_of(hamiltonian), acb(0), acb(1))
+    square = coefficients[2].real / 2
+    if not square > 0:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.ZERO_ROOT)
+    w = square.sqrt()
+    n, m = 2, 4
+    rows = [hamiltonian.derivative(n + i) for i in range(n)] + [-hamiltonian.derivative(i) for i in range(n)]
+    space = Space(m, 3, acb(0), acb(1))
+    field = [Truncated(space, row.coefficients) for row in rows]
+    c = on_double_pair(field, acb(0, w), _inverse, _size).real
+    known: dict[str, Any] = {"frequencies": (w, -w), "coefficient": c}
+    if c < 0:
+        return Judged(Outcome.STABLE, Theorem.EQUAL, **known)
+    if c > 0:
+        return Judged(Outcome.UNSTABLE, Theorem.EQUAL, **known)
+    return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.EQUAL_FREQUENCIES, frequencies=(w, -w))
 
 
 def vectors(n: int, order: int) -> list[tuple[int, ...]]:
@@ -285,8 +336,6 @@ def _nonzero_in_cone(quadratic: dict[tuple[int, int], arb], omega: Sequence[arb]
 
 def _nondegenerate(quadratic: dict[tuple[int, int], arb], omega: Sequence[arb]) -> bool:
     """det d^2 H_4/dI^2 != 0, or the determinant bordered by Omega."""
-    from flint import arb_mat
-
     matrix = _matrix(quadratic, len(omega))
     bordered = [[*row, w] for row, w in zip(matrix, omega, strict=True)] + [[*omega, arb(0)]]
     return bool(arb_mat(matrix).det() != 0 or arb_mat(bordered).det() != 0)

@@ -19,12 +19,12 @@ from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 
-#: Meyer & Schmidt (1986), Deprit & Deprit-Bartholome (1967), Markeev (1969), Routh: 27 mu (1 - mu)/4 = w1^2 w2^2.
+#: Meyer & Schmidt (1986), Deprit (1967), Markeev (1969), Sokolskii (1975): 27 mu (1 - mu)/4 = w1^2 w2^2.
 TRIANGULAR = [
     ("0.010913667677200662890", Outcome.STABLE, Theorem.ARNOLD_MOSER_6),
     ("0.013516016022452526756", Outcome.UNSTABLE, Theorem.FOURTH),
     ("0.024293897142052321666", Outcome.UNSTABLE, Theorem.THIRD),
-    ("0.038520896504551397079", Outcome.UNDECIDED, Theorem.NONE),
+    ("0.038520896504551397079", Outcome.STABLE, Theorem.EQUAL),
 ]
 
 
@@ -41,12 +41,17 @@ def test_triangular_points() -> None:
 
 
 def test_the_sleeping_top_has_no_exception_above_its_border() -> None:
-    """C^2 W^2 = 4 A m g l is the border; at w1 = 3 w2 the resonant term is zero, by symmetry."""
+    """C^2 W^2 = 4 A m g l is the border; at w1 = 3 w2 the resonant term is zero, by symmetry.
+
+    At the border it is stable: with both momenta C W the reduced potential (C W)^2 tan^2(th/2)/(2 A) + m g l cos th is
+    there ((C W)^2/(48 A) + m g l/24) th^4 + ..., a minimum.
+    """
     analysis = mbsym.load(SYSTEMS / "heavy-top.yaml")
     values = {name: Fraction(1) for name in ("A", "C", "m", "l", "g")}
     found = exceptional(analysis, "Omega", (Fraction(1), Fraction(3)), values)
     border, *others = found.specials
     assert border.exactly == 2
+    assert (border.judged.outcome, border.judged.theorem) == (Outcome.STABLE, Theorem.EQUAL)
     assert found.between[0].judged.outcome is Outcome.UNSTABLE
     assert all(x.judged.outcome is Outcome.STABLE for x in (*found.between[1:], *others))
 
@@ -86,6 +91,16 @@ def test_a_zero_root_by_its_cubic_term() -> None:
     assert found.specials[0].judged.outcome is Outcome.ASYMPTOTIC
     assert found.specials[0].judged.theorem is Theorem.REDUCTION
     assert [x.judged.outcome for x in found.between] == [Outcome.UNSTABLE, Outcome.ASYMPTOTIC]
+
+
+def test_an_interval_with_a_singular_value_is_refused() -> None:
+    """x'' - (d^3/3 - d - s x^2) x' + ... over d: nothing is known beyond a pole."""
+    text = FLUTTER.replace("(d**3/3 - d - s*x**2)", "(d - 1/d - s*x**2)")
+    values = {"s": Fraction(1), "k": Fraction(1)}
+    with pytest.raises(NotAlong, match="singular at d = 0"):
+        exceptional(mbsym.loads(text), "d", (Fraction(-2), Fraction(2)), values)
+    found = exceptional(mbsym.loads(text), "d", (Fraction(1, 2), Fraction(2)), values)
+    assert [x.exactly for x in found.specials] == [1]
 
 
 def test_a_planted_mistake_is_not_taken_for_a_root() -> None:

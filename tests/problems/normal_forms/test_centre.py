@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from flint import acb, arb
 
-from mbsym.algebra.tower import Tower
+from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.centre import on_pair, on_zero
 
@@ -54,6 +54,58 @@ def test_quadratic_terms_and_other_roots_count() -> None:
     _, (x, y, z) = _space(3)
     found = on_pair([-y, x + x * z, x * x - z], acb(0, 1), lambda s: 1 / s, _size)
     assert abs((found.cubic / (4 * found.lengths[0])).real - arb(1) / 20) < 1e-12
+
+
+def _nonzero(x: Element) -> float:
+    return float(not x.is_zero())
+
+
+def _coefficient(tower: Tower, field: list[Truncated], root: Element) -> Element:
+    found = on_pair(field, root, tower.reciprocal, _nonzero)
+    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
+    return real / (found.lengths[0] * 4)
+
+
+def test_a_feedback_control_system() -> None:
+    """x' = y, y' = z, z' = x^2 - x - b y - z/b: Kuznetsov, Elements of Applied Bifurcation Theory, example 5.4.
+
+    l_1 = -w^3 (1 + 8 w^6)/((1 + 4 w^6)(1 + w^6)), w^2 = b, for q = (1, i w, -w^2): a = w l_1/4.
+    """
+    tower = Tower(("b",))
+    b, one = tower.parameter("b"), tower.one
+    space = Space(3, 3, tower.zero, one)
+    x, y, z = map(space.variable, range(3))
+    field = [y, z, x * x - x - y.scaled(b) - z.scaled(one / b)]
+    cube = b * b * b
+    published = -(b * b * (one + cube * 8)) / ((one + cube * 4) * (one + cube) * 4)
+    assert _coefficient(tower, field, tower.square_root(-b)) == published
+
+
+def test_watts_governor() -> None:
+    """x'' = z^2 sin x cos x - sin x - eps x', z' = al (cos x - be), eps = 2 al be^(3/2) (Pontryagin's border).
+
+    Sotomayor, Mello & Braga, Comput. Appl. Math. 26 (2007) 19: the sign of the first coefficient is that of
+    -(3 + (al^2 - 5) be^2 + al^4 be^6); be = r^2, sin and cos expanded about cos x = be, z = be^(-1/2).
+    """
+    tower = Tower(("al", "r"))
+    al, r, one = tower.parameter("al"), tower.parameter("r"), tower.one
+    be = r * r
+    s = tower.square_root(one - be * be)
+    space = Space(3, 3, tower.zero, one)
+    u, y, v = map(space.variable, range(3))
+    number, constant = tower.number, space.constant
+    square, cube = u * u, u * u * u
+    half, sixth = number(Fraction(1, 2)), number(Fraction(1, 6))
+    sine = constant(s) + u.scaled(be) - square.scaled(s * half) - cube.scaled(be * sixth)
+    cosine = constant(be) - u.scaled(s) - square.scaled(be * half) + cube.scaled(s * sixth)
+    z = constant(one / r) + v
+    field = [y, z * z * sine * cosine - sine - y.scaled(al * be * r * 2), (cosine - constant(be)).scaled(al)]
+    root = tower.square_root(-(one - be * be) / be)
+    a2, b2 = al * al, be * be
+    bracket = one * 3 + (a2 - 5) * b2 + a2 * a2 * b2 * b2 * b2
+    ratio = _coefficient(tower, field, root) / bracket
+    positive = al * r * r * r * (one - b2) / ((one - b2 + a2 * b2 * b2) * (one - b2 + a2 * b2 * b2 * 4))
+    assert ratio == -positive / 8
 
 
 def test_one_zero_root() -> None:
