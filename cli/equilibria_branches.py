@@ -43,30 +43,40 @@ class Request:
 
 def read_varied(text: str, system: System, settings: Sequence[str], asked: Options) -> Axis | None:
     """The parameter and its interval; every complaint joins those of ``asked``."""
-    from mbsym.expressions.tree import text as written
     from mbsym_cli.section_options import read_axis
 
     found = read_axis(text, "--vary", system, asked)
     if found is None:
         return None
-    by_relation = {item.name: item for item in system.relations}
-    if found.name not in system.parameter_names:
-        told = f"'{found.name}' is no parameter but a symbol of the notation"
-        asked.complain("--vary", "misplaced-name", told, "vary one of the parameters of which it is made")
-    elif found.name in by_relation:
-        told = f"{found.name} follows from other parameters: {found.name} = {written(by_relation[found.name].value)}"
-        asked.complain("--vary", "given-by-relation", told, "vary one of those of which its relation is made")
+    complain_unless_parameter("--vary", found.name, system, asked)
     if any(one.partition("=")[0].strip() == found.name for one in settings):
-        asked.complain(
-            "--set", "repeated-name", f"'{found.name}' has an interval and a number", "leave one of them out"
-        )
-    sign = next((str(one.sign) for one in system.parameters if one.name == found.name), "")
-    if (sign in ("positive", "nonnegative") and found.low < 0) or (
-        sign in ("negative", "nonpositive") and found.high > 0
-    ):
-        told = f"{found.name} is declared {sign}, and the interval from {found.low} to {found.high} is not"
-        asked.complain("--vary", "against-sign", told, "choose an interval of that sign")
+        told = f"'{found.name}' has an interval and a number"
+        asked.complain("--set", "repeated-name", told, "leave one of them out")
+    complain_of_sign("--vary", found, system, asked)
     return found
+
+
+def complain_unless_parameter(option: str, name: str, system: System, asked: Options) -> None:
+    """Relative equilibria are solved at numbers of parameters: symbols and what follows from relations do not fit."""
+    from mbsym.expressions.tree import text
+
+    related = next((item for item in system.relations if item.name == name), None)
+    if related is not None:
+        told = f"{name} follows from other parameters: {name} = {text(related.value)}"
+        asked.complain(option, "given-by-relation", told, "take one of those of which its relation is made")
+    elif name not in system.parameter_names and name in [item.name for item in system.notation]:
+        told = f"'{name}' is no parameter but a symbol of the notation"
+        asked.complain(option, "misplaced-name", told, "take the parameters of which it is made")
+
+
+def complain_of_sign(option: str, axis: Axis, system: System, asked: Options) -> None:
+    """An interval against the declared sign of its parameter."""
+    sign = next((str(one.sign) for one in system.parameters if one.name == axis.name), "")
+    if (sign in ("positive", "nonnegative") and axis.low < 0) or (
+        sign in ("negative", "nonpositive") and axis.high > 0
+    ):
+        told = f"{axis.name} is declared {sign}, and the interval from {axis.low} to {axis.high} is not"
+        asked.complain(option, "against-sign", told, "choose an interval of that sign")
 
 
 def run(request: Request) -> int:

@@ -13,7 +13,7 @@ from mbsym_cli.section_options import distinct, read_axis, read_settings
 from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.study import leave, prevented
 
-KINDS = ("stability", "signature")
+KINDS = ("stability", "signature", "equilibria")
 ROUTES = ("regions", "boxes")
 FORMATS = ("svg", "pdf", "png", "json", "tex")
 
@@ -25,7 +25,12 @@ FORMATS = ("svg", "pdf", "png", "json", "tex")
 @click.option("--z", "deep", metavar="NAME=LOW:HIGH", help="A third one: slices, so that no picture is missed.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Another's number; repeatable.")
 @click.option(
-    "--of", "of", default="stability", show_default=True, metavar="WHAT", help="stability, or signature: of K."
+    "--of",
+    "of",
+    default="stability",
+    show_default=True,
+    metavar="WHAT",
+    help="stability, signature: of K, or equilibria.",
 )
 @click.option("--by", "route", default="regions", show_default=True, metavar="HOW", help="regions (exact), or boxes.")
 @click.option("--locate", type=click.Path(path_type=Path), metavar="CSV", help="Points: where each lies, the verdict.")
@@ -59,6 +64,9 @@ def command(
     are parameters, or symbols of the notation.  Where the arrangement of a plane is too large, and with --by boxes,
     boxes are halved until one verdict is proved on each, or they are small: white, nothing is proved of them.
 
+    With --of equilibria every region of the plane says how many relative equilibria there are, and how many of them
+    are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex.
+
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
     is missing or wrong, 130 interrupted (what was proved is written).
@@ -70,6 +78,7 @@ def command(
       mbsym map systems/triangular-points.yaml --x mu=0:1/2
       mbsym map systems/gravity-gradient.yaml --x A=0:2 --y B=0:2 --z C=1/2:3/2
       mbsym map systems/ziegler-damped.yaml --x P=0:4 --y b1=0:1 --by boxes
+      mbsym map systems/orbital-gyrostat.yaml --x h=-9:9 --y A=2:8 --of equilibria
     """
     leave(
         file,
@@ -93,6 +102,7 @@ def _command(
 ) -> int:
     """Reads everything, complains about everything, then draws."""
     from mbsym.report.language import LANGUAGES
+    from mbsym_cli.equilibria_map_run import fitting, of_equilibria
     from mbsym_cli.map_run import Request, read_located, run
 
     system = read_held(file, "map", constrained=True, moving=False)
@@ -114,7 +124,12 @@ def _command(
     distinct(found, values, asked)
     whole = len(found) == len(axes)
     points = None if locate is None or not whole else read_located(locate, [axis.name for axis in found], asked)
+    numbers = {}
+    if what == "equilibria":
+        numbers = fitting(file, system, texts, found, values, locate is not None or how == "boxes", asked)
     code = prevented(file, folder, True, asked)
     if code:
         return code
+    if what == "equilibria":
+        return of_equilibria(file, folder, system, found, numbers, wanted, language, quiet)
     return run(Request(file, folder, system, found, values, str(what), wanted, language, points, quiet, str(how)))

@@ -28,6 +28,7 @@ from mbsym.maps.branches_linked import linked
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Interval, Meeting, Piece, Remark
 from mbsym.maps.branches_stability import decided_throughout, is_undamped, stability_changes
 from mbsym.maps.section import Axis
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, equilibria
 
@@ -52,6 +53,7 @@ def branches(
     no polynomials in sines, cosines, lengths and the parameter, Constrained, SingularPoint.  KeyboardInterrupt while
     samples are solved ends the work: what was reached is kept, and says that it was interrupted.
     """
+    refuse_constraints(system, "relative equilibria")
     bounds = limits or Limits()
     watch("critical values", 0, 1)
     parts = curves(system, axis.name, values, axis.low, axis.high, bounds)
@@ -95,7 +97,7 @@ def branches(
         criticals = [_balanced(one, intervals, axis) for one in criticals]
         remarks += [Remark(Doubt.MISMATCH, short(one.number)) for one in criticals if one.balance is False]
         solved = not (changing.unfinished or changing.throughout)
-        undamped = all(is_undamped(one) for one in parts)
+        undamped = all(is_undamped(one.search) for one in parts)
         for piece in linked(parts, axis, intervals, criticals):
             throughout = decided_throughout(intervals[piece.interval], piece.number, solved, undamped)
             pieces.append(replace(piece, throughout=throughout))

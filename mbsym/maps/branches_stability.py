@@ -19,6 +19,7 @@ from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.branches_curve import Curve, Found, joined
 from mbsym.maps.branches_result import Interval
+from mbsym.problems.equilibria import _ChartSearch
 from mbsym.problems.rest_verdict import LinearAtRest
 
 #: More coordinates than this make polynomials that are not looked at.
@@ -98,9 +99,9 @@ def decided_throughout(interval: Interval, number: int, solved: bool, undamped: 
     return solved or (undamped and verdict.theorem in BY_INERTIA)
 
 
-def is_undamped(curve: Curve) -> bool:
+def is_undamped(search: _ChartSearch) -> bool:
     """Whether D and N vanish identically."""
-    linear = curve.search._linear
+    linear = search._linear
     if isinstance(linear, str):
         return False
     return all(x.is_zero() for k in (1, 4) for row in linear.matrices[k] for x in row)

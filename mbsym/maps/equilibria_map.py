@@ -1,0 +1,247 @@
+"""How many relative equilibria there are over a plane of two parameters, and how many of them are stable.
+
+The curves on which the number may change are eliminated exactly (``equilibria_projection``): where an equilibrium is
+singular, at infinity or at a border.  In each region between them the number is one and the same; it is that of the
+exact list (``problems.equilibria``) at a rational point.  At a second point of each region they are listed once more,
+and looked for by another route: Newton's method from many starting points, each solution proved to exist in a box.
+Another number in the list, or more solutions than listed, and what is said of the region is withdrawn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+from flint import fmpq
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.plane import Arrangement, areas, decompose
+from mbsym.algebra.plane.arrangement import Region
+from mbsym.algebra.plane.drawing import Branches as Drawn
+from mbsym.algebra.polynomial_systems import Limits
+from mbsym.maps.branches_stability import BY_INERTIA, is_undamped
+from mbsym.maps.equilibria_projection import Projected, Surface, surfaces
+from mbsym.maps.mapping import box_of
+from mbsym.maps.section import Axis
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.model.system import System
+from mbsym.problems.equilibria import RelativeEquilibrium, equilibria
+
+Watch = Callable[[str, int, int], None]
+
+#: So many random points are tried until one lies in a region.
+TRIED = 60
+#: Newton's method alone: nothing is solved exactly.
+_NOT_EXACTLY = Limits(branches=0)
+
+
+class Standing(StrEnum):
+    """What is known of a region."""
+
+    PROVED = "proved"
+    SAMPLE = "at the sample only"
+    INCOMPLETE = "the list may be incomplete"
+    FAMILIES = "infinitely many"
+    WITHDRAWN = "withdrawn: the check failed"
+    NOT_REACHED = "not reached"
+
+
+class Origin(StrEnum):
+    """Where a curve comes from."""
+
+    SINGULAR = "singular equilibria"
+    LEAVING = "at infinity or at a border"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A region by its ``number``: ``equilibria`` at the rational point ``sample``; ``standing`` is of their number.
+
+    ``confirmed``: how many the second route found at another point (None: it was not asked).  ``throughout``: those
+    stable at the sample are proved to be so in the whole region, by the signs of K, which do not change there.
+    """
+
+    number: int
+    sample: tuple[Fraction, Fraction]
+    standing: Standing
+    equilibria: tuple[RelativeEquilibrium, ...] = ()
+    confirmed: int | None = None
+    throughout: bool = False
+
+    @property
+    def counted(self) -> bool:
+        return self.standing in (Standing.PROVED, Standing.SAMPLE)
+
+    @property
+    def count(self) -> int:
+        return len(self.equilibria)
+
+    @property
+    def stable(self) -> int:
+        """Stable ones at the sample."""
+        return sum(one.verdict.stable for one in self.equilibria)
+
+
+@dataclass(frozen=True)
+class EquilibriaMap:
+    """``cells`` in the order of the arrangement's regions; ``curves`` with their origins, in that of its factors.
+
+    ``unfinished``: why curves may be missing (then nothing is proved between samples).
+    """
+
+    axes: tuple[Axis, Axis]
+    given: Mapping[str, Fraction]
+    arrangement: Arrangement
+    origins: tuple[tuple[Origin, ...], ...]
+    cells: tuple[Cell, ...]
+    areas: tuple[tuple[float, float], ...]
+    unfinished: tuple[str, ...]
+    interrupted: bool = False
+
+    def look(self, cell: Cell) -> tuple[object, ...]:
+        """What a picture tells apart."""
+        return (cell.count, cell.stable) if cell.counted else (cell.standing,)
+
+
+def equilibria_map(
+    system: System, axes: tuple[Axis, Axis], values: Mapping[str, Fraction], watch: Watch
+) -> EquilibriaMap:
+    """The map over two parameters; ``values``: the numbers of the others.
+
+    Raises KeyError for a missing number, NoClosedForm where equations are not polynomial, TooLargeError where the
+    arrangement is beyond its budget.  KeyboardInterrupt while regions are solved ends the work.
+    """
+    refuse_constraints(system, "relative equilibria")
+    watch("curves", 0, 1)
+    names = axes[0].name, axes[1].name
+    limits = Limits()
+    parts = surfaces(system, names, values, limits)
+    factors, origins, unfinished = _curves(parts)
+    made = decompose(factors, box_of(axes), progress=watch)
+    undamped = all(is_undamped(one.search) for one in parts)
+    source = Random(20261123)
+    drawn = Drawn(made)
+    cells: list[Cell] = []
+    interrupted = False
+    for k, region in enumerate(made.regions):
+        try:
+            watch("regions", k, len(made.regions))
+            if not interrupted:
+                cells.append(_cell(system, names, values, made, drawn, region, bool(unfinished), undamped, source))
+                continue
+        except KeyboardInterrupt:
+            interrupted = True
+        cells.append(Cell(region.id, _fractions(region.sample), Standing.NOT_REACHED))
+    related = {item.name for item in system.relations}
+    given = {name: x for name, x in values.items() if name not in names and name not in related}
+    return EquilibriaMap(
+        axes, given, made, tuple(map(tuple, origins)), tuple(cells), areas(made), unfinished, interrupted
+    )
+
+
+def _curves(parts: Sequence[Surface]) -> tuple[list[Any], list[list[Origin]], tuple[str, ...]]:
+    """Irreducible polynomials, each once, with where they come from."""
+    found: list[tuple[Origin, Projected]] = []
+    for part in parts:
+        found.append((Origin.SINGULAR, part.over([part.singular])))
+        found += [(Origin.LEAVING, one) for one in part.leaving()]
+    factors: list[Any] = []
+    origins: list[list[Origin]] = []
+    places: dict[str, int] = {}
+    unfinished: list[str] = []
+    for origin, projected in found:
+        unfinished += projected.unfinished
+        if projected.everywhere:
+            told = "equilibria are singular" if origin is Origin.SINGULAR else "solutions leave"
+            unfinished.append(f"{told} over a whole region, or that is not excluded")
+        for polynomial in projected.polynomials:
+            for factor, _ in polynomial.factor()[1]:
+                key = str(factor if factor.leading_coefficient() > 0 else -factor)
+                if key not in places:
+                    places[key] = len(factors)
+                    factors.append(factor)
+                    origins.append([])
+                if origin not in origins[places[key]]:
+                    origins[places[key]].append(origin)
+    return factors, origins, tuple(dict.fromkeys(unfinished))
+
+
+def _cell(
+    system: System,
+    names: tuple[str, str],
+    values: Mapping[str, Fraction],
+    made: Arrangement,
+    drawn: Drawn,
+    region: Region,
+    doubtful: bool,
+    undamped: bool,
+    source: Random,
+) -> Cell:
+    sample = _fractions(region.sample)
+    if 0 in sample:  # a parameter that vanishes may make the equations others
+        sample = inside(made, drawn, region, source) or sample
+    try:
+        found = equilibria(system, {**values, names[0]: sample[0], names[1]: sample[1]})
+    except Failure:
+        return Cell(region.id, sample, Standing.INCOMPLETE)
+    if found.families:
+        return Cell(region.id, sample, Standing.FAMILIES)
+    if not found.complete:
+        return Cell(region.id, sample, Standing.INCOMPLETE, found.equilibria)
+    standing = Standing.SAMPLE if doubtful else Standing.PROVED
+    throughout = (
+        not doubtful
+        and undamped
+        and all(one.verdict.theorem in BY_INERTIA for one in found.equilibria if one.verdict.stable)
+    )
+    other = inside(made, drawn, region, source)
+    if other is None:
+        return Cell(region.id, sample, standing, found.equilibria, None, throughout)
+    there = {**values, names[0]: other[0], names[1]: other[1]}
+    again = equilibria(system, there)
+    confirmed = many_starts(system, there)
+    wrong = confirmed > len(again.equilibria) or (
+        not doubtful and again.complete and len(again.equilibria) != len(found.equilibria)
+    )
+    return Cell(
+        region.id,
+        sample,
+        Standing.WITHDRAWN if wrong else standing,
+        found.equilibria,
+        confirmed,
+        throughout and not wrong,
+    )
+
+
+def many_starts(system: System, values: Mapping[str, Fraction]) -> int:
+    """How many equilibria Newton's method finds from many starting points, each proved in a box of its own."""
+    found = equilibria(system, values, limits=_NOT_EXACTLY)
+    return len(found.equilibria)
+
+
+def inside(made: Arrangement, drawn: Drawn, region: Region, source: Random) -> tuple[Fraction, Fraction] | None:
+    """A random rational point without zeros in a region, proved to lie there; None where none is hit."""
+    for _ in range(TRIED):
+        strip, cell = region.cells[source.randrange(len(region.cells))]
+        x, ys = drawn.at(strip, source.uniform(0.2, 0.8) * math.pi)
+        y = ys[cell] + source.uniform(0.2, 0.8) * (ys[cell + 1] - ys[cell])
+        point = tuple(Fraction(z).limit_denominator(10_000) for z in (x, y))
+        if 0 in point:
+            continue
+        try:
+            place = made.locate(*(fmpq(z.numerator, z.denominator) for z in point))
+        except ValueError:
+            continue
+        if isinstance(place, Region) and place.id == region.id:
+            return point[0], point[1]
+    return None
+
+
+def _fractions(point: Sequence[Any]) -> tuple[Fraction, Fraction]:
+    x, y = (Fraction(int(z.p), int(z.q)) for z in point)
+    return x, y

@@ -1,0 +1,182 @@
+"""``mbsym map --of equilibria``: numbers of equilibria over planes against discriminants known by hand."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+from conftest import SHIPPED
+from flint import fmpq
+from jsonschema import Draft202012Validator
+
+import mbsym
+import mbsym.maps.equilibria_map as module
+from mbsym.maps.equilibria_map import EquilibriaMap, Origin, Standing, equilibria_map
+from mbsym.maps.section import Axis
+from mbsym.mechanics.rest import given_values
+from mbsym.report.equilibria_map_words import ORIGINS, STANDINGS, WORDS
+from mbsym.report.latex_reading import read_latex
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+BALL = """mbsym: 1
+name: ball
+parameters: {{p: {{sign: real}}, q: {{sign: real}}}}
+bodies:
+  - {{name: ball, attached to: 0, connection point: [x, {second}, 0], coordinates: [{names}], mass: 1}}
+loads:
+  - generalized force: {{{forces}}}
+"""
+
+
+def ball(folder: Path, f: str, g: str = "") -> Path:
+    forces = f'x: "{f}"' + (f', y: "{g}"' if g else "")
+    path = folder / "ball.yaml"
+    path.write_text(BALL.format(second="y" if g else "0", names="x, y" if g else "x", forces=forces))
+    return path
+
+
+def mapped(path: Path, x: tuple[str, str, str], y: tuple[str, str, str]) -> EquilibriaMap:
+    system = mbsym.load(path, ()).system
+    axes = tuple(Axis(name, Fraction(low), Fraction(high)) for name, low, high in (x, y))
+    return equilibria_map(system, (axes[0], axes[1]), given_values(system, {}), lambda *words: None)
+
+
+def counts_at(found: EquilibriaMap, x: Fraction, y: Fraction) -> tuple[int, int]:
+    place: Any = found.arrangement.locate(*(fmpq(z.numerator, z.denominator) for z in (x, y)))
+    cell = found.cells[place.id]
+    assert cell.standing is Standing.PROVED
+    return cell.count, cell.stable
+
+
+UNIT = ("p", "-1", "1"), ("q", "-1", "1")
+
+
+def test_a_cusp(tmp_path: Path) -> None:
+    found = mapped(ball(tmp_path, "p*x - x**3 + q"), *UNIT)
+    assert [str(p) for p in found.arrangement.factors] == ["4*p^3 - 27*q^2"]
+    source = Random(1)
+    for _ in range(50):
+        p, q = (Fraction(source.randint(-999, 999), 1000) for _ in range(2))
+        assert counts_at(found, p, q) == ((3, 2) if 4 * p**3 > 27 * q**2 else (1, 1))
+    assert all(cell.throughout and cell.confirmed == cell.count for cell in found.cells)
+
+
+def test_roots_that_come_from_infinity(tmp_path: Path) -> None:
+    found = mapped(ball(tmp_path, "p*x**2 + x + q"), *UNIT)  # discriminant 1 - 4 p q; at p = 0 one root is at infinity
+    assert {str(p): of for p, of in zip(found.arrangement.factors, found.origins, strict=True)} == {
+        "4*p*q - 1": (Origin.SINGULAR,),
+        "p": (Origin.LEAVING,),
+    }
+    source = Random(2)
+    for _ in range(30):
+        p, q = (Fraction(source.randint(1, 999) * source.choice((-1, 1)), 1000) for _ in range(2))
+        assert counts_at(found, p, q)[0] == (2 if 4 * p * q < 1 else 0)
+
+
+def test_two_unknowns(tmp_path: Path) -> None:
+    # y = q x: x (p - q^2 - x^2) = 0
+    found = mapped(ball(tmp_path, "p*x - x**3 - q*y", "q*x - y"), *UNIT)
+    source = Random(3)
+    for _ in range(30):
+        p, q = (Fraction(source.randint(1, 999) * source.choice((-1, 1)), 1000) for _ in range(2))
+        assert counts_at(found, p, q)[0] == (3 if p > q**2 else 1)
+
+
+def test_singular_everywhere_is_no_proof(tmp_path: Path) -> None:
+    found = mapped(ball(tmp_path, "x**2*(x - p - 2*q)"), *UNIT)
+    assert found.unfinished
+    assert {cell.standing for cell in found.cells} == {Standing.SAMPLE}
+    assert not any(cell.throughout for cell in found.cells)
+
+
+def test_infinitely_many_are_not_counted(tmp_path: Path) -> None:
+    found = mapped(ball(tmp_path, "(p + 3)*x + y*(q + 3)", "(p + 3)*x + y*(q + 3)"), *UNIT)
+    assert {cell.standing for cell in found.cells} == {Standing.FAMILIES}
+
+
+@pytest.mark.slow
+def test_the_gyrostat_has_eight_to_twenty_four() -> None:
+    """B, C = 5, 3: pairs end where |h| = |B - A|, 4 |B - A|, B - C, 4 (B - C); A = C apart (Sarychev & Mirer)."""
+    found = mapped(SHIPPED / "orbital-gyrostat.yaml", ("h", "1/2", "9"), ("A", "6", "7"))
+    a = Fraction(13, 2)
+    for h in map(Fraction, ("3/5", "7/4", "5", "7", "17/2")):
+        expected = 24 - 4 * sum(h > x for x in (a - 5, 2, 4 * (a - 5), 8))
+        place: Any = found.arrangement.locate(fmpq(h.numerator, h.denominator), fmpq(13, 2))
+        assert found.cells[place.id].count == expected
+        assert found.cells[place.id].standing is Standing.PROVED
+
+
+# --- planted mistakes -------------------------------------------------------------------------------------------------
+
+
+def test_a_lost_curve_is_found_by_another_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_curves", lambda parts: ([], [], ()))
+    path = ball(tmp_path, "p - x**2 + 0*q")
+    done = [mapped(path, ("p", "-1", "1"), ("q", str(-k), "1")) for k in range(1, 5)]
+    assert Standing.WITHDRAWN in {cell.standing for one in done for cell in one.cells}
+
+
+def test_a_lost_equilibrium_is_found_by_newton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "many_starts", lambda system, values: 4)
+    found = mapped(ball(tmp_path, "p*x - x**3 + q"), *UNIT)
+    assert {cell.standing for cell in found.cells} == {Standing.WITHDRAWN}
+    done = invoke(ball(tmp_path, "p*x - x**3 + q"), "--x", "p=-1:1", "--y", "q=-1:1", "-o", tmp_path / "o")
+    assert done.exit_code == 1
+    assert "withdrawn" in done.output
+
+
+# --- the command ------------------------------------------------------------------------------------------------------
+
+
+def invoke(path: Path, *words: object) -> Result:
+    return CliRunner().invoke(main, ["map", str(path), "--of", "equilibria", *map(str, words)])
+
+
+def test_files_follow_their_schema(tmp_path: Path) -> None:
+    path = ball(tmp_path, "p*x - x**3 + q")
+    done = invoke(path, "--x", "p=-1:1", "--y", "q=-1:1", "--out", tmp_path / "out", "--language", "es")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "out"
+    data = json.loads((folder / "equilibria-map.json").read_text())
+    assert list(Draft202012Validator(schema("equilibria_map")).iter_errors(data)) == []
+    assert sorted((x["count"], x["stable"]) for x in data["regions"]) == [(1, 1), (3, 2)]
+    text = (folder / "equilibria-map.tex").read_text()
+    read_latex("fragments/equilibria-map.tex", text)
+    assert "equilibrios" in text
+    assert all((folder / f"equilibria-map.{kind}").stat().st_size > 3000 for kind in ("svg", "pdf", "png"))
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (["--x", "h=0:1"], "missing-option"),
+        (["--x", "h=0:1", "--y", "A=2:3", "--z", "B=1:2"], "not-of-equilibria"),
+        (["--x", "h=1:0", "--y", "h2=0:1"], "given-by-relation"),
+        (["--x", "A=-1:1", "--y", "B=-2:-1"], "against-sign"),
+        (["--x", "h=0:1", "--y", "A=2:3", "--set", "h2=1"], "given-by-relation"),
+    ],
+)
+def test_what_does_not_fit_is_complained_about(words: list[str], code: str, tmp_path: Path) -> None:
+    done = invoke(SHIPPED / "orbital-gyrostat.yaml", *words, "--out", tmp_path / "out")
+    assert done.exit_code == 2, done.output
+    assert code in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
+    done = invoke(ball(tmp_path, "p + q - exp(x)"), "--x", "p=0:1", "--y", "q=0:1", "--out", tmp_path / "out")
+    assert done.exit_code == 1
+    assert "exp" in done.output
+
+
+def test_every_word_is_translated() -> None:
+    for words in WORDS.values():
+        assert {*STANDINGS.values(), *ORIGINS.values()} <= words.keys()
+    told = schema("equilibria_map")["properties"]["regions"]["items"]["properties"]["standing"]["enum"]
+    assert told == [one.value for one in Standing]
