@@ -119,6 +119,7 @@ bench: robot-data
 	$(BIN)/python tests/bench/sweep_bench.py
 	$(BIN)/python tests/bench/peers_bench.py
 	$(BIN)/python tests/bench/choice_bench.py
+	$(BIN)/python tests/bench/equilibria_bench.py
 
 # What can be made again; reports are the user's.
 clean:

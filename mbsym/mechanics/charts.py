@@ -185,9 +185,12 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
     return all(x.is_zero() for x in row)
 
 
-def charts(first: Rest) -> tuple[Chart, ...]:
-    """Charts that together cover every configuration once (but for what cannot be replaced)."""
-    described = {body.name: body.rotation.axes for body in first.system.bodies}
+def charts(first: Rest, described_by: System | None = None) -> tuple[Chart, ...]:
+    """Charts that together cover every configuration once (but for what cannot be replaced).
+
+    ``described_by``: the description, where the system has other axes of turning than that.
+    """
+    described = {body.name: body.rotation.axes for body in (described_by or first.system).bodies}
     first = _with_cyclic_first_angles(first)
     replaceable = tuple(
         replace(joint, described=described[joint.body][: len(joint.angles)] == joint.axes[: len(joint.angles)])
@@ -231,6 +234,32 @@ def _with_cyclic_first_angles(first: Rest) -> Rest:
                 first = other
                 break
     return first
+
+
+def with_cyclic_last_angles(first: Rest) -> tuple[Rest, tuple[tuple[str, int], ...]]:
+    """The same with sequences of three angles whose last one is cyclic, where a body has an axis of symmetry.
+
+    Also (body, axis) of each body whose sequence was changed: a turn of it about that axis changes neither f nor M.
+    What is a family of rests in other angles is then a rest with any last angle.
+    """
+    changed: list[tuple[str, int]] = []
+    for joint in joints(first.system, first.turning, cyclic_angles(first)):
+        if len(joint.angles) != 3 or joint.last_free or {*joint.angles} & {*first.turning}:
+            continue
+        for last in (1, 2, 3):
+            second = next(x for x in (1, 2, 3) if x not in (joint.axes[0], last))
+            axes = (joint.axes[0], second, last)
+            if axes == joint.axes:
+                continue
+            try:
+                other = rest(_with_axes(first.system, {joint.body: axes}))
+            except Failure:
+                continue
+            if joint.angles[2] in cyclic_angles(other):
+                first = other
+                changed.append((joint.body, last))
+                break
+    return first, tuple(changed)
 
 
 def _with_other_angles(system: System, replaceable: Sequence[Joint], choice: Sequence[bool]) -> System:

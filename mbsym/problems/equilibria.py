@@ -44,11 +44,11 @@ from mbsym.algebra.polynomial_systems import (
     solve,
 )
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.mechanics.charts import Chart, charts, moments
+from mbsym.mechanics.charts import Chart, charts, moments, with_cyclic_last_angles
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.reflections import Reflection, reflections
-from mbsym.mechanics.rest import at_numbers, rest
+from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.rest_bounds import reach
 from mbsym.problems.rest_candidates import Candidate, candidates, only_root
@@ -153,16 +153,31 @@ def equilibria(
     """
     refuse_constraints(system, "relative equilibria")
     first = rest(at_numbers(system, values))
+    found = _listed(first, first.system, within, limits or Limits())
+    if found.complete or not found.families:
+        return found
+    symmetric, changed = with_cyclic_last_angles(first)
+    if not changed:
+        return found
+    counted = _listed(symmetric, first.system, within, limits or Limits())
+    if not counted.complete:
+        return found
+    turns = (f"counted up to turns of {body} about its axis {axis}, on which nothing depends" for body, axis in changed)
+    return replace(counted, remarks=(*counted.remarks, *turns))
+
+
+def _listed(first: Rest, described_by: System, within: float, limits: Limits) -> Equilibria:
+    """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``."""
     remarks: list[str] = []
     found: list[_Candidate] = []
     families: list[EquilibriumFamily] = []
     complete = True
-    covering = charts(first)
+    covering = charts(first, described_by)
     for chart in covering:
-        search = _ChartSearch(chart, within, limits or Limits())
+        search = _ChartSearch(chart, within, limits)
         search.run()
         if families and chart.restrictions:
-            search.points = _off_families(search, within, limits or Limits())
+            search.points = _off_families(search, within, limits)
         found += search.points
         families += search.families
         remarks += search.remarks

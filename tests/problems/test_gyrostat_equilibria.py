@@ -147,3 +147,28 @@ def test_a_wrong_third_axis_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     found = listed(("4", "5", "3"), ("1/20", "3/100", "1/50"))
     assert not found.complete
     assert not any("direction cosines" in x for x in found.remarks)
+
+
+def test_a_symmetric_gyrostat_is_counted_up_to_turns_about_its_axis() -> None:
+    """I = A + (B - A) k k, h along k, d = B - A = 1:  3 (e.k) e x k = (n.k + h/d) n x k.
+
+    So k = +-n; or e.k = 0 and n.k = -h/d (two); or k = c n + s e with  3 c = -(c + h/d),  c = -1/8 for h/d = 1/2 (two).
+    """
+    found = listed(("4", "5", "4"), ("0", "1/2", "0"))
+    assert found.complete
+    assert not found.families
+    assert [one.free for one in found.equilibria] == [("phi",)] * 6
+    upright = []  # n.k in axes {2, 1, 3}: psi about the normal's opposite, k the third axis of the body
+    for one in found.equilibria:
+        psi, theta = (next(x.value for x in one.values if x.name == name) for name in ("psi", "theta"))
+        upright.append(math.cos(psi) * math.cos(theta))
+    assert np.allclose(sorted(upright), sorted([1, -1, -1 / 2, -1 / 2, -1 / 8, -1 / 8]), rtol=0, atol=1e-12)
+    assert any("up to turns of satellite about its axis 3" in x for x in found.remarks)
+
+
+def test_a_gyrostat_without_symmetry_is_not_counted_up_to_turns() -> None:
+    """h is not along the axis of the symmetric inertia."""
+    found = listed(("4", "5", "4"), ("3/10", "1/2", "1/5"))
+    assert found.complete
+    assert all(not one.free for one in found.equilibria)
+    assert not any("up to turns" in x for x in found.remarks)
