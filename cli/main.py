@@ -39,6 +39,7 @@ COMMANDS = {
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("map", "Divide a plane of parameters into regions of one verdict."),
     "groups": Listed("groups", "Find the dimensionless groups of a system."),
+    "average": Listed("average", "Average a system over a fast phase."),
     "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),

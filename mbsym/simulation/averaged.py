@@ -1,0 +1,85 @@
+"""How far the averaged motion is from the motion itself: measured, at the given eps and at parts of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import log, pi
+from typing import Any
+
+import numpy as np
+from flint import arb, fmpq
+
+from mbsym.expressions.tree import Expression, number
+from mbsym.model.system import System, velocity_name
+from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.problems.averaging import Averaged
+from mbsym.simulation.request import Request
+from mbsym.simulation.run import simulate
+
+#: Rows in which the two motions are compared, and eps in parts of that of the given numbers.
+ROWS, PARTS = 400, (Fraction(1), Fraction(1, 2), Fraction(1, 4))
+#: Periods of the fast phase, at the given numbers, that are simulated unless a time is asked for.
+PERIODS = 60
+
+
+@dataclass(frozen=True)
+class Measured:
+    """``distances`` at ``parts`` of the given eps: the largest |q - Q| over ``time``, in units of the largest |Q|.
+
+    ``orders`` are log2 of their ratios: about 1 where the expansion is right and eps small.
+    """
+
+    time: float
+    parts: tuple[Fraction, ...]
+    distances: tuple[float, ...]
+
+    @property
+    def orders(self) -> tuple[float, ...]:
+        pairs = zip(self.distances, self.distances[1:], strict=False)
+        return tuple(log(a / b, 2) if a > 0 and b > 0 else float("nan") for a, b in pairs)
+
+
+def measured(
+    system: System,
+    averaged: System,
+    found: Averaged,
+    time: float | None = None,
+    watch: Callable[[str], None] = lambda what: None,
+) -> Measured:
+    """Both motions from the initial state of the description, over ``time``.
+
+    Raises Incomplete where numbers are missing.
+    """
+    given = scenario(system)
+    values = dict(given.parameters)
+    rate = abs(float(values[found.rate]))
+    time = PERIODS * 2 * pi / rate if time is None else time
+    distances = []
+    for part in PARTS:
+        watch(f"eps/{part.denominator}" if part != 1 else "eps")
+        scaled: dict[str, Expression] = {name: number(Fraction(values[name]) * part) for name in found.small}
+        scaled[found.rate] = number(Fraction(values[found.rate]) / part)
+        own = scenario(system, scaled)
+        exact = simulate(own, Request(time=time, samples=ROWS, estimate=False))
+        start = _start(own, found)
+        slow = simulate(scenario(averaged, {**scaled, **start}), Request(time=time, samples=ROWS, estimate=False))
+        q, Q = np.asarray(exact.coordinates), np.asarray(slow.coordinates)
+        size = np.abs(Q).max(axis=1, keepdims=True)
+        size[size == 0] = 1.0
+        distances.append(float(np.abs((q - Q) / size).max()))
+    return Measured(time, PARTS, tuple(distances))
+
+
+def _start(own: Scenario, found: Averaged) -> Mapping[str, Expression]:
+    """Q' = q' + M^-1 a at the beginning: the same momenta."""
+    values: dict[str, Any] = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in own.parameters.items()}
+    places = dict(zip(own.system.coordinates, own.positions, strict=True))
+    places |= {name: initial for name, (initial, _) in own.prescribed.items()}
+    values |= {name: arb(fmpq(x.numerator, x.denominator)) for name, x in places.items()}
+    start = {}
+    for name, velocity, swing in zip(own.system.coordinates, own.velocities, found.swings, strict=True):
+        shift = float(swing.ring.evaluate(swing.polynomial, values).mid())
+        start[velocity_name(name)] = number(velocity + Fraction(shift))
+    return start

@@ -1,0 +1,152 @@
+"""Effective potentials of shaken systems against Kapitza, Landau and Lifshitz, and Mathieu's equation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.integrate import solve_ivp
+
+import mbsym
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis.averaged import averaged_system, averaging_of
+from mbsym.simulation.averaged import measured
+from mbsym.source import read, to_yaml
+from mbsym_cli.main import main
+
+PENDULUM = """
+mbsym: 1
+name: Shaken pendulum
+parameters:
+  m: {{sign: positive}}
+  l: {{sign: positive}}
+  g: {{sign: positive}}
+  a: {{sign: positive}}
+  W: {{sign: positive}}
+  c: {{sign: nonnegative}}
+prescribed: {{phi: {{rate: W}}}}
+bodies:
+  - name: rod
+    connection point: {pivot}
+    rotation: {{axes: [3], angles: [theta]}}
+    mass centre: [0, -l, 0]
+    mass: m
+loads:
+  - uniform gravity: {{acceleration: g, direction: [0, -1, 0]}}
+  - {damper}
+motion: {{theta: {theta}}}
+values: {{m: 1, l: 1, g: 9, a: 1/10, W: 60, c: 0}}
+initial: {{theta: 0.3}}
+"""
+
+
+def _number(formula, **values):
+    expression = formula.to_sympy()
+    return float(expression.subs({symbol: values[symbol.name] for symbol in expression.free_symbols}))
+
+
+def _shaken(pivot="[0, a*cos(phi), 0]", damper="damper: {coordinate: theta, coefficient: c}", theta="0"):
+    return mbsym.loads(PENDULUM.format(pivot=pivot, damper=damper, theta=theta))
+
+
+@pytest.mark.parametrize(
+    ("pivot", "vibrational"),
+    [
+        ("[0, a*cos(phi), 0]", lambda s, c: s**2),  # Kapitza: m a^2 W^2 sin(theta)^2/4
+        ("[a*cos(phi), 0, 0]", lambda s, c: c**2),  # Landau & Lifshitz, section 30, problem 2
+        ("[a*cos(phi), a*sin(phi), 0]", lambda s, c: 1.0),  # in a circle: no direction is preferred
+    ],
+)
+def test_the_effective_potential_of_a_shaken_pendulum(pivot, vibrational):
+    found = averaging_of(_shaken(pivot), "phi")
+    assert found.small == ("a",)
+    numbers = {"m": 2, "l": 3, "g": 5, "a": "1/7", "W": 11}
+
+    def value(formula, theta):
+        return _number(formula.subs(numbers), theta=theta)
+
+    for theta in (0.3, 1.1, 2.5):
+        by_hand = [2 * (11 / 7) ** 2 * vibrational(np.sin(x), np.cos(x)) / 4 for x in (theta, 0.0)]
+        shaken = value(found.vibrational, theta) - value(found.vibrational, 0.0)
+        assert shaken == pytest.approx(by_hand[0] - by_hand[1], abs=1e-12)
+        whole = value(found.potential, theta) - value(found.potential, 0.0)
+        assert whole == pytest.approx(shaken - 30 * (np.cos(theta) - 1), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("theta", "shaken_up", "stable"), [("pi", "1/10", True), ("pi", "1/20", False), ("0", "1/10", True)]
+)
+def test_upright_it_is_stable_where_a2_W2_exceeds_2_g_l(theta, shaken_up, stable):
+    """a W = 6 or 3, 2 g l = 18."""
+    analysis = _shaken(theta=theta)
+    system = averaged_system(analysis.system, averaging_of(analysis, "phi"))
+    lines = to_yaml(system).splitlines()
+    lines = [f"  a: {{sign: positive, value: {shaken_up}}}" if line.startswith("  a:") else line for line in lines]
+    found = mbsym.loads("\n".join(lines)).stability
+    assert (found.numerical.word.value == "stable") == stable
+
+
+@pytest.mark.parametrize(("rate", "stable"), [(1.06, True), (0.94, False)])
+def test_mathieus_equation_agrees_near_the_border(rate, stable):
+    """theta'' = (g - a W^2 cos(W t)) theta/l: the monodromy matrix, a = l/100, a W = rate sqrt(2 g l)."""
+    g, a = 9.0, 0.01
+    W = rate * np.sqrt(2 * g) / a
+
+    def field(t, x):
+        return [x[1], (g - a * W**2 * np.cos(W * t)) * x[0]]
+
+    period = 2 * np.pi / W
+    columns = [solve_ivp(field, (0, period), x, rtol=1e-11, atol=1e-13).y[:, -1] for x in ([1.0, 0.0], [0.0, 1.0])]
+    assert (abs(columns[0][0] + columns[1][1]) < 2) == stable
+    condition = averaging_of(_shaken(theta="pi"), "phi").potential  # V'' at theta = pi, from the formula
+    there = condition.subs({"m": 1, "l": 1, "g": 9, "a": "1/100"})
+    curve = [_number(there, theta=x, W=W) for x in (np.pi - 1e-3, np.pi, np.pi + 1e-3)]
+    assert (curve[0] - 2 * curve[1] + curve[2] > 0) == stable
+
+
+def test_the_distance_is_of_first_order():
+    analysis = _shaken(theta="pi")
+    found = averaging_of(analysis, "phi")
+    told = measured(analysis.system, averaged_system(analysis.system, found), found, 3.0)
+    assert all(abs(order - 1) < 0.2 for order in told.orders)
+
+
+def test_a_planted_mistake_is_seen_by_the_measured_order():
+    """With the wrong sign of the vibrational potential the distance does not shrink with eps."""
+    analysis = _shaken(theta="pi")
+    right = averaging_of(analysis, "phi")
+    wrong = type(right)(right.phase, right.rate, right.small, -right.vibrational, right.potential, right.swings)
+    told = measured(analysis.system, averaged_system(analysis.system, wrong), right, 3.0)
+    assert all(order < 0.5 for order in told.orders)
+
+
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"damper": "generalized force: {theta: -c*theta_dot**3}"}, "not linear in the velocities"),
+        ({"damper": "generalized force: {theta: -c*theta_dot*(2 + sin(phi))}"}, "depends on phi"),
+        ({"pivot": "[0, l*cos(phi), 0]"}, "small is not plain"),
+    ],
+)
+def test_other_systems_are_refused_with_the_reason(changed, reason):
+    with pytest.raises(NoClosedForm, match=reason):
+        averaging_of(_shaken(**changed), "phi")
+
+
+def test_more_has_to_be_small_where_terms_grow():
+    with pytest.raises(NoClosedForm, match="grows with the rate"):
+        averaging_of(_shaken(), "phi", ("c",))
+
+
+def test_the_command(tmp_path):
+    out = tmp_path / "averaged.yaml"
+    done = CliRunner().invoke(main, ["average", "systems/shaken-pendulum.yaml", "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    assert "h**2*nu**2 - 2*l*g > 0" in done.output
+    assert "not of the motion itself" in done.output
+    system, complaints = read(out.read_text())
+    assert system is not None, complaints.sorted()
+    assert system.prescribed == ()
+    refused = CliRunner().invoke(main, ["average", "systems/double-pendulum.yaml", "--small", "q", "--time", "x"])
+    assert refused.exit_code == 2
+    assert {"--phase", "--small", "--time"} <= {line.split(":")[0] for line in refused.output.splitlines()}
