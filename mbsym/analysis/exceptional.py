@@ -27,8 +27,8 @@ def exceptional(
     if analysis.system.speeds:
         return exceptional(analysis.in_coordinates, name, interval, values)
     if analysis.system.constraints or analysis.system.linear is not None:
-        reason = "normal forms are of systems without constraints that are given by bodies and loads"
-        raise Unavailable("normal forms", NoResult(reason, "", "not supported", "not-supported"))
+        reason = "it has constraints, or is given by its matrices: normal forms are of neither"
+        raise Unavailable("system", NoResult(reason, "", "not supported", "not-supported"))
     with analysis.strictly():
         found = analysis.equilibrium
         analysis.judgeable  # noqa: B018  raises where no theorem applies

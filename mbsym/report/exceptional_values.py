@@ -60,9 +60,9 @@ def _said(judged: Judged) -> str:
 
 def _numbers(judged: Judged) -> Iterator[str]:
     if judged.coefficient is not None and judged.amplitude_of:
-        border = "soft" if judged.outcome is Outcome.ASYMPTOTIC else "hard"
+        borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
         yield (
-            f"a {border} border: +-i w with w = {decimal(judged.frequencies[0])}, r' = a r^3 with "
+            f"{borders.get(judged.outcome, '')}+-i w with w = {decimal(judged.frequencies[0])}, r' = a r^3 with "
             f"a = {decimal(judged.coefficient)} for the amplitude r of {judged.amplitude_of}"
         )
     if judged.sides is not None:

@@ -13,8 +13,9 @@ from flint import arb
 import mbsym
 from mbsym.analysis.exceptional import exceptional
 from mbsym.analysis.stages import Unavailable
-from mbsym.problems.normal_forms import Outcome, Theorem
+from mbsym.problems.normal_forms import Outcome, Theorem, Why
 from mbsym.problems.normal_forms.along import NotAlong
+from mbsym.report.exceptional_values import lines
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
@@ -91,6 +92,17 @@ def test_a_zero_root_by_its_cubic_term() -> None:
     assert found.specials[0].judged.outcome is Outcome.ASYMPTOTIC
     assert found.specials[0].judged.theorem is Theorem.REDUCTION
     assert [x.judged.outcome for x in found.between] == [Outcome.UNSTABLE, Outcome.ASYMPTOTIC]
+
+
+def test_where_the_coefficient_vanishes_no_border_is_soft_or_hard() -> None:
+    """A pendulum without friction is no focus: a = 0 there, exactly."""
+    analysis = mbsym.load(SYSTEMS / "simple-pendulum.yaml")
+    values = dict.fromkeys(("m", "l", "J", "g"), Fraction(1))
+    found = exceptional(analysis, "b", (Fraction(-1), Fraction(1)), values)
+    assert [(x.exactly, x.judged.outcome, x.judged.why) for x in found.specials] == [
+        (0, Outcome.UNDECIDED, Why.COEFFICIENT_OPEN)
+    ]
+    assert not any("soft" in line or "hard" in line for line in lines(found))
 
 
 def test_an_interval_with_a_singular_value_is_refused() -> None:
