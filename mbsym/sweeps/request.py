@@ -12,7 +12,7 @@ from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, section
 from mbsym.model.system import System
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.measure import Measure, Unsuitable
+from mbsym.sweeps.measure import Measure
 from mbsym.sweeps.points import Points
 
 STABILITY, EIGENVALUES, DAMPING, FREQUENCY = "stability", "eigenvalues", "damping", "frequency"
@@ -69,10 +69,6 @@ def measure_of(system: System, asked: Asked) -> Measure:
         from mbsym.sweeps.judged import StabilityMeasure
 
         return StabilityMeasure(analysis, found)
-    if found.constant is not None:
-        raise Unsuitable(f"{found.constant.text} stands among the coefficients, with which eigenvalues are not swept")
-    if any(part.following for part in found.parts):
-        raise Unsuitable("some equations are of first order, and their eigenvalues are not swept; 'stability' is")
     from mbsym.sweeps import roots
 
     kinds: dict[str, Callable[[Section, str], Measure]] = {

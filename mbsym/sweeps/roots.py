@@ -1,12 +1,13 @@
 """Measures of the eigenvalues: all of them, the decay of the slowest, the frequencies.
 
 The roots lambda of  det(lambda^2 M + lambda (D + G) + K + N) = 0  are computed in floats (LAPACK), for all points of a
-chunk at once, from matrices that come from machine code.  Nothing is proved of them; ``stability`` is what proves.
+chunk at once, from matrices that come from machine code.  Coordinates whose equations are of first order have one root
+each.  An irrational number among the coefficients is put in as a float.  Nothing is proved; ``stability`` proves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from mbsym.sweeps.polynomials import written
 
 #: Parts of a root below this share of the largest root are rounding, of a root that may be a multiple one.
 NEGLIGIBLE = 1e-7
+#: What stands for a root that is not known: neither part is a number.
+NONE = complex(np.nan, np.nan)
 
 
 class RootsMeasure:
@@ -30,7 +33,9 @@ class RootsMeasure:
 
     def __init__(self, section: Section, unit: str) -> None:
         self.unit = unit
-        self._sizes = tuple(part.size for part in section.parts)
+        self._parts = tuple((part.size, part.following) for part in section.parts)
+        #: How many roots there are.
+        self.count = sum(2 * n - len(following) for n, following in self._parts)
         entries = [
             x
             for part in section.parts
@@ -38,25 +43,29 @@ class RootsMeasure:
             for row in matrix
             for x in row
         ]
-        program, names, nodes = written(entries, [axis.name for axis in section.axes])
+        known = [] if section.constant is None else [float(section.constant.number)]
+        self._known = np.array(known).reshape(-1, 1)
+        program, names, nodes = written(entries, section.context.names())
         self._kernel = llvm.kernels({"entries": Code(program, names, tuple(nodes))}, wide=True)["entries"]
 
     @property
     def columns(self) -> tuple[Column, ...]:
         found = []
-        for number in range(1, 2 * sum(self._sizes) + 1):
+        for number in range(1, self.count + 1):
             found.append(Column(f"real{number}", f"real part of eigenvalue {number}, in {self.unit}"))
             found.append(Column(f"imaginary{number}", f"imaginary part of eigenvalue {number}, in {self.unit}"))
         return tuple(found)
 
     def roots(self, points: Any) -> Any:
         """Shape (m, roots), sorted."""
-        rows, start, found = self._kernel(np.ascontiguousarray(points)), 0, []
-        for n in self._sizes:
+        known = np.repeat(self._known, points.shape[1], axis=1)
+        rows, start, found = self._kernel(np.concatenate([points, known])), 0, []
+        for n, following in self._parts:
             m, c, k = (rows[start + i * n * n : start + (i + 1) * n * n].T.reshape(-1, n, n) for i in range(3))
             start += 3 * n * n
-            found.append(_eigenvalues(m, c, k))
+            found.append(_eigenvalues(m, c, k, following))
         every = np.concatenate(found, axis=1)
+        every[np.isnan(every).any(axis=1)] = NONE  # the roots of some parts alone would be taken for all
         order = np.lexsort((-every.imag, -every.real), axis=1)
         return np.take_along_axis(every, order, axis=1)
 
@@ -66,19 +75,34 @@ class RootsMeasure:
         return dict(zip((column.name for column in self.columns), parts, strict=True))
 
 
-def _eigenvalues(m: Any, c: Any, k: Any) -> Any:
-    """Of M x'' + C x' + K x = 0, arrays (points, n, n); not a number where M is singular or the entries are none."""
+def _eigenvalues(m: Any, c: Any, k: Any, following: Sequence[int]) -> Any:
+    """Of M x'' + C x' + K x = 0, arrays (points, n, n); not a number where M is singular or the entries are none.
+
+    The rows of ``following`` are of first order, there C takes M's place: ``mbsym.problems.stability.state_matrix``.
+    """
     count, n = m.shape[0], m.shape[1]
-    with np.errstate(all="ignore"):
-        sound = np.all(np.isfinite(m) & np.isfinite(c) & np.isfinite(k), axis=(1, 2))
-        sound &= np.linalg.cond(np.where(sound[:, None, None], m, np.eye(n))) < 1 / np.finfo(float).eps
-    first = np.zeros((count, 2 * n, 2 * n))
-    first[:, :n, n:] = np.eye(n)
-    safe = np.where(sound[:, None, None], m, np.eye(n))
-    first[sound, n:, :n] = -np.linalg.solve(safe, k)[sound]
-    first[sound, n:, n:] = -np.linalg.solve(safe, c)[sound]
-    found = np.linalg.eigvals(first)
-    found[~sound] = np.nan
+    moving = [i for i in range(n) if i not in following]
+    first = np.zeros((count, n + len(moving), n + len(moving)))
+    first[:, moving, n + np.arange(len(moving))] = 1
+    sound = np.ones(count, dtype=bool)
+    for lines, leading, target in (
+        (moving, m, n + np.arange(len(moving))),
+        (list(following), c, np.array(following, dtype=int)),
+    ):
+        if not lines:
+            continue
+        own, by_place, by_speed = leading[:, lines][:, :, lines], k[:, lines], c[:, lines][:, :, moving]
+        with np.errstate(all="ignore"):
+            good = np.all(np.isfinite(own), axis=(1, 2)) & np.all(np.isfinite(by_place), axis=(1, 2))
+            good &= np.all(np.isfinite(by_speed), axis=(1, 2))
+            safe = np.where(good[:, None, None], own, np.eye(len(lines)))
+            good &= np.linalg.cond(safe) < 1 / np.finfo(float).eps
+        sound &= good
+        right = np.where(good[:, None, None], np.concatenate([by_place, by_speed], axis=2), 0)
+        solved = np.linalg.solve(np.where(good[:, None, None], own, np.eye(len(lines))), right)
+        first[:, target] = -solved
+    found = np.linalg.eigvals(first).astype(complex)
+    found[~sound] = NONE
     return found
 
 
@@ -91,7 +115,7 @@ class DampingMeasure:
         self.columns = (Column("largest_real_part", meaning),)
 
     def at(self, points: Any) -> Mapping[str, Any]:
-        return {"largest_real_part": np.max(self._roots.roots(points).real, axis=1)}
+        return {"largest_real_part": np.max(self._roots.roots(points).real, axis=1) + 0.0}  # no -0
 
 
 class FrequencyMeasure:
@@ -99,7 +123,7 @@ class FrequencyMeasure:
 
     def __init__(self, section: Section, unit: str) -> None:
         self._roots = RootsMeasure(section, unit)
-        self._count = sum(part.size for part in section.parts)
+        self._count = self._roots.count // 2
         meaning = (
             f"the positive imaginary parts of the eigenvalues from low to high, in {unit}; empty where there are fewer"
         )

@@ -163,3 +163,32 @@ def test_motions_of_matrices_are_refused_by_name(tmp_path: Path) -> None:
     done = sweep("triangular-points", tmp_path / "x", "-v", "mu=0.01:0.06:5", "-m", "simulate:x", "--time", "1")
     assert done.exit_code == 2
     assert "given by its matrices" in done.stderr
+
+
+def test_ctrl_c_keeps_finished_chunks_and_the_same_command_goes_on(
+    plane: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Interrupted after the fourth of 12 chunks: exit code 130, what is kept is told, no table; then the same bytes."""
+    from mbsym.sweeps import sweep as module
+
+    monkeypatch.setattr("mbsym.sweeps.sweep.chunks.__defaults__", (100,))
+    whole = module.measured
+
+    def interrupted(*arguments):  # type: ignore[no-untyped-def]
+        for number, chunk in enumerate(whole(*arguments), start=1):
+            yield chunk
+            if number == 4:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "measured", interrupted)
+    done = sweep("satellite", tmp_path, *PLANE, "--jobs", "1")
+    assert done.exit_code == 130
+    assert "interrupted; 4 of 12 chunks are kept: the same command goes on from there" in done.stderr
+    assert not (tmp_path / "sweep.csv").exists()
+    kept = sorted((tmp_path / "chunks").iterdir())
+    assert len(kept) >= 4
+    before = [one.stat().st_mtime_ns for one in kept]
+    monkeypatch.setattr(module, "measured", whole)
+    assert sweep("satellite", tmp_path, *PLANE).exit_code == 0
+    assert (tmp_path / "sweep.csv").read_bytes() == (plane / "sweep.csv").read_bytes()
+    assert [one.stat().st_mtime_ns for one in kept] == before

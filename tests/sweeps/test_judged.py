@@ -134,3 +134,26 @@ def test_a_sweep_says_what_the_map_says() -> None:
         stratum = whole.regions[there.id]
         wanted = words.get(stratum.standing) or stratum.word
         assert WORDS[found[VERDICT.name][place]] == wanted
+
+
+def test_sweeps_say_what_exact_counts_say() -> None:
+    """Satellites with a gyroscope, a damper, a rotor: the models by hand of the maps, at the floats of the rows."""
+    from tests.maps.test_maps_against_models import CASES, to_the_right
+
+    for case in CASES:
+        if case.name not in ("satellite-with-gyroscope", "satellite-with-damper", "orbital-gyrostat"):
+            continue
+        measure = made(case.name, [(n, F(a), F(b)) for n, a, b in case.axes], {k: F(v) for k, v in case.settings})
+        low, high = (np.array([[float(F(axis[k]))] for axis in case.axes]) for k in (1, 2))
+        points = np.random.default_rng(3).uniform(low, high, (2, 300))
+        found = measure.at(points)
+        words = set()
+        for place, point in enumerate(points.T):
+            told = WORDS[found[VERDICT.name][place]]
+            assert told not in NO_VERDICT
+            exactly = {name: F(*float(x).as_integer_ratio()) for (name, *_), x in zip(case.axes, point, strict=True)}
+            right = sum(map(to_the_right, case.model(exactly)))
+            assert found[RIGHT.name][place] == right
+            assert (told == "unstable") == (right > 0)
+            words.add(told)
+        assert len(words) > 1
