@@ -15,7 +15,7 @@ from mbsym_cli.section_options import read_axis, read_settings
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
     from mbsym.maps.section import Axis
-    from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals
+    from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Relations
 
 #: More than any budget of monomials allows.
 MOST_DEGREE = 60
@@ -31,6 +31,7 @@ MOST_WEIGHT = 12
 )
 @click.option("--vary", "-v", metavar="NAME=LOW:HIGH", help="At which values of a parameter are there more?")
 @click.option("--cases", is_flag=True, help="Under which conditions on parameters are there more?")
+@click.option("--relations", is_flag=True, help="Linear invariant relations, with their conditions.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 def command(
     file: Path,
@@ -39,6 +40,7 @@ def command(
     weights: tuple[str, ...],
     vary: str | None,
     cases: bool,
+    relations: bool,
     as_json: bool,
 ) -> None:
     """Find all polynomial first integrals of FILE up to a weighted degree, or prove that there are no others.
@@ -50,7 +52,8 @@ def command(
 
     --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
     another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,
-    equalities and a polynomial condition besides.
+    equalities and a polynomial condition besides.  --relations lists linear forms f that divide their derivative, so
+    that a motion which begins on f = 0 stays there, each with the parameters at which there is such a form.
 
     Exit codes: 0 found, or proved that there are none; 1 undecided, or the equations are not polynomial; 2 something is
     wrong.
@@ -61,6 +64,7 @@ def command(
       mbsym integrals systems/gyrostat-poisson.yaml --degree 6 --set lx=0 --set epsilon=0
       mbsym integrals systems/euler-poisson.yaml -s B=2 -s C=1 -s x0=1 -s y0=0 -s z0=0 -s m=1 -s g=1 --vary A=1:5
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases
+      mbsym integrals systems/euler-poisson.yaml --set y0=0 --relations
     """
     system = read_description(file, unconstrained="integrals", moving="integrals")
     asked = Options()
@@ -77,7 +81,7 @@ def command(
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import integrals_of, setting
-    from mbsym.problems.polynomial_integrals import along
+    from mbsym.problems.polynomial_integrals import along, linear_relations
     from mbsym.problems.polynomial_integrals import cases as all_cases
 
     try:
@@ -94,6 +98,9 @@ def command(
             line = None if axis is None else along(found, axis.low, axis.high)
             positive = [one.name for one in system.parameters if one.sign == "positive"]
             special = all_cases(found, positive) if cases else None
+            grading, linear = found.grading, None
+            if relations:
+                linear = linear_relations(there.field, grading.weights, positive, grading.free)
     except ZeroDivisionError as reason:
         complain(file, f"no integrals: {reason}")
         sys.exit(BAD_INPUT)
@@ -103,9 +110,9 @@ def command(
     if as_json:
         from mbsym.report.integrals_json import integrals_json
 
-        click.echo(integrals_json(system, values, there, found, line, special), nl=False)
+        click.echo(integrals_json(system, values, there, found, line, special, linear), nl=False)
     else:
-        _show(file, system.name, there, found, line, special)
+        _show(file, system.name, there, found, (line, special, linear))
     sys.exit(OK if found.complete else FAILED)
 
 
@@ -135,7 +142,11 @@ def _complain_unfit(there: Setting, axis: Axis | None, asked: Options) -> None:
 
 
 def _show(
-    file: Path, name: str, there: Setting, found: PolynomialIntegrals, line: Along | None, special: Cases | None
+    file: Path,
+    name: str,
+    there: Setting,
+    found: PolynomialIntegrals,
+    special: tuple[Along | None, Cases | None, Relations | None],
 ) -> None:
     from rich.text import Text
 
@@ -153,11 +164,13 @@ def _show(
         out.print(Text(f"      {there.formula(one.polynomial)}"), soft_wrap=True)
     for said in sentences(found):
         out.print(Text(f"    {filled(said)}"))
-    from mbsym_cli.integrals_cases import along_lines, cases_lines
+    from mbsym_cli.integrals_cases import along_lines, cases_lines, relation_lines
 
+    line, cases, linear = special
     for heading, lines in (
         ("Special values", None if line is None else along_lines(there, line, found.degree)),
-        ("Special cases", None if special is None else cases_lines(there, special)),
+        ("Special cases", None if cases is None else cases_lines(there, cases)),
+        ("Linear invariant relations", None if linear is None else relation_lines(there, linear)),
     ):
         if lines is not None:
             out.print(Text.assemble("  ", (heading, "bold cyan")))

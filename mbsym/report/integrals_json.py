@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
 from mbsym.analysis.polynomial import Setting
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Special
+from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Relations, Special
 from mbsym.report.schemas import version
 
 #: The version of ``schemas/integrals.json`` that it follows.
@@ -23,6 +23,7 @@ def integrals_json(
     found: PolynomialIntegrals,
     line: Along | None = None,
     special: Cases | None = None,
+    linear: Relations | None = None,
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data: dict[str, Any] = {
@@ -33,6 +34,7 @@ def integrals_json(
         **integrals_data(there, found),
         "along": None if line is None else _along(there, line),
         "cases": None if special is None else _cases(there, special),
+        "relations": None if linear is None else _relations(there, linear),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
@@ -81,6 +83,23 @@ def _cases(there: Setting, special: Cases) -> dict[str, Any]:
         "cases": [
             {"vanishing": [str(there.formula(p)) for p in case.conditions], **_special(there, case.special)}
             for case in special.cases
+        ],
+    }
+
+
+def _relations(there: Setting, linear: Relations) -> dict[str, Any]:
+    def write(polynomials: Iterable[Any]) -> list[str]:
+        return [str(there.formula(p)) for p in polynomials]
+
+    return {
+        "complete": linear.complete,
+        "relations": [
+            {
+                "formula": str(there.formula(one.polynomial)),
+                "vanishing": write(one.conditions),
+                "nonzero": write(one.nonzero),
+            }
+            for one in linear.relations
         ],
     }
 

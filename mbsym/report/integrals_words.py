@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from mbsym.problems.polynomial_integrals import Case, Generator, OnLevel, PolynomialIntegrals, Sure
@@ -44,7 +44,12 @@ def level_title(weight: int, level: OnLevel) -> str:
 
 def conditions_text(case: Case, write: Callable[[Any], str]) -> str:
     """``A = B, x0 = 0``: differences of two names as equations between them."""
-    return ", ".join(_equation(p, write) for p in case.conditions)
+    return equations_text(case.conditions, write)
+
+
+def equations_text(polynomials: Sequence[Any], write: Callable[[Any], str]) -> str:
+    """The same of polynomials that vanish."""
+    return ", ".join(_equation(p, write) for p in polynomials)
 
 
 def _equation(p: Any, write: Callable[[Any], str]) -> str:

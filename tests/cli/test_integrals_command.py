@@ -93,3 +93,15 @@ def test_bad_input_is_complained_about(words, told):
     done = run(*words)
     assert (done.exit_code, done.stdout) == (2, "")
     assert told in done.stderr.replace("'", "")
+
+
+def test_hess_relation_is_told_with_its_condition():
+    done = run(TOP, "--set", "y0=0", "--degree", "1", "--relations", "--json")
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("integrals"))
+    assert "A*x0*p + C*z0*r" in [one["formula"] for one in data["relations"]["relations"]]
+    told = run(TOP, *NUMBERS, "--set", "A=5", "--degree", "1", "--relations").stdout
+    assert "there are none (proved)" in told
+    text = run(TOP, "--set", "y0=0", "--degree", "1", "--relations").stdout
+    assert "A*x0*p + C*z0*r = 0" in text
+    assert "is undecided" in text

@@ -30,6 +30,7 @@ Example:
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
+from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
     Along,
     Case,
@@ -39,6 +40,8 @@ from mbsym.problems.polynomial_integrals.result import (
     OnLevel,
     PolynomialIntegrals,
     Polynomials,
+    Relation,
+    Relations,
     Special,
     Sure,
 )
@@ -55,12 +58,15 @@ __all__ = [
     "OnLevel",
     "PolynomialIntegrals",
     "Polynomials",
+    "Relation",
+    "Relations",
     "Special",
     "Sure",
     "along",
     "cases",
     "grading",
     "levels",
+    "linear_relations",
     "on_level",
     "polynomial_integrals",
 ]

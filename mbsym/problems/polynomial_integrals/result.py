@@ -158,3 +158,20 @@ class Polynomials:
     formulas: tuple[Formula, ...]
     levels: tuple[OnLevel, ...]
     on_levels: tuple[tuple[Formula, ...], ...]
+
+
+@dataclass(frozen=True)
+class Relation:
+    """df/dt = K f where ``conditions`` vanish and ``nonzero`` do not: proved by division."""
+
+    polynomial: Any
+    conditions: tuple[Any, ...]
+    nonzero: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Relations:
+    """Linear invariant relations; ``complete``: there are no others."""
+
+    relations: tuple[Relation, ...]
+    complete: bool
