@@ -78,6 +78,10 @@ def command(
         asked.complain("--set", "repeated-name", f"'{axis.name}' has an interval and a number", "leave one of them out")
     if asked.refused(None if system is None else file) or system is None or most is None:
         sys.exit(BAD_INPUT)
+    if not system.speeds:
+        told = "the equations are in angles and their rates, and are looked at in speeds and unit vectors"
+        complain(file, f"no integrals: {told}; declare 'speeds' and 'orientation' (mbsym explain description)")
+        sys.exit(FAILED)
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import integrals_of, setting

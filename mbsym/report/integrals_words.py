@@ -86,12 +86,12 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
                 {"weight": count.weight, "more": count.most - count.products},
             )
     if found.complete and not found.new:
-        yield "There is none beyond those of problem 7.", {}
+        yield "Up to weighted degree [[degree]] there is none beyond those of problem 7.", values
 
 
 _NONE = {
-    True: "There is none (proved for almost all values of the parameters).",
-    False: "There is none (proved).",
+    True: "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).",
+    False: "There is none up to weighted degree [[degree]] (proved).",
 }
 _DEPENDENT = {
     Sure.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
