@@ -207,13 +207,17 @@ class Tower(Algebra[Element]):
         return next(k for k in range(len(self.squares)) if root.top.degrees()[MOST_ROOTS - 1 - k])
 
     def sin_cos(self, angle: LinearForm) -> tuple[Element, Element]:
-        raise NoClosedForm("sines of parameters: give numbers for them")
+        raise NoClosedForm(
+            "sines and cosines of parameters or numbers in the coefficients: only square roots are exact here"
+        )
 
     def sin_cos_of(self, argument: Element) -> tuple[Element, Element]:
-        raise NoClosedForm("sines of parameters: give numbers for them")
+        raise NoClosedForm(
+            "sines and cosines of parameters or numbers in the coefficients: only square roots are exact here"
+        )
 
     def function(self, name: str, x: Element) -> Element:
-        raise NoClosedForm(f"{name} of a parameter: give a number for it")
+        raise NoClosedForm(f"{name} in the coefficients: only square roots are exact here")
 
     def enclosed(self, x: Element, values: Mapping[str, Any]) -> acb:
         """x at values of the parameters; roots by their principal values."""

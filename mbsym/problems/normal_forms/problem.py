@@ -9,6 +9,7 @@ from typing import Any
 from flint import acb, arb, ctx
 
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.point import Balls
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
@@ -29,7 +30,7 @@ from mbsym.problems.normal_forms.exact import (
     resonance,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
-from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms
+from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import equal_frequencies, judged
 
 #: Working precision of enclosures, in bits.
@@ -64,7 +65,7 @@ def normal_forms(
             at_values = None if values is None else at_numbers(to, values, None)
             symbols: Any = lambda: _in_symbols(found)  # noqa: E731
         else:
-            at_values = None if values is None else judged_field(found, values)
+            at_values = None if values is None else _judged_field(found, values)
             symbols = lambda: focus(found)  # noqa: E731
         in_symbols, why = known(symbols)
     return NormalForms(
@@ -76,6 +77,14 @@ def normal_forms(
         in_symbols=in_symbols,
         no_symbols=why,
     )
+
+
+def _judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
+    """With applied forces, at numbers: undecided where coefficients are no exact numbers (sines, exponentials)."""
+    try:
+        return judged_field(found, values)
+    except NoClosedForm:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
 
 
 def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resonant: Any) -> Judged:

@@ -101,6 +101,40 @@ def test_equal_frequencies_with_two_eigenvectors_are_left_open_unless_energy_is_
     assert (found.outcome, found.why) == (Outcome.UNDECIDED, Why.EQUAL_FREQUENCIES)
 
 
+@pytest.mark.parametrize(
+    ("omega", "further", "outcome", "theorem"),
+    [
+        # no resonance up to order 4; the cone of actions 7 I - 11 J + 19 K = 0 is spanned by (11, 7, 0) and (0, 19, 11)
+        ((7, -11, 19), "i*i + j*j + k*k", Outcome.FORMAL, Theorem.BRUNO),
+        (
+            (7, -11, 19),
+            "i*i - j*j + k*k",
+            Outcome.MOST,
+            Theorem.ARNOLD,
+        ),  # zero in the cone: 121 - 49 > 0, 121 - 361 < 0
+        ((7, -11, 19), "i*i - i*i", Outcome.UNDECIDED, Theorem.NONE),
+        ((1, -2, 5), "i*i + j*j + k*k", Outcome.UNDECIDED, Theorem.NONE),  # 2 w1 = w2
+        ((1, 2, 5), "i*i", Outcome.STABLE, Theorem.DEFINITE),
+    ],
+)
+def test_three_frequencies(omega: tuple[int, int, int], further: str, outcome: Outcome, theorem: Theorem) -> None:
+    def lowered(order: int) -> Truncated:
+        space = Space(6, order, acb(0), acb(1))
+        x = list(map(space.variable, range(6)))
+        i, j, k = ((x[n] * x[n] + x[3 + n] * x[3 + n]).scaled(acb("0.5")) for n in range(3))
+        whole = eval(further, {"i": i, "j": j, "k": k})
+        for action, frequency in zip((i, j, k), omega, strict=True):
+            whole = whole + action.scaled(acb(frequency))
+        return whole
+
+    def resonant(vector: tuple[int, ...], found: object) -> bool:
+        return sum(k * w for k, w in zip(vector, sorted(map(abs, omega), reverse=True), strict=True)) == 0
+
+    with ctx.workprec(200):
+        found = judged(lowered, resonant)
+    assert (found.outcome, found.theorem) == (outcome, theorem)
+
+
 def test_vectors_are_primitive_and_told_once() -> None:
     assert set(vectors(2, 3)) == {(1, 2), (2, 1), (1, -2), (2, -1)}
 
