@@ -124,5 +124,7 @@ def remarks(found: BoxMap) -> list[str]:
     if found.admissibility.left_out:
         told.append(f"not expressible in the axes, so not looked at: {', '.join(found.admissibility.left_out)}")
     if found.check is not None and found.check.holds and found.check.points:
-        told.append(f"check: the exact verdict at {counted(found.check.points, 'random point')} of boxes agrees")
+        told.append(
+            f"check: at {counted(found.check.points, 'random point')} of boxes the verdict at the point alone agrees"
+        )
     return told

@@ -75,6 +75,7 @@ def run(request: Request) -> int:
     """The exit code."""
     from mbsym.algebra.failures import Failure, TooLargeError
     from mbsym.analysis import Analysis
+    from mbsym.maps.irrational import irrational
     from mbsym.maps.line_map import line_map
     from mbsym.maps.mapping import plane_map
     from mbsym.maps.result import Of
@@ -88,11 +89,10 @@ def run(request: Request) -> int:
         from mbsym_cli.map_boxes import run_boxes
 
         return run_boxes(request)
-    started = time.perf_counter()
+    started, of = time.perf_counter(), Of(request.of)
     try:
         with watched(request.quiet, request.file.name) as watch:
             analysis = Analysis(request.system)
-            of = Of(request.of)
             found: PlaneMap | LineMap
             if len(request.axes) == 1:
                 found = line_map(analysis, request.axes[0], request.settings, of, watch)
@@ -102,6 +102,10 @@ def run(request: Request) -> int:
             files = _files(request, found)
         deliver(request.folder, files, "map")
     except Unfit as unfit:
+        if irrational(unfit) and len(request.axes) == 2 and of is Of.STABILITY:
+            from mbsym_cli.map_boxes import run_boxes
+
+            return run_boxes(request)
         asked = Options()
         complain_unfit(unfit.complaints, "--x/--y", asked)
         asked.refused(request.file)

@@ -24,6 +24,7 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, boundaries
 from mbsym.maps.check import Check, check_boxes
+from mbsym.maps.irrational import IrrationalSection, irrational, told
 from mbsym.maps.mapping import Judge, Watch, asked, box_of, unwatched
 from mbsym.maps.result import Of, Shape, Shown, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
@@ -89,32 +90,46 @@ def box_map(
 ) -> BoxMap:
     """The plane of two axes in boxes: halved down to 2^-depth of its area, ``most`` boxes.
 
+    Where matrices are no fractions of polynomials (``irrational``) enclosures prove them.
+
     Raises Unfit and Unavailable as ``plane_map`` does; TooLargeError where boundaries are too large and the matrices
     hold an irrational constant or no signature is asked of them.  KeyboardInterrupt ends the halving: what is proved
     is kept.
     """
     watch("first approximation", 0, 1)
-    there = section(analysis, axes, settings)
+    functions: IrrationalSection | None = None
+    try:
+        there = section(analysis, axes, settings)
+    except Unfit as unfit:
+        if not irrational(unfit) or of is not Of.STABILITY:
+            raise
+        functions, because = IrrationalSection(analysis, axes, settings, unfit.complaints), because or told(unfit)
+        there = functions.plain
     kept = admissibility(analysis, there)
     if kept.broken:
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
     prove: Any
+    found, method = Boundaries((), (), ()), Method.ENCLOSURES
     try:
-        found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+        if functions is None:
+            found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+            method = Method.BOUNDARIES
     except TooLargeError as error:
         if there.constant is not None or of is not Of.STABILITY:
             raise
-        found, because = Boundaries((), (), ()), because or str(error)
-        method, prove = Method.ENCLOSURES, _Enclosed(there, kept)
+        because = because or str(error)
+    if method is Method.BOUNDARIES:
+        prove = _bounded(there, kept, found)
     else:
-        method, prove = Method.BOUNDARIES, _bounded(there, kept, found)
+        prove = _Enclosed(there, kept, functions or ByEnclosures(there))
     made = subdivide(box_of(there.axes), prove, depth, most, watch)
     made = replace(made, tiles=tuple(_numbered(made.tiles)))
     checked = None
     if made.end is not End.INTERRUPTED:
         try:
-            checked = check_boxes(there, _tried(made), progress=watch)
+            judge = None if functions is None else functions.at
+            checked = check_boxes(there, _tried(made), judge, progress=watch)
         except KeyboardInterrupt:
             checked = None
     if checked is not None and not checked.holds:
@@ -142,7 +157,8 @@ def _tried(made: Subdivision[Stratum]) -> list[tuple[int, Judged, tuple[Rational
     judged = [tile for tile in made.tiles if tile.proved is not None and tile.proved.judged is not None]
     judged.sort(key=lambda tile: -tile.box.area)
     found = []
-    for tile in [*judged[: TRIED // 2], *source.sample(judged, min(TRIED // 2, len(judged)))]:
+    chosen = [*judged[: TRIED // 2], *source.sample(judged, min(TRIED // 2, len(judged)))]
+    for tile in chosen * (TRIED // len(chosen) if chosen else 0):  # where boxes are few, several points in each
         box, shares = tile.box, [fmpq(source.randint(0, 996), 996) for _ in range(2)]
         at = (box.x0 + (box.x1 - box.x0) * shares[0], box.y0 + (box.y1 - box.y0) * shares[1])
         if tile.proved is not None and tile.proved.judged is not None:
@@ -168,9 +184,8 @@ def _bounded(there: Section, kept: Admissibility, found: Boundaries) -> ByBounda
 class _Enclosed:
     """By enclosures, where what parameters have to keep is seen to be kept, or to be broken, in the whole box."""
 
-    def __init__(self, there: Section, kept: Admissibility) -> None:
-        self._section, self._kept = there, kept
-        self._verdicts = ByEnclosures(there)
+    def __init__(self, there: Section, kept: Admissibility, verdicts: ByEnclosures | IrrationalSection) -> None:
+        self._section, self._kept, self._verdicts = there, kept, verdicts
         self._minors = [minor for part in there.parts for minor in leading_minors(part.kinetic)]
 
     def __call__(self, box: Box, hint: Any) -> tuple[Stratum | None, Any]:

@@ -43,6 +43,7 @@ from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
 from mbsym.problems.stability.exact import RationalPoint, evaluated
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix
 from mbsym.problems.stability.state_matrix import state_matrix
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 #: In maps of few cells every cell is tried more than once, until so many points are.
@@ -129,17 +130,21 @@ def check(
 def check_boxes(
     section: Section,
     tried: Sequence[tuple[int, Judged, tuple[Rational, Rational]]],
+    verdict: Callable[[Rational, Rational], Verdict] | None = None,
     seed: int = 20261123,
     progress: Callable[[str, int, int], None] = nothing,
 ) -> Check:
     """(number, verdict, a point) of boxes: the exact verdict at the point, and balls, have to allow the box's one.
 
     Where a box's counts are not known its verdict may say less than that of a point; unstable and not must not mix.
+    ``verdict`` gives the one at a point where the section has no matrices; where it is undecided nothing is compared.
     """
     one = _Checking(section, Random(seed))
     for at, (number, judged, point) in enumerate(tried):
         progress("check", at, len(tried))
-        one.box(number, judged, point)
+        there = one.at(point) if verdict is None else verdict(*point)
+        if there.word is not Word.UNDECIDED or judged.right is not None:
+            one.box(number, judged, point, there)
     return one.result()
 
 
@@ -207,14 +212,16 @@ class _Checking:
         near = tuple(map(float, point))
         self.findings += [Finding(mistake, region=number, near=near) for mistake in wrong]
 
-    def box(self, number: int, judged: Judged, point: tuple[Rational, Rational]) -> None:
+    def at(self, point: tuple[Rational, Rational]) -> Verdict:
+        return self._judged(point).verdict
+
+    def box(self, number: int, judged: Judged, point: tuple[Rational, Rational], there: Verdict) -> None:
         """A point of a box; findings count it as a region."""
         if judged.right is not None:
             self.region(number, judged, point, (), ())
             return
         self.points += 1
-        there = self._judged(point)
-        if (there.verdict.word is Word.UNSTABLE) != (judged.verdict.word is Word.UNSTABLE):
+        if (there.word is Word.UNSTABLE) != (judged.verdict.word is Word.UNSTABLE):
             self.findings.append(Finding(Mistake.VERDICT, region=number, near=tuple(map(float, point))))
 
     def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:

@@ -93,6 +93,8 @@ class Constant:
 
 def constant_of(system: System, ring: Ring, indices: Sequence[int]) -> Constant | None:
     """The number through which all these generators are rational; None where there is none of the kinds above."""
+    if not indices:
+        return None
     generators = {k: ring.generators[k] for k in indices}
     if all(g.kind == "root" for g in generators.values()):
         return _root({k: g.argument for k, g in generators.items()})

@@ -215,14 +215,9 @@ def _section(
     """The section with a constant; what else is irrational joins ``irrational`` (generators of the ring)."""
     with analysis.strictly():
         linear, motion = analysis.judgeable, analysis.equilibrium
-    scene = analysis.parameters_scene
-    chosen = [axis.name for axis in axes]
-    given = {name: value for name, value in settings.items() if name not in chosen}
-    complaints = [*_determined(analysis.system, motion, [*chosen, *given]), *_against_signs(analysis, given)]
-    complaints += _dependent(scene, [*chosen, *given])
-    if complaints:
-        raise Unfit(complaints)
-    given = _remaining(analysis.system, chosen, given, motion) | given
+    scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
+    given = _given(analysis, chosen, settings, motion)
+    complaints: list[Complaint] = []
     context = context_of(chosen, constant)
     solved = {name: value.polynomial for name, value in motion.solved}
     images = Images(scene, chosen, context, given, solved, constant)
@@ -258,7 +253,41 @@ def _section(
     )
 
 
+def unmade(
+    analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction]
+) -> tuple[Section, tuple[LinearSystem, ...]]:
+    """(a section without parts, the parts in parameters), for matrices that are no polynomials in the axes.
+
+    Raises Unfit as ``section`` does, but for what the matrices hold.
+    """
+    with analysis.strictly():
+        linear, motion = analysis.judgeable, analysis.equilibrium
+    scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
+    given = _given(analysis, chosen, settings, motion)
+    context = context_of(chosen, None)
+    images = Images(scene, chosen, context, given, {name: value.polynomial for name, value in motion.solved}, None)
+    _motion_exists(motion, images)
+    known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
+    balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
+    parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
+    names = tuple(part.coordinates for part in parts)
+    plain = Section(tuple(axes), context, (), names, law.everywhere, law, (), given, given, images)
+    return plain, tuple(part.at(balance) for part in parts)
+
+
 # --- complaints about names -------------------------------------------------------------------------------------------
+
+
+def _given(
+    analysis: Analysis, chosen: Sequence[str], settings: Mapping[str, Fraction], motion: Equilibrium
+) -> dict[str, Fraction]:
+    """The numbers of what is no axis.  Raises Unfit for names that do not fit together."""
+    given = {name: value for name, value in settings.items() if name not in chosen}
+    complaints = [*_determined(analysis.system, motion, [*chosen, *given]), *_against_signs(analysis, given)]
+    complaints += _dependent(analysis.parameters_scene, [*chosen, *given])
+    if complaints:
+        raise Unfit(complaints)
+    return _remaining(analysis.system, chosen, given, motion) | given
 
 
 def _determined(system: System, motion: Equilibrium, chosen: Sequence[str]) -> list[Complaint]:
