@@ -1,0 +1,86 @@
+"""Problem 11 in files: schemas, and sentences in other languages."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import mbsym
+from mbsym.analysis.exceptional import exceptional
+from mbsym.mechanics.rest import given_values
+from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, Why
+from mbsym.report.exceptional_values import VANISHING, as_text
+from mbsym.report.normal_form_words import REASONS, THEOREMS, sentences
+from mbsym.report.results_json import render
+from mbsym.report.schemas import schema
+from mbsym.report.sections.normal_forms import PLAIN
+
+SYSTEMS = Path(__file__).parents[3] / "systems"
+SOFT = """
+mbsym: 1
+name: soft
+parameters: {w: {sign: positive}}
+bodies:
+  - {name: slider, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - {potential: w**2*x**2/2}
+  - {generalized force: {x: "FORCE"}}
+motion: {x: 0}
+values: {w: 2}
+"""
+
+
+def systems() -> dict[str, mbsym.Analysis]:
+    found = {name: mbsym.load(SYSTEMS / f"{name}.yaml", (6, 11)) for name in ("three-bodies", "heavy-top", "ziegler")}
+    for force in ("-x_dot**3", "x_dot**5", "x*x_dot**2 + x_dot**3"):
+        found[force] = mbsym.loads(SOFT.replace("FORCE", force), (6, 11))
+    return found
+
+
+def test_results_follow_the_schema() -> None:
+    for name, analysis in systems().items():
+        content = json.loads(render(analysis, (6, 11)))
+        wrong = [x.message for x in Draft202012Validator(schema("results")).iter_errors(content)]
+        assert wrong == [], name
+        assert "normal_forms" in content
+
+
+def test_exceptional_values_follow_the_schema() -> None:
+    for name, parameter, ends in (("three-bodies", "mu", (0, 1)), ("ziegler-damped", "P", (0, 10))):
+        analysis = mbsym.load(SYSTEMS / f"{name}.yaml")
+        values = given_values(analysis.system, {})
+        found = exceptional(analysis, parameter, (Fraction(ends[0]), Fraction(ends[1])), values)
+        content = json.loads(as_text(analysis.system, found))
+        assert [x.message for x in Draft202012Validator(schema("nonlinear")).iter_errors(content)] == []
+        assert len(content["between"]) == len(content["values"]) + 1
+
+
+def test_the_words_of_the_schemas_are_those_of_the_code() -> None:
+    judged = schema("results")["properties"]["normal_forms"]["properties"]["at_values"]["oneOf"][1]["properties"]
+    other = schema("nonlinear")["properties"]["between"]["items"]["properties"]
+    for one in (judged, other):
+        assert set(one["verdict"]["enum"]) == {x.value for x in Outcome}
+        assert set(one["theorem"]["enum"]) == {x.value for x in Theorem}
+        assert set(one["reason"]["enum"]) == {x.value for x in Why}
+    assert set(REASONS) == set(Why) - {Why.NONE}
+    assert set(THEOREMS) == set(Theorem) - {Theorem.NONE, Theorem.FIRST, Theorem.FOURTH, Theorem.REDUCTION}
+    assert len(set(VANISHING.values())) == len(VANISHING)
+
+
+@pytest.mark.parametrize("language", ["ru", "es"])
+def test_every_sentence_has_another_language(language: str) -> None:
+    known = import_module(f"mbsym.report.normal_forms_{language}").SENTENCES
+    told = {*REASONS.values(), *THEOREMS.values()}
+    for analysis in systems().values():
+        found: NormalForms = analysis.normal_forms
+        told |= {text for text, _ in sentences(found, PLAIN)}
+    assert told <= set(known)
+    for english, other in known.items():
+        gaps = [sorted(piece.split("]]")[0] for piece in text.split("[[")[1:]) for text in (english, other)]
+        assert gaps[0] == gaps[1], english
+        assert other.count("$") % 2 == 0, other
