@@ -63,7 +63,7 @@ def branches(
     remarks = _doubts(bifurcating, leaving, changing)
     of_all = (bifurcating, leaving, changing)
     numbers = _distinct([x for one in of_all for x in (*(y.number for y in one.points), *one.continua)])
-    count_proved = not (bifurcating.unfinished or leaving.unfinished or bifurcating.throughout)
+    count_proved = not any(one.unfinished or one.throughout for one in (bifurcating, leaving))
     intervals: list[Interval] = []
     pieces: list[Piece] = []
     criticals: list[Critical] = []
@@ -78,7 +78,7 @@ def branches(
             intervals.append(Interval(low, high, sample, found.equilibria, constant))
         for k, number in enumerate(numbers):
             watch("critical values", k, len(numbers))
-            meetings, reason = _meetings(parts, number)
+            meetings, reason, singular = _meetings(parts, number)
             if meetings is not None and isinstance(number, fmpq):
                 at = Fraction(int(number.p), int(number.q))
                 meetings = _judged(meetings, equilibria(system, {**values, axis.name: at}, limits=bounds))
@@ -89,7 +89,7 @@ def branches(
                     number,
                     meetings,
                     _among(number, bifurcating.continua),
-                    _among(number, [*leaving.continua, *(x.number for x in leaving.points)]),
+                    singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)]),
                     None,
                 )
             )
@@ -155,24 +155,31 @@ def _sample(low: Number, high: Number) -> Fraction:
     return Fraction(int(found.p), int(found.q))
 
 
-def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ...] | None, str]:
-    """The equilibria at a critical value, each configuration once, and why there are none to tell."""
+def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ...] | None, str, bool]:
+    """The equilibria at a critical value, each configuration once, and why there are none to tell.
+
+    Last, whether there are solutions at which the coordinates are singular: they are not counted.
+    """
     points: list[CurvePoint] = []
     for part in parts:
         try:
             found = part.where([], number)
         except Failure as reason:
-            return None, str(reason)
+            return None, str(reason), False
         if found.unfinished:
-            return None, "; ".join(found.unfinished)
+            return None, "; ".join(found.unfinished), False
         for x in found.points:
-            if not any(x.same(y) for y in points):
+            if not x.beyond and not any(x.same(y) for y in points):
                 points.append(x)
     told = []
+    singular = False
     for x in points:
-        values = x.curve.search._values(x.place)
-        told.append(Meeting(values, x.curve.label, named(x), x.curve.search.verdict(x.place)))
-    return tuple(told), ""
+        verdict = x.curve.search.verdict(x.place)
+        if verdict.coordinates_singular:
+            singular = True
+        else:
+            told.append(Meeting(x.curve.search._values(x.place), x.curve.label, named(x), verdict))
+    return tuple(told), "", singular
 
 
 def _judged(meetings: Sequence[Meeting], found: Equilibria) -> tuple[Meeting, ...]:

@@ -28,22 +28,28 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.charts import Chart, charts
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.equilibria import WITHIN, _ChartSearch
+from mbsym.problems.equilibria import EXACT, WITHIN, _ChartSearch
 from mbsym.problems.rest_place import PRECISION, Place
 from mbsym.problems.rest_unknowns import Unknowns
 
+#: The determinant of M is not formed for more coordinates.
+MOST_COORDINATES = 6
 #: Values of coordinates (or of their sines and cosines) at which real points of a family are looked for.
 _TRIED = (fmpq(3, 5), fmpq(-4, 5), fmpq(5, 13), fmpq(1, 10), fmpq(-1, 10), fmpq(0), fmpq(1))
 
 
 @dataclass(frozen=True)
 class CurvePoint:
-    """A point (q, p) of the curve: ``place`` with p among its exact values, ``number`` is p itself."""
+    """A point (q, p) of the curve: ``place`` with p among its exact values, ``number`` is p itself.
+
+    ``beyond``: a length of polar coordinates is negative there, and it is no state of the system meant.
+    """
 
     place: Place
     number: Number
     features: tuple[Any, ...]
     curve: Curve
+    beyond: bool = False
 
     def same(self, other: CurvePoint) -> bool:
         """Whether they are one configuration at one p: balls of features that are equal overlap."""
@@ -226,7 +232,8 @@ class Curve:
     def _point(self, table: Unknowns, one: AlgebraicPoint, p: Number) -> CurvePoint:
         place = self.search._place(table, one)
         place.balls[self.parameter] = one.enclosure(one.values[table.indices.index(self.index)], PRECISION)
-        return CurvePoint(place, p, self.search._features(place), self)
+        candidate = self.search._candidate(place, EXACT)
+        return CurvePoint(place, p, candidate.features, self, bool(candidate.beyond))
 
     def _constant_on(self, table: Unknowns, family: Family) -> bool:
         """Whether p has one value on a family, near its sample: fixed there it does not make the family smaller."""
@@ -248,7 +255,20 @@ class Curve:
         for x in (*beside, *roots):
             parts.append(self._without_conditions([x]))
         parts += self._at_infinity()
-        return joined(parts)
+        return joined([*parts, self._massless()])
+
+    def _massless(self) -> Found:
+        """Where det M = 0: the coordinates are singular, and what is found there is not counted.
+
+        Where it vanishes all along a branch, other branches meet that one in singular points only.
+        """
+        mass = self.found.mass_matrix()
+        if len(mass) > MOST_COORDINATES:
+            return Found((), (), False, ("where the mass matrix is singular is not looked at",))
+        det = self.ring.reduce(determinant(mass))
+        if det.is_constant():
+            return Found((), (), False, ())
+        return replace(self.where([det]), throughout=False)
 
     def _without_conditions(self, further: Sequence[Polynomial]) -> Found:
         kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)

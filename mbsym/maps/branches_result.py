@@ -53,7 +53,7 @@ class Critical:
     """A value of the parameter at which something happens, or may: ``number`` is exact.
 
     ``meetings``: the equilibria there; None where they could not be counted.  ``continuum``: some are not isolated.
-    ``border``: an unknown goes to infinity, a root or a denominator to zero there, on some solution.
+    ``border``: on some solution an unknown is at infinity, a root or a denominator zero, or the mass matrix singular.
     ``balance``: whether the counts on both sides agree with the events named (None: an end, or nothing to compare).
     """
 

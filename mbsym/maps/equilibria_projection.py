@@ -21,6 +21,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_back, _Solver, context
 from mbsym.algebra.ring import Polynomial
+from mbsym.maps.branches_curve import MOST_COORDINATES
 from mbsym.mechanics.charts import Chart, charts
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
@@ -111,6 +112,12 @@ class Surface:
         used = occurring(self.search.equations)
         roots = [ring.context.gen(k) for k in used if ring.generators[k].kind == "root"]
         found = [self.over([x], inside=False) for x in (*beside, *roots)]
+        mass = self.chart.found.mass_matrix()
+        if len(mass) > MOST_COORDINATES:
+            found.append(Projected((), False, ("where the mass matrix is singular is not looked at",)))
+        elif not (det := ring.reduce(determinant(mass))).is_constant():
+            # all along a surface: other equilibria meet it where they are singular
+            found.append(replace(self.over([det]), everywhere=False))
         lengths = [name for name in self.names if not self.search._periodic(name)]
         if not lengths:
             return found

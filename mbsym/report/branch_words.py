@@ -31,7 +31,7 @@ _DOUBTS = {
     Doubt.FAMILIES: "at a sample there are infinitely many equilibria, which are not followed",
 }
 
-_BORDER = "an unknown goes to infinity, or a root or denominator to zero"
+_BORDER = "equilibria at infinity or at a border (a root or denominator is zero, or the mass matrix singular)"
 _CHANGE = "the verdict of a branch changes"
 _DIFFER = "the verdicts at the samples on both sides differ"
 
@@ -43,7 +43,7 @@ _RUSSIAN = {
     EVENTS[Event.PITCHFORK]: "вилка",
     EVENTS[Event.CONTINUUM]: "бесконечно много равновесий при одном значении",
     EVENTS[Event.DEGENERATE]: "вырожденная точка, без названия",
-    _BORDER: "неизвестное уходит в бесконечность, либо корень или знаменатель обращается в нуль",
+    _BORDER: "равновесия на бесконечности или на границе (корень или знаменатель нуль, либо матрица масс вырождена)",
     _CHANGE: "вывод об устойчивости ветви меняется",
     _DIFFER: "выводы в пробных точках по обе стороны различны",
     "stable": "устойчивые",
@@ -65,7 +65,7 @@ _SPANISH = {
     EVENTS[Event.PITCHFORK]: "horquilla",
     EVENTS[Event.CONTINUUM]: "infinitos equilibrios en un solo valor",
     EVENTS[Event.DEGENERATE]: "punto degenerado, sin nombre",
-    _BORDER: "una incógnita tiende a infinito, o una raíz o un denominador se anula",
+    _BORDER: "equilibrios en el infinito o en un borde (raíz o denominador nulo, o matriz de masas singular)",
     _CHANGE: "cambia el veredicto de una rama",
     _DIFFER: "los veredictos en las muestras de ambos lados difieren",
     "stable": "estables",

@@ -171,6 +171,18 @@ def test_a_torque_beyond_that_of_gravity_leaves_no_equilibrium(tmp_path: Path) -
     assert counts(there) == [(0, 0), (2, 1), (0, 0)]
 
 
+def test_what_comes_out_of_singular_coordinates_is_no_event_with_a_name() -> None:
+    # the conical pendulum leaves the vertical, where its azimuth is singular, at l Omega^2 = g
+    conical = found(SHIPPED / "spherical-pendulum.yaml", "Omega", "1", "5")
+    assert [x.number.polynomial.coeffs() for x in conical.criticals] == [[-981, 0, 100]]
+    assert [(x.balance, x.events, conical.leaves(x)) for x in conical.criticals] == [(None, (), True)]
+    assert counts(conical) == [(0, 0), (2, 2)]
+    # the spring stands upright with the length l0 - m g/k, which is positive for k > m g/l0 = 9.81
+    upright = found(SHIPPED / "spring-pendulum.yaml", "k", "1", "20")
+    assert [x.number for x in upright.criticals if upright.happens(x)] == [fmpq(981, 100)]
+    assert counts(upright) == [(1, 1), (2, 1)]
+
+
 @cache
 def gyrostat() -> Branches:
     return found(SHIPPED / "orbital-gyrostat.yaml", "h", "0", "10")
