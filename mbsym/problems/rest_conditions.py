@@ -1,0 +1,130 @@
+"""The conditions of rest in one set of coordinates, and whether they can be solved exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.polynomial_systems import (
+    Limits,
+)
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.charts import Chart, moments
+
+
+class Conditions:
+    """f = 0 in one chart as polynomials, what must not vanish, and which coordinates occur."""
+
+    def __init__(self, chart: Chart, within: float, limits: Limits) -> None:
+        self.chart, self.found, self.within, self.limits = chart, chart.found, within, limits
+        self.ring: Ring = chart.found.ring
+        self.remarks: list[str] = []
+        self.complete = True
+
+    def _conditions(self) -> None:
+        found, ring = self.found, self.ring
+        forcing = list(found.at_rest)
+        for joint, other in zip(self.chart.joints, self.chart.replaced, strict=True):
+            # Where the angles are regular these follow, and with them the exact solution is much faster.
+            forcing += () if other else moments(found, joint)
+        polynomials = [y for x in forcing for y in self._for_all_times(x)]
+        self.equations: list[Polynomial] = []
+        self.nonzero: list[Polynomial] = []
+        self.impossible = False
+        for x in (*polynomials, *self.chart.restrictions):
+            numerator, denominators = ring.fraction(x)
+            self.nonzero += [factor for factor, _ in denominators]
+            if numerator.is_constant() and not numerator.is_zero():
+                self.impossible = True
+            elif not numerator.is_zero():
+                self.equations.append(numerator)
+        used = set(occurring(self.equations))
+        self.occurring = tuple(name for name in found.constant if any(ring.depends_on(x, name) for x in self.equations))
+        self.free = tuple(name for name in found.constant if name not in self.occurring)
+        usual = [
+            x for x in self.chart.nonzero if any(ring.generators[k].name in self.occurring for k in occurring([x]))
+        ]
+        self.nonzero += usual
+        self.singular_where = usual
+        self.reason = self._obstacle(used)
+
+    def _for_all_times(self, x: Polynomial) -> Iterator[Polynomial]:
+        """What must vanish so that x does at all times: its coefficients with respect to what moves."""
+        ring = self.ring
+        moving = [*self.found.turning, *(item.name for item in self.found.system.prescribed), "t"]
+        present = ring.dependencies(x, moving)
+        if not present:
+            yield x
+            return
+        self.remarks.append(
+            f"the equations vary with {', '.join(present)}: a relative equilibrium has to satisfy them at all times"
+        )
+        indices = [
+            k
+            for k, g in enumerate(ring.generators)
+            if g.name in present
+            and g.argument is None
+            and g.kind in ("sine", "cosine", "coordinate", "prescribed", "time")
+        ]
+        parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+        for monomial, coefficient in x.terms():
+            rest_of = list(monomial)
+            for k in indices:
+                rest_of[k] = 0
+            parts.setdefault(tuple(monomial[k] for k in indices), {})[tuple(rest_of)] = coefficient
+        if len(present) > 1:
+            self._incomplete(
+                f"the equations vary with {', '.join(present)}; only solutions for all values of each are listed"
+            )
+        for terms in parts.values():
+            part = ring.context.from_dict(terms)
+            if ring.dependencies(part, moving):
+                raise NoClosedForm(f"the equations vary with {', '.join(present)} in a way that cannot be separated")
+            yield part
+
+    def _obstacle(self, used: set[int]) -> str:
+        """Why the equations are not polynomials in sines, cosines and plain coordinates; empty if they are."""
+        ring = self.ring
+        pending, seen = list(used), set()
+        kinds: dict[str, set[str]] = {}
+        while pending:
+            k = pending.pop()
+            if k in seen:
+                continue
+            seen.add(k)
+            g = ring.generators[k]
+            if g.kind == "function" or (g.kind in ("sine", "cosine") and g.argument is not None):
+                what = "a number" if ring.constant_value(g.argument) is not None else "something that is no angle"
+                return f"{'sine and cosine' if g.kind != 'function' else g.name} of {what}"
+            if g.argument is not None:
+                pending += occurring([g.argument])
+            elif g.kind in ("sine", "cosine", "coordinate"):
+                kinds.setdefault(g.name, set()).add("plain" if g.kind == "coordinate" else "angle")
+            else:
+                return f"{g.name} is transcendental"
+        mixed = [name for name, both in kinds.items() if len(both) > 1]
+        return f"{', '.join(sorted(mixed))} occurs both as an angle and outside sine and cosine" if mixed else ""
+
+    def _incomplete(self, remark: str) -> None:
+        self.complete = False
+        self.remarks.append(remark)
+
+    def _periodic(self, name: str) -> bool:
+        """Whether it occurs as an angle only: not outside of its sine and cosine, nor in a function or another sine."""
+        return self.ring.has("sine", name) and self.ring.index("coordinate", name) not in self._reached
+
+    @cached_property
+    def _reached(self) -> frozenset[int]:
+        """The generators of the equations and, however deep, those that adjoined ones are made of."""
+        reached: set[int] = set()
+        pending = [*occurring(self.equations)]
+        while pending:
+            k = pending.pop()
+            if k not in reached:
+                reached.add(k)
+                argument = self.ring.generators[k].argument
+                pending += [] if argument is None else [*occurring([argument])]
+        return frozenset(reached)
