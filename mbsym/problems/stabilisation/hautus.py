@@ -80,12 +80,15 @@ def annihilator(inputs: Rows, known: Signs, size: int) -> tuple[Polynomial, Rows
     zero = known.context.constant(0)
     unit = [[zero + (1 if i == j else 0) for j in range(size)] for i in range(size)]
     width = len(inputs[0]) if inputs and inputs[0] else 0
-    for rank in range(min(size, width), 0, -1):
-        if comb(size, rank) * comb(width, rank) > MOST_BLOCKS:
+    # Minors with a row or a column of zeros vanish: of thirty coordinates with one damper a single one is left.
+    lines = [i for i in range(size) if width and any(x != 0 for x in inputs[i])]
+    across = [j for j in range(width) if any(inputs[i][j] != 0 for i in lines)]
+    for rank in range(min(len(lines), len(across)), 0, -1):
+        if comb(len(lines), rank) * comb(len(across), rank) > MOST_BLOCKS:
             raise TooLargeError("too many minors")
         best: tuple[int, Polynomial, tuple[int, ...], tuple[int, ...]] | None = None
-        for at in combinations(range(size), rank):
-            for columns in combinations(range(width), rank):
+        for at in combinations(lines, rank):
+            for columns in combinations(across, rank):
                 minor = determinant([[inputs[i][j] for j in columns] for i in at])
                 if minor == 0:
                     continue

@@ -118,7 +118,8 @@ def _damping(scene: Scene[Any], damped: Matrix, values: Values) -> Any | None:
 
 
 def _block(matrix: Matrix, at: Sequence[int]) -> Matrix:
-    return Matrix.of(matrix[0, 0].ring, [[matrix.polynomials[i][j] for j in at] for i in at])
+    rows = matrix.polynomials
+    return Matrix.of(matrix[0, 0].ring, [[rows[i][j] for j in at] for i in at])
 
 
 def _cleared(scene: Scene[Any], matrices: Sequence[Matrix | None], signs: Signs) -> Cleared | None:
