@@ -40,6 +40,7 @@ COMMANDS = {
     "map": Listed("map", "Divide a plane of parameters into regions of one verdict."),
     "groups": Listed("groups", "Find the dimensionless groups of a system."),
     "average": Listed("average", "Average a system over a fast phase."),
+    "expand": Listed("expand", "Expand in a small parameter: the slow integral manifold, checked."),
     "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),

@@ -8,7 +8,7 @@ is in the groups.  Values follow: those of the groups, and the initial state in 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -25,6 +25,7 @@ from mbsym.expressions.tree import (
     substitute,
     text,
 )
+from mbsym.model.small import SmallParameter
 from mbsym.model.substitution import folded, put
 from mbsym.model.system import Body, InitialValue, Parameter, System, rational
 from mbsym.model.units import Units
@@ -99,8 +100,18 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
         parameters=tuple(parameters),
         initial=tuple(_initial(system.initial, found, known)),
         time_scale=scale if scale is not None and names(scale) else None,
+        small=_small(system, {one.name for one in parameters}),
         notation=tuple(item for item in changed.notation if names(item.value)),
     )
+
+
+def _small(system: System, kept: Collection[str]) -> SmallParameter | None:
+    """The small parameter, where what it belongs to is still there."""
+    small = system.small
+    if small is None:
+        return None
+    needed = {name for name, _ in small.powers} or {small.name}
+    return small if needed <= set(kept) else None
 
 
 def _accepted(body: Body) -> Body:

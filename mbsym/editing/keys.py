@@ -25,6 +25,7 @@ from mbsym.source.keys import (
     ROTATION,
     SHAPE,
     SIGNS,
+    SMALL_PARAMETER,
     SYSTEM,
     TABLE,
 )
@@ -57,6 +58,8 @@ def keys_in(path: tuple[str, ...]) -> Mapping[str, str]:
             return ROTATION
         case ("bodies", *_, key):
             return _IN_BODY.get(key, {})
+        case ("small parameter", _):
+            return SMALL_PARAMETER
         case ("linear system",):
             return LINEAR_SYSTEM
         case ("linear system", _):

@@ -37,6 +37,7 @@ from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
 from mbsym.model.linear import LinearModel
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
+from mbsym.model.small import SmallParameter
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
 
@@ -228,6 +229,7 @@ class System(GuessesNames):
     ``start`` are initial values of declared variables, speeds and components of unit vectors and quaternions, as
     ``initial`` are of coordinates.
     ``dependent`` are the coordinates that the constraints express by the others; empty where that is left to mbsym.
+    ``small`` is the parameter in whose powers expansions are made.
     ``linear`` holds the matrices of a system that is given by these; it has no bodies then.
     """
 
@@ -260,6 +262,7 @@ class System(GuessesNames):
     inputs: tuple[Input, ...] = ()
     outputs: tuple[Output, ...] = ()
     linear: LinearModel | None = None
+    small: SmallParameter | None = None
 
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"

@@ -16,7 +16,7 @@ from mbsym.model.constraints import Constraint
 from mbsym.model.driven import with_held
 from mbsym.model.system import INERTIAL, LANGUAGES, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
-from mbsym.source.checks import check_body, check_system
+from mbsym.source.checks import check_body, check_system, in_formulas
 from mbsym.source.claims import read_abbreviations, read_claims
 from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
 from mbsym.source.inputs import held_values, read_inputs, read_outputs
@@ -35,6 +35,7 @@ from mbsym.source.settings import (
     read_notation,
     read_relations,
 )
+from mbsym.source.small import read_small
 from mbsym.source.speeds import check_speeds, declare_speeds, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
@@ -112,6 +113,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         linear=matrices,
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
+    small = read_small(fields.get("small parameter"), reading, in_formulas(system))
+    system = replace(system, small=small)
     names = [body.name for body in bodies]
     claims = read_claims(fields.get("claims"), names, system, reading)
     system = replace(system, claims=claims)

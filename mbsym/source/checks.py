@@ -283,6 +283,12 @@ def _check_use(system: System, reading: Reading) -> None:
             reading.complaints.warning("unused-name", message, span, "leave it out, or put it where it belongs")
 
 
+def in_formulas(system: System) -> frozenset[str]:
+    """The names that formulas of bodies, loads, constraints, prescribed motions and relations hold."""
+    held = (system.bodies, system.loads, system.constraints, system.prescribed, system.relations, system.linear)
+    return frozenset(_occurring(held)) | {one.name for one in system.relations}
+
+
 def _occurring(value: object) -> Iterator[str]:
     """The names in all expressions that a value holds."""
     if isinstance(value, Name):

@@ -28,6 +28,8 @@ SYSTEM = {
     "the rest of all at 0",
     "notation": "own symbols for groups of parameters, in order: later ones may use earlier ones",
     "dimensionless time": "a rate w; problems 5 and 6 then use the time tau = w*t",
+    "small parameter": "a parameter in whose powers 'mbsym expand' expands, or {eps: {powers: {e: 1, p2: -1}}}: "
+    "e eps and p2/eps stand for e and p2",
     "values": "numerical values of parameters: {l: 2}",
     "initial": "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0); "
     "declared variables have values, {p: 0.1, e0: 1}",
@@ -58,6 +60,13 @@ PRESCRIBED = {
 INPUT = {
     "meaning": "what it is, for reports",
     "unit": "its unit, such as N*m or N",
+}
+
+SMALL_PARAMETER = {
+    "powers": "{e: 1, p2: -1}: in place of e and p2 stand e*eps and p2/eps, with a name eps of its own; when left out, "
+    "the small parameter is one of the parameters",
+    "fast": "the variables that a slow manifold expresses by the others: [x, y]; found when left out",
+    "slow": "variables that are not among the fast ones: [p, q]",
 }
 
 LINEAR_SYSTEM = {

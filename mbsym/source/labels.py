@@ -7,6 +7,7 @@ HEADER = {
     "description": "description",
     "number of bodies": "number of bodies",
     "dimensionless time": "dimensionless time",
+    "small parameter": "small parameter",
     "source": "source",
     "language": "language",
     "order": "order",

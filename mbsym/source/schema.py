@@ -33,11 +33,13 @@ from mbsym.source.keys import (
     ROTATION,
     SHAPE,
     SIGNS,
+    SMALL_PARAMETER,
     SYSTEM,
     TABLE,
     VERSION,
 )
 from mbsym.source.linear import MOST_COORDINATES
+from mbsym.source.small import MOST_POWER
 from mbsym.source.speeds import ANGLES, COSINES, QUATERNION
 from mbsym.source.symbols import LONGEST
 from mbsym.source.tables import MAX_POINTS
@@ -106,6 +108,7 @@ def _system_values() -> dict[str, Schema]:
         "motion": _named({"anyOf": [expression, _record(MOTION, {})]}),
         "notation": _named(expression),
         "values": _named(expression),
+        "small parameter": _small_parameter(names),
         "initial": _named({"anyOf": [expression, _record(INITIAL, {})]}),
         "abbreviations": _named(expression),
         "units": _named(_UNIT),
@@ -133,6 +136,13 @@ def _table_values() -> dict[str, Schema]:
 def _table_record() -> Schema:
     """A table has points, or a file of them."""
     return {**_record(TABLE, _table_values()), "oneOf": [{"required": ["points"]}, {"required": ["file"]}]}
+
+
+def _small_parameter(names: Schema) -> Schema:
+    """A name, or one name with what is said of it."""
+    powers = _named({"type": "integer", "minimum": -MOST_POWER, "maximum": MOST_POWER})
+    record = _record(SMALL_PARAMETER, {"powers": powers, "fast": names, "slow": names})
+    return {"anyOf": [{"type": "string", "pattern": _NAME}, {**_named(record), "minProperties": 1, "maxProperties": 1}]}
 
 
 def _linear_record() -> Schema:

@@ -30,6 +30,7 @@ from mbsym.model.loads import (
     Torque,
     UniformGravity,
 )
+from mbsym.model.small import SmallParameter
 from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import Body, Inertia, InitialValue, MotionEntry, Parameter, Point, Prescribed, System, Vector
 from mbsym.model.system import Shape as Look
@@ -69,6 +70,18 @@ def motion_shapes(system: System) -> dict[str, Shape]:
     """The unperturbed motion of coordinates, and the values at which inputs are held there."""
     shapes = {one.coordinate: motion_shape(one) for one in system.motion}
     return shapes | {one.name: text(one.held) for one in system.inputs if one.held != ZERO}
+
+
+def small_shape(small: SmallParameter) -> Shape:
+    """The name alone where nothing more is said."""
+    said: dict[str, Shape] = {}
+    if small.powers:
+        said["powers"] = {name: str(power) for name, power in small.powers}
+    if small.fast:
+        said["fast"] = [*small.fast]
+    if small.slow:
+        said["slow"] = [*small.slow]
+    return {small.name: said} if said else small.name
 
 
 def table_shape(table: Table) -> dict[str, Shape]:

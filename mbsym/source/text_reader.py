@@ -129,6 +129,9 @@ class TextReader:
             if word == "reactions" and isinstance(read, Sequence):  # bodies by their numbers
                 named = (self.body_reference(x) if isinstance(x, Scalar) else x for x in read.items)
                 read = Sequence(tuple(named), read.span)
+            if word == "small parameter":
+                entries.append(Entry(key_of(label, word), self.small(value)))
+                continue
             entries.append(Entry(key_of(label, HEADER[word]), read))
         return entries
 
@@ -186,6 +189,29 @@ class TextReader:
         if entry.key.text != "points" or not isinstance(value, Scalar):
             return entry
         return Entry(entry.key, self.nested(items(value)))
+
+    def small(self, value: Scalar) -> Node:
+        """``eps``, or ``eps; powers = (e, 1, p2, -1); fast = (x, y)``: a mapping of the name to the rest."""
+        read = self.record(value, "name")
+        if not isinstance(read, Mapping):
+            return read
+        name = next((one.value for one in read.entries if one.key.text == "name"), value)
+        entries = []
+        for one in read.entries:
+            if one.key.text == "name" or not isinstance(one.value, Scalar):
+                continue
+            listed = items(one.value)
+            if one.key.text == "powers":
+                flat = [x for x in listed.items if isinstance(x, Scalar)] if isinstance(listed, Sequence) else []
+                if len(flat) % 2:
+                    self.error("syntax", "here pairs of a parameter and its power are wanted", one.value.span)
+                pairs = zip(flat[::2], flat[1::2], strict=False)
+                entries.append(Entry(one.key, Mapping(tuple(Entry(a, b) for a, b in pairs), one.value.span)))
+            else:
+                entries.append(Entry(one.key, listed))
+        if not isinstance(name, Scalar):
+            return value
+        return Mapping((Entry(name, Mapping(tuple(entries), value.span)),), value.span)
 
     def nested(self, read: Node) -> Node:
         """A list whose items may be lists."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mbsym.expressions.tree import ZERO, text
 from mbsym.model.claims import BODY, CLAIMS
+from mbsym.model.small import SmallParameter
 from mbsym.model.system import Body, Shape, System, Vector
 from mbsym.source.shape import Shape as Data
 from mbsym.source.shape import (
@@ -43,6 +44,8 @@ def to_text(system: System) -> str:
     lines.append(f"Number of bodies: {len(system.bodies)}")
     if system.time_scale is not None:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")
+    if system.small is not None:
+        lines.append(f"Small parameter: {_small(system.small)}")
     lines += _section("Parameters", {one.name: _record(parameter_shape(one), "sign") for one in system.parameters})
     motions = {one.name: _record(prescribed_shape(one), "rate") for one in system.prescribed}
     lines += _section("Prescribed motions", motions)
@@ -76,6 +79,15 @@ def to_text(system: System) -> str:
     for number, claim in enumerate(system.claims, start=1):
         lines += ["", f"Claim description ({number})", *_claim(claim_shape(claim, system), numbers)]
     return "\n".join(lines) + "\n"
+
+
+def _small(small: SmallParameter) -> str:
+    """``eps``, or ``eps; powers = (e, 1, p2, -1); fast = (x, y)``."""
+    parts = [small.name]
+    if small.powers:
+        parts.append(f"powers = ({', '.join(f'{name}, {power}' for name, power in small.powers)})")
+    parts += [f"{key} = ({', '.join(names)})" for key, names in (("fast", small.fast), ("slow", small.slow)) if names]
+    return "; ".join(parts)
 
 
 def _section(title: str, entries: dict[str, str]) -> list[str]:

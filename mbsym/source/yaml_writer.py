@@ -22,6 +22,7 @@ from mbsym.source.shape import (
     motion_shapes,
     parameter_shape,
     prescribed_shape,
+    small_shape,
     table_shape,
 )
 
@@ -60,6 +61,8 @@ def to_yaml(system: System) -> str:
     lines += _list("assumptions", [scalar_text(one) for one in assumptions])
     if system.time_scale is not None:
         lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
+    if system.small is not None:
+        lines += ["", f"small parameter: {_flow(small_shape(system.small))}"]
     lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in (*system.initial, *system.start)})
     lines += _mapping("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
     lines += _mapping("latex", {one.name: one.latex for one in system.symbols})

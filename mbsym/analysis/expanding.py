@@ -1,0 +1,164 @@
+"""Problem 12 of a system: its equations sorted by the small parameter, the slow manifold, whether it attracts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq
+
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.quotients import Quotient, Series
+from mbsym.algebra.signs import Condition
+from mbsym.algebra.signs import conditions as sharpest
+from mbsym.formulas.formula import Formula
+from mbsym.model.small import SmallParameter
+from mbsym.problems.small_parameter import slow
+from mbsym.problems.small_parameter.checks import residual_orders
+from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold
+from mbsym.problems.small_parameter.scaled import scaled
+from mbsym.problems.small_parameter.steady import steady_states
+from mbsym.problems.vector_field import Transfer, in_speeds
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """The manifold with the ring in which it is told.
+
+    ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have
+    negative real parts for all sufficiently small eps > 0, with what that takes of the parameters.
+    """
+
+    manifold: SlowManifold
+    transfer: Transfer
+    names: tuple[str, ...]
+    missing: str
+    fast: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
+    slow: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
+
+    def formula(self, c: Quotient) -> Formula:
+        """A coefficient as a formula of the description."""
+        ring, context = self.transfer.ring, self.transfer.context
+        places = [(*self.transfer.parameters, *self.transfer.variables).index(name) for name in self.names]
+
+        def back(p: Any) -> Any:
+            terms = {}
+            for monomial, number in p.to_dict().items():
+                exponents = [0] * len(context.names())
+                for k, power in zip(places, monomial, strict=True):
+                    exponents[k] = power
+                terms[tuple(exponents)] = number
+            return self.transfer.back(context.from_dict(terms))
+
+        top, bottom = back(c.top), back(c.bottom)
+        return Formula(ring, ring.times(top, ring.reciprocal(bottom)) if not c.bottom.is_constant() else top)
+
+
+def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | None = None) -> Expansion:
+    """The slow manifold up to eps^order, checked.  Raises NoClosedForm where there is none, or it cannot be had."""
+    small = analysis.system.small
+    if small is None:
+        raise NoClosedForm("the description names no small parameter", remedy="add 'small parameter: eps'")
+    form = analysis.speed_form
+    if form is None:
+        raise NoClosedForm("expansions are made of equations in speeds", remedy="declare 'speeds' in the bodies")
+    equations: Any = analysis.equations
+    motion = _motion(analysis)
+    steady = () if isinstance(motion, str) else tuple(motion.values())
+    whole, transfer = in_speeds(form, equations, steady)
+    numbers = {n: fmpq(x.numerator, x.denominator) for n, x in (values or {}).items() if n in whole.parameters}
+    for name in (small.name, *(scaled_one for scaled_one, _ in small.powers)):
+        if name in (values or {}):
+            raise NoClosedForm(f"{name} depends on the small parameter: it cannot be a number")
+    field = whole.at(numbers) if numbers else whole
+    if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
+        raise NoClosedForm(f"the equations do not depend on {small.name}")
+    there = scaled(field, small.name, dict(small.powers))
+    fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
+    functions = slow.manifold(there, fast, order)
+    moving = slow.flow(there, fast, functions, order)
+    found = SlowManifold(
+        there,
+        order,
+        fast,
+        tuple(moving),
+        tuple(functions),
+        tuple(moving.values()),
+        residual_orders(there, fast, functions),
+    )
+    if not found.verified:
+        raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
+    names = tuple(field.context.names())
+    if isinstance(motion, str):
+        return Expansion(found, transfer, names, motion)
+    try:
+        at = {n: _quotient(transfer, names, numbers, x) for n, x in motion.items()}
+        for name in (*fast, *moving):
+            at.setdefault(name, Quotient.of(field.context.constant(0)))
+        steady_found = steady_states(there, moving, dict(zip(fast, functions, strict=True)), at, order)
+    except Failure as reason:
+        return Expansion(found, transfer, names, str(reason))
+    found = replace(found, steady=steady_found)
+    plain = Expansion(found, transfer, names, "")
+    return replace(
+        plain, fast=_judged(analysis, plain, steady_found.fast), slow=_judged(analysis, plain, steady_found.slow)
+    )
+
+
+def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...]:
+    """The fast variables that are declared.  Raises NoClosedForm for one on which the equations do not depend."""
+    for name in (*small.fast, *small.slow):
+        if name not in variables:
+            raise NoClosedForm(f"the equations do not depend on {name}, which is declared fast or slow")
+    return small.fast
+
+
+def _motion(analysis: Analysis) -> dict[str, Any] | str:
+    """The variables on the unperturbed motion; why there are none otherwise."""
+    if not analysis.system.motion:
+        return "no unperturbed motion is given"
+    try:
+        found = analysis.first_order
+    except Failure as reason:
+        return str(reason)
+    return {name: value.polynomial for name, value in zip(found.names, found.values, strict=True)}
+
+
+def _quotient(transfer: Transfer, names: tuple[str, ...], numbers: Mapping[str, Any], p: Any) -> Quotient:
+    from flint import fmpq_mpoly_ctx
+
+    context = fmpq_mpoly_ctx.get(list(names), transfer.context.ordering())
+    images = [
+        context.constant(numbers[name]) if name in numbers else context.gen(names.index(name))
+        for name in transfer.context.names()
+    ]
+    top, bottom = transfer.fraction(p)
+    return Quotient.of(top.compose(*images, ctx=context), bottom.compose(*images, ctx=context))
+
+
+def _judged(analysis: Analysis, told: Expansion, hurwitz: Hurwitz) -> tuple[Outcome, tuple[Condition, ...]]:
+    """Hurwitz's minors by their first coefficients, under the assumptions of the description."""
+    signs, conditions = analysis.signs, []
+    for minor in hurwitz.minors:
+        if minor.lowest is None:
+            return Outcome.UNDECIDED, ()
+        lead = minor.coefficients[minor.lowest]
+        ring = told.transfer.ring
+        top = told.formula(Quotient.of(lead.top)).polynomial
+        bottom = told.formula(Quotient.of(lead.bottom)).polynomial
+        product = ring.times(top, bottom)
+        conditions.append(signs.condition(product))
+        if conditions[-1].kind == "never":  # where it is zero, higher orders decide, which are not looked at
+            return (Outcome.FAILS if signs.sign(product) == "negative" else Outcome.UNDECIDED), ()
+    left = sharpest(conditions)
+    return (Outcome.CONDITIONAL if left else Outcome.HOLDS), left
+
+
+def series_text(told: Expansion, one: Series) -> list[tuple[int, Formula]]:
+    """Exponents and coefficients, in order."""
+    return [(k, told.formula(one.coefficients[k])) for k in sorted(one.coefficients)]

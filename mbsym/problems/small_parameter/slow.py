@@ -1,0 +1,242 @@
+"""Slow integral manifolds: z = h(s, eps) by comparing coefficients of eps.
+
+With slow variables s and fast ones z of  D x' = N(s, z, eps)  the manifold is invariant if
+
+    N_z(s, h, eps) = sum_j dh/ds_j N_j(s, h, eps),
+
+times eps^k_i in row i, so that its lowest order in eps is 0.  Where the part of lowest order in z, L z + ..., has a
+constant matrix L with det L != 0,
+
+    h  <-  h - L^-1 (what is left in these equations)
+
+gains an order of eps with every few steps (one for each derivative that has to be known first, such as that of a
+position whose velocity is fast, too), and ends when all coefficients up to the order asked for stay the same.
+(V. Sobolev and V. Strygin's method of integral manifolds; E. Shchepakina, V. Sobolev and M. Mortell, Singular
+perturbations, Springer 2014, chapter 2.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.quotients import LOWER, Polynomial, Quotient, Series
+from mbsym.problems.small_parameter.scaled import Graded, ScaledField
+
+#: Choices of fast variables that are looked at.
+MOST_CHOICES = 2000
+MOST_STEPS = 60
+
+
+def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, ...]:
+    """The smallest set that holds all variables with x' ~ 1/eps or faster, and none of ``slow``, with det L != 0.
+
+    Raises NoClosedForm where there is none, or more than one of the smallest.
+    """
+    names = there.field.variables
+    swift = [i for i, k in enumerate(there.scales) if k > 0]
+    if not swift:
+        raise NoClosedForm(
+            f"no variable is fast: no derivative grows without bound as {there.small} tends to 0",
+            remedy="see 'powers' of the small parameter: {p2: -1} says that p2 is large",
+        )
+    others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
+    looked = 0
+    for more in range(len(others) + 1):
+        found = []
+        for chosen in combinations(others, more):
+            looked += 1
+            if looked > MOST_CHOICES:
+                raise NoClosedForm("too many variables to find the fast ones among them", remedy=DECLARE)
+            places = tuple(sorted((*swift, *chosen)))
+            if _matrix(there, places) is not None:
+                found.append(places)
+        if len(found) > 1:
+            told = " or ".join(", ".join(names[i] for i in one) for one in found[:3])
+            raise NoClosedForm(f"which variables are fast is not clear: {told}", remedy=DECLARE)
+        if found:
+            return tuple(names[i] for i in found[0])
+    raise NoClosedForm(
+        "the lowest order in the small parameter does not determine fast variables by slow ones: their matrix is "
+        "singular, or depends on the state",
+        remedy=DECLARE,
+    )
+
+
+DECLARE = "declare them: 'small parameter: {eps: {fast: [x, y]}}'"
+
+
+def _matrix(there: ScaledField, fast: Sequence[int]) -> list[list[Polynomial]] | None:
+    """L, in parameters alone with det L != 0; None where it is not so."""
+    first = len(there.field.parameters)
+    rows = []
+    for i in fast:
+        k = -there.scales[i]
+        lowest = there.rows[i].get(k)
+        if lowest is None:
+            return None
+        row = [lowest.derivative(first + j) for j in fast]
+        if any(any(x.degrees()[first:]) for x in row if x != 0):
+            return None
+        rows.append(row)
+    return rows if inverse(rows) is not None else None
+
+
+def inverse(matrix: Sequence[Sequence[Polynomial]]) -> list[list[Quotient]] | None:
+    """Gauss-Jordan's, exactly; None for a singular matrix."""
+    n = len(matrix)
+    one = matrix[0][0] * 0 + 1
+    work = [
+        [*(Quotient.of(x) for x in row), *(Quotient.of(one if i == j else one - one) for j in range(n))]
+        for i, row in enumerate(matrix)
+    ]
+    for column in range(n):
+        pivot = next((r for r in range(column, n) if not work[r][column].is_zero), None)
+        if pivot is None:
+            return None
+        work[column], work[pivot] = work[pivot], work[column]
+        lead = work[column][column]
+        work[column] = [x / lead for x in work[column]]
+        for r in range(n):
+            factor = work[r][column]
+            if r != column and not factor.is_zero:
+                work[r] = [a - factor * b for a, b in zip(work[r], work[column], strict=True)]
+    return [row[n:] for row in work]
+
+
+class OnManifold:
+    """Polynomials of the field with series in place of the fast variables."""
+
+    def __init__(self, there: ScaledField, fast: Sequence[str]) -> None:
+        self.there = there
+        self.context = there.field.context
+        first = len(there.field.parameters)
+        self.places = [first + there.field.variables.index(name) for name in fast]
+        self._sorted: dict[int, dict[tuple[int, ...], Series]] = {}
+
+    def __call__(self, p: Graded, functions: Sequence[Series], known: int | None) -> Series:
+        """p(s, functions, eps) up to eps^known."""
+        total = Series(self.context, {}, known)
+        if known is not None and p:  # coefficients beyond are not needed: they would be long
+            functions = [one.up_to(known - min(0, *p)) for one in functions]
+        powers: dict[tuple[int, int], Series] = {}
+        for exponents, factor in self._parts(p).items():
+            term = factor
+            for place, exponent in enumerate(exponents):
+                if exponent:
+                    term = (term * self._power(place, exponent, functions, powers)).up_to(known)
+            total = total + term
+        return total
+
+    def _power(
+        self, place: int, exponent: int, functions: Sequence[Series], powers: dict[tuple[int, int], Series]
+    ) -> Series:
+        if exponent == 1:
+            return functions[place]
+        if (place, exponent) not in powers:
+            powers[place, exponent] = self._power(place, exponent - 1, functions, powers) * functions[place]
+        return powers[place, exponent]
+
+    def _parts(self, p: Graded) -> dict[tuple[int, ...], Series]:
+        """Exponents of the fast variables -> coefficient, free of them."""
+        if id(p) in self._sorted:
+            return self._sorted[id(p)]
+        parts: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], Any]]] = {}
+        for k, q in p.items():
+            for monomial, c in q.to_dict().items():
+                exponents = tuple(monomial[place] for place in self.places)
+                rest = list(monomial)
+                for place in self.places:
+                    rest[place] = 0
+                parts.setdefault(exponents, {}).setdefault(k, {})[tuple(rest)] = c
+        found = {
+            exponents: Series(self.context, {k: Quotient.of(self.context.from_dict(t)) for k, t in graded.items()})
+            for exponents, graded in parts.items()
+        }
+        self._sorted[id(p)] = found
+        return found
+
+
+def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series]:
+    """h up to eps^order.  Raises NoClosedForm where L is singular or depends on the state, or the steps do not settle.
+
+    The fast variables are zero, or affine in L, at the lowest order.
+    """
+    variables = there.field.variables
+    indices = [variables.index(name) for name in fast]
+    matrix = _matrix(there, indices)
+    if matrix is None:
+        raise NoClosedForm(
+            f"at the lowest order in {there.small} the equations of {', '.join(fast)} are not linear in them with a "
+            "constant regular matrix"
+        )
+    inverted = inverse(matrix)
+    assert inverted is not None
+    on = OnManifold(there, fast)
+    slow = [i for i in range(len(variables)) if i not in indices]
+    functions = [Series(there.field.context, {}) for _ in fast]
+    for _ in range(MOST_STEPS):
+        left = equations(there, indices, slow, functions, on, order + 1)
+        if not any(one.coefficients for one in left):
+            return [one.exactly() for one in functions]
+        changed = []
+        for function, row in zip(functions, inverted, strict=True):
+            for c, one in zip(row, left, strict=True):
+                function = function - Series.constant(c) * one
+            changed.append(function.up_to(order + 1).exactly())
+        functions = changed
+    raise NoClosedForm(
+        f"the coefficients up to order {order} do not settle within {MOST_STEPS} steps", limit=Limit.WORK, remedy=LOWER
+    )
+
+
+def equations(
+    there: ScaledField,
+    fast: Sequence[int],
+    slow: Sequence[int],
+    functions: Sequence[Series],
+    on: OnManifold,
+    known: int | None,
+) -> list[Series]:
+    """eps^k_i (N_i - sum_j dh_i/ds_j N_j) on z = h, up to eps^known; what is left of the equations of the manifold."""
+    first = len(there.field.parameters)
+    flows: dict[int, Series] = {}
+    deep = None if known is None else known + max(0, max(-there.scales[i] for i in fast))
+    found = []
+    for place, i in enumerate(fast):
+        k = there.scales[i]
+        most = None if known is None else known - k
+        rest = on(there.rows[i], functions, most)
+        for j in slow:
+            slope = derivative(functions[place], first + j)
+            if slope.coefficients:
+                if j not in flows:
+                    flows[j] = on(there.rows[j], functions, deep)
+                rest = rest - (slope * flows[j]).up_to(most)
+        found.append(rest.shifted(k))
+    return found
+
+
+def derivative(x: Series, place: int) -> Series:
+    """By a generator."""
+    slopes = {k: c.derivative(place) for k, c in x.coefficients.items()}
+    return Series(x.context, {k: c for k, c in slopes.items() if not c.is_zero}, x.known)
+
+
+def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], order: int) -> dict[str, Series]:
+    """s' on the manifold, up to the order to which it follows from h up to eps^order.  Raises NoClosedForm where the
+    denominator at eps = 0 depends on the state."""
+    on = OnManifold(there, fast)
+    near = [one.up_to(order + 1) for one in functions]
+    below = on(there.denominator, near, None)
+    lead = below.coefficients.get(0)
+    first = len(there.field.parameters)
+    if lead is None or any(lead.top.degrees()[first:]):
+        raise NoClosedForm(f"the matrix of inertia at {there.small} = 0 depends on the state, or is singular there")
+    found = {}
+    for name, row in zip(there.field.variables, there.rows, strict=True):
+        if name not in fast:
+            found[name] = on(row, near, None).over(below, order + 1)
+    return found

@@ -1,0 +1,147 @@
+"""The first approximation on a slow manifold about a steady state, and whether the manifold attracts there.
+
+With A the matrix of all variables and A_s(eps) that of the flow on the manifold, det(S - A_s) divides det(S - A): the
+quotient belongs to the fast variables.  Its coefficients are found as series in eps by division; what remains must be
+of higher order than the expansion, which checks both.  By Hurwitz all roots of a polynomial have negative real parts if
+all leading minors D_1, ..., D_n are positive, so that for all sufficiently small eps > 0 their first coefficients
+decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.quotients import Quotient, Series
+from mbsym.problems.small_parameter.result import Hurwitz, SteadyStates
+from mbsym.problems.small_parameter.scaled import ScaledField
+from mbsym.problems.small_parameter.slow import derivative
+
+#: Characteristic polynomials of a higher degree are not expanded.
+MOST_VARIABLES = 8
+
+
+def steady_states(
+    there: ScaledField,
+    flow: Mapping[str, Series],
+    functions: Mapping[str, Series],
+    values: Mapping[str, Quotient],
+    order: int,
+) -> SteadyStates:
+    """Of the steady state ``values`` (by variable).  Raises NoClosedForm where it is none."""
+    field = there.field
+    first = len(field.parameters)
+    names = field.variables
+    if len(names) > MOST_VARIABLES:
+        raise NoClosedForm(f"more than {MOST_VARIABLES} variables: no characteristic polynomial is expanded")
+    context = field.context
+
+    def at(c: Quotient) -> Quotient:
+        return _put(c, first, [values[name] for name in names])
+
+    def on(x: Series) -> Series:
+        found = {k: at(c) for k, c in x.coefficients.items()}
+        return Series(context, {k: c for k, c in found.items() if not c.is_zero}, x.known)
+
+    for name, one in flow.items():
+        if on(one).coefficients:
+            raise NoClosedForm(f"the motion is no steady state on the manifold: {name} does not stay constant")
+    for name, one in functions.items():
+        given = Series.constant(values[name])
+        if (on(one) - given).coefficients:
+            raise NoClosedForm(f"the motion does not lie on the manifold: {name} is another one there")
+    slow = list(flow)
+    small = [[on(derivative(flow[i], first + names.index(j))) for j in slow] for i in slow]
+    rows = [Series(context, {k: Quotient.of(p) for k, p in row.items()}) for row in there.rows]
+    below = on(Series(context, {k: Quotient.of(p) for k, p in there.denominator.items()}))
+    # D x' = N and N = 0 on the motion: A = (dN/dx)/D there.
+    if any(on(row).coefficients for row in rows):
+        raise NoClosedForm("the motion is no steady state of the equations")
+    scaled = [[on(derivative(row, first + k)) for k in range(len(names))] for row in rows]
+    full = characteristic(context, scaled)  # det(S - D A), in which S^(n-k) has the k-th power of D too many
+    whole, power = [], Series.constant(Quotient.of(context.constant(1)))
+    deep = 2 * order + 8 + 2 * sum(max(0, k) for k in there.scales)
+    for c in full:
+        whole.append(c.over(power, deep) if c.coefficients else c)
+        power = power * below
+    zeros = 0
+    while len(whole) > 1 and whole[-1].is_zero:
+        whole.pop()
+        zeros += 1
+    narrow = characteristic(context, small)
+    if zeros > len(narrow) - 1:
+        raise NoClosedForm("more roots are zero than there are slow variables")
+    for c in narrow[len(narrow) - zeros :]:
+        if c.coefficients:
+            raise NoClosedForm("the flow on the manifold does not keep the zero roots: the expansion is wrong")
+    narrow = narrow[: len(narrow) - zeros]
+    quotient, rest = divided(whole, narrow)
+    for one in rest:
+        if one.coefficients:
+            raise NoClosedForm("the roots of the flow on the manifold are none of the system: the expansion is wrong")
+    remainder = min((one.known for one in rest if one.known is not None), default=order + 1)
+    return SteadyStates(zeros, hurwitz(context, narrow), hurwitz(context, quotient), remainder)
+
+
+def characteristic(context: object, matrix: Sequence[Sequence[Series]]) -> list[Series]:
+    """det(S - A), coefficients from S^n down, by Faddeev and LeVerrier."""
+    from flint import fmpq
+
+    n = len(matrix)
+    one = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
+    nothing = one - one
+    found = [one]
+    power = [[one if i == j else nothing for j in range(n)] for i in range(n)]
+    for k in range(1, n + 1):
+        product = [[sum((matrix[i][m] * power[m][j] for m in range(n)), nothing) for j in range(n)] for i in range(n)]
+        part = Series.constant(Quotient.of(context.constant(fmpq(-1, k))))  # type: ignore[attr-defined]
+        c = part * sum((product[i][i] for i in range(n)), nothing)
+        found.append(c)
+        power = [[product[i][j] + (c if i == j else nothing) for j in range(n)] for i in range(n)]
+    return found
+
+
+def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list[Series], list[Series]]:
+    """Quotient and remainder of polynomials, coefficients from the highest down; the divisor is monic."""
+    work = list(dividend)
+    count = len(dividend) - len(divisor) + 1
+    for k in range(count):
+        for n, c in enumerate(divisor[1:], start=1):
+            work[k + n] = work[k + n] - work[k] * c
+    return work[:count], work[count:]
+
+
+def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
+    """The leading minors of Hurwitz's matrix of a monic polynomial."""
+    n = len(polynomial) - 1
+    one = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
+    nothing = one - one
+    matrix = [
+        [polynomial[k] if 0 <= (k := 2 * (j + 1) - (i + 1)) <= n else nothing for j in range(n)] for i in range(n)
+    ]
+    minors = []
+    for size in range(1, n + 1):
+        block = [row[:size] for row in matrix[:size]]
+        last = characteristic(context, block)[-1]
+        minors.append(last if size % 2 == 0 else -last)
+    return Hurwitz(tuple(polynomial), tuple(minors))
+
+
+def _put(c: Quotient, first: int, values: Sequence[Quotient]) -> Quotient:
+    """c with quotients in place of the variables."""
+    context = c.top.context()
+    gens = context.gens()
+    images = [*gens[:first], *(x.top for x in values)]
+    if all(x.bottom.is_constant() for x in values):
+        return Quotient.of(c.top.compose(*images), c.bottom.compose(*images))
+    found = []
+    for p in (c.top, c.bottom):
+        total = Quotient.of(context.constant(0))
+        for monomial, number in p.to_dict().items():
+            term = Quotient.of(context.from_dict({(*monomial[:first], *(0 for _ in values)): number}))
+            for x, exponent in zip(values, monomial[first:], strict=True):
+                for _ in range(exponent):
+                    term = term * x
+            total = total + term
+        found.append(total)
+    return found[0] / found[1]

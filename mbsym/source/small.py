@@ -1,0 +1,102 @@
+"""The small parameter of a description: its name, powers of it in parameters, fast and slow variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mbsym.expressions.parser import ascii_safe
+from mbsym.model.small import SmallParameter
+from mbsym.source.keys import SMALL_PARAMETER
+from mbsym.source.placed import Entry, Mapping, Node, Scalar
+from mbsym.source.reading import Reading
+from mbsym.source.scope import Allowed
+
+#: Exponents beyond are complained about.
+MOST_POWER = 6
+_PARAMETER = Allowed("the small parameter", ("parameter",))
+_SCALED = Allowed("a parameter with a power of the small one", ("parameter",))
+_KINDS = ("coordinate", "speed", "unit vector", "quaternion")
+HINT = "write 'small parameter: eps', or 'small parameter: {eps: {powers: {e: 1, p2: -1}}}'"
+
+
+def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> SmallParameter | None:
+    """``eps``, or ``{eps: {powers: {e: 1}, fast: [x, y], slow: [p]}}``; ``used`` are the names that formulas hold."""
+    if node is None:
+        return None
+    if isinstance(node, Scalar):
+        errors = reading.errors
+        reading.scope.check_name(node.text, node.span, _PARAMETER)
+        if reading.errors == errors:
+            _check_used(node.text, node, reading, used)
+        return SmallParameter(node.text, span=node.span) if reading.errors == errors else None
+    if not isinstance(node, Mapping) or len(node.entries) != 1:
+        reading.shape_error(node, "the small parameter", "one name", HINT)
+        return None
+    entry = node.entries[0]
+    name, errors = entry.key.text, reading.errors
+    fields = reading.fields(entry.value, f"the small parameter {ascii_safe(name)}", SMALL_PARAMETER, HINT)
+    given = fields.get("powers")
+    powers = () if given is None else tuple(_powers(given, name, reading, used))
+    if given is None:
+        reading.scope.check_name(name, entry.key.span, _PARAMETER)
+        if reading.errors == errors:
+            _check_used(name, entry.key, reading, used)
+    else:
+        reading.scope.is_name(name, entry.key.span)
+        if name in reading.scope.kinds:
+            message = f"{ascii_safe(name)} is declared already: with 'powers' the small parameter is a name of its own"
+            reading.error("misplaced-name", message, entry.key.span, "choose another name, or leave 'powers' out")
+    fast = tuple(_variables(fields.get("fast"), "fast", reading))
+    slow = tuple(_variables(fields.get("slow"), "slow", reading))
+    for other in slow:
+        if other in fast:
+            message = f"{ascii_safe(other)} is declared both fast and slow"
+            reading.error("conflicting-keys", message, entry.key.span, "leave it out of one of the two lists")
+    return SmallParameter(name, powers, fast, slow, entry.key.span) if reading.errors == errors else None
+
+
+def _check_used(name: str, where: Scalar, reading: Reading, used: frozenset[str]) -> None:
+    if name not in used:
+        message = f"the small parameter {ascii_safe(name)} occurs in no formula of bodies, loads or relations"
+        reading.error("unused-name", message, where.span, "there is nothing to expand in it; see also 'powers'")
+
+
+def _powers(node: Node, small: str, reading: Reading, used: frozenset[str]) -> Iterator[tuple[str, int]]:
+    for entry in reading.entries(node, "'powers'"):
+        errors = reading.errors
+        reading.scope.check_name(entry.key.text, entry.key.span, _SCALED)
+        if reading.errors == errors:
+            _check_used(entry.key.text, entry.key, reading, used)
+        power = _power(entry, reading)
+        if power is not None and reading.errors == errors:
+            yield entry.key.text, power
+
+
+def _power(entry: Entry, reading: Reading) -> int | None:
+    text = entry.value.text.strip() if isinstance(entry.value, Scalar) else ""
+    digits = text.removeprefix("-").removeprefix("+")
+    if not digits.isascii() or not digits.isdigit() or not 1 <= int(digits[:9]) <= MOST_POWER:
+        message = (
+            f"the power of {ascii_safe(entry.key.text)} is no whole number from 1 to {MOST_POWER}, or its negative"
+        )
+        reading.error("bad-number", message, entry.value.span, HINT)
+        return None
+    return int(text)
+
+
+def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:
+    seen: set[str] = set()
+    for item in () if node is None else reading.items(node, f"'{what}'"):
+        scalar = reading.scalar(item, f"a {what} variable")
+        if scalar is None:
+            continue
+        kind = reading.scope.kinds.get(scalar.text)
+        if kind not in _KINDS:
+            known = ", ".join(n for n, k in reading.scope.kinds.items() if k in ("coordinate", "speed"))
+            message = f"{ascii_safe(scalar.text)} is no variable"
+            reading.error("unknown-name", message, scalar.span, f"variables are coordinates and speeds: {known}")
+        elif scalar.text in seen:
+            reading.error("repeated-name", f"{ascii_safe(scalar.text)} is listed twice", scalar.span)
+        else:
+            seen.add(scalar.text)
+            yield scalar.text

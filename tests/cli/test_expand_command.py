@@ -1,0 +1,60 @@
+"""``mbsym expand``: what it prints, as JSON by its schema, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from click.testing import CliRunner
+
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+SLOW = "systems/satellite-with-damper-slow.yaml"
+
+
+def run(*words):
+    return CliRunner().invoke(main, ["expand", *words])
+
+
+@pytest.fixture(autouse=True)
+def _at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+def test_the_damper_as_json_and_as_text():
+    done = run(SLOW, "--order", "3", "--json")
+    assert done.exit_code == 0
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("expansion"))
+    assert [one["residual"] for one in data["manifold"]] == [4, 4]
+    assert data["steady"]["attracts"]["outcome"] == "holds"
+    assert data["steady"]["flow"]["positive"] == ["(s*omega + eta)*(s*omega + eta - omega)"]
+    told = " ".join(run(SLOW, "--order", "1").stdout.split())
+    assert "eps (rho*(p**2 + q**2)/kappa + (s - 2)*p*r/kappa + eta*p/kappa)" in told
+    assert "Whether the roots of the flow on it have negative real parts is undecided" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("systems/clebsch-poisson.yaml",), "names no small parameter"),
+        ((SLOW, "--order", "90"), "error["),
+        ((SLOW, "--set", "eps=1/10"), "belongs to the small parameter"),
+        ((SLOW, "--set", "Q=1"), "there is no parameter called Q"),
+    ],
+)
+def test_bad_input_is_complained_about(words, told):
+    done = run(*words)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert told in done.stderr.replace("'", "")
+
+
+def test_a_system_without_fast_variables(tmp_path):
+    text = Path("systems/gyrostat-poisson.yaml").read_text(encoding="utf-8") + "\nsmall parameter: epsilon\n"
+    (tmp_path / "slow.yaml").write_text(text, encoding="utf-8")
+    done = run(str(tmp_path / "slow.yaml"))
+    assert done.exit_code == 1
+    assert "no variable is fast" in done.stderr
