@@ -11,9 +11,10 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from mbsym.algebra.plane import Arc, Corner
+from mbsym.algebra.plane import Arc, Corner, Point
 from mbsym.algebra.plane.line import Zero
-from mbsym.maps.result import LineMap, PlaneMap, Stratum
+from mbsym.maps.mapping import Judge
+from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing, Stratum
 
 #: Rows beyond this number are refused.
 MOST_POINTS = 1_000_000
@@ -99,10 +100,17 @@ def located_csv(points: Points, found: PlaneMap | LineMap) -> str:
 
 
 def located(found: PlaneMap | LineMap, *values: Fraction) -> tuple[str, str]:
-    """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there."""
+    """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there.
+
+    On an arc the verdict is that of the point itself.
+    """
     stratum = stratum_at(found, *values)
     if stratum is None:
         return "outside of the interval" if isinstance(found, LineMap) else "outside of the box", ""
+    if stratum.shape is Shape.ARC and stratum.standing is Standing.JUDGED:
+        # an arc's verdict is that of its own exact point: here it is found at the point that is asked about
+        place = Point(*(fmpq(x.numerator, x.denominator) for x in values))
+        stratum = Judge(found.section, found.admissibility)(Shape.ARC, stratum.number, place)
     word = stratum.word
     return f"{stratum.shape} {stratum.number}", stratum.standing.value if word is None else word.value
 

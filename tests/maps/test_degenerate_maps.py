@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -15,7 +16,7 @@ from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import Of, PlaneMap, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.report.map_located import stratum_at
+from mbsym.report.map_located import located, stratum_at
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"
@@ -185,3 +186,12 @@ def test_a_region_without_inner_points(tmp_path: Path) -> None:
     assert on is not None
     assert on.word not in ("unstable", "stable")
     assert found.singles_out(on)
+
+
+def test_a_located_point_of_an_arc_is_judged_at_itself(tmp_path: Path) -> None:
+    """K = a: on a = 0 the root is zero. With another verdict planted on the arc, its points keep their own."""
+    found = mapped(described(tmp_path, "a"))
+    own = located(found, Fraction(0), Fraction(1, 3))
+    planted = replace(found, arcs=tuple(replace(one, judged=found.regions[1].judged) for one in found.arcs))
+    assert located(planted, Fraction(0), Fraction(1, 3)) == own
+    assert own == ("arc 0", "undecided")
