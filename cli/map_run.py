@@ -126,8 +126,8 @@ def run(request: Request) -> int:
         show_map(request.file, request.system, found, request.folder, list(files), time.perf_counter() - started)
     if found.check is not None and not found.check.holds:
         for one in found.check.findings[:MOST_TOLD]:
-            what = "the whole" if one.region is None and one.arc is None else ""
-            what = what or (f"region {one.region}" if one.region is not None else f"arc {one.arc}")
+            named = (("region", one.region), ("arc", one.arc), ("corner", one.corner))
+            what = next((f"{name} {number}" for name, number in named if number is not None), "the whole")
             complain(request.file, f"withdrawn, as the map's own check fails in {what}: {one.mistake}")
         return FAILED
     if found.interrupted:

@@ -11,7 +11,8 @@ few cells (spread by Halton's sequence), and there
   lie over the abscissa.
 
 On every arc a second exact point has to have the verdict of the arc.  The laws of arrangements (``plane.laws``) are
-checked besides: Euler's finds corners that were missed.
+checked besides: Euler's finds corners that were missed.  What continuity demands of counts on arcs and at corners
+(``continuity``) is the check of corners.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.plane.stacks import column
 from mbsym.maps.constant import Constant
 from mbsym.maps.constant_points import beside
+from mbsym.maps.continuity import jumps
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged, verdict_at
@@ -61,17 +63,19 @@ class Mistake(StrEnum):
     SIGNS = "other signs of the boundary polynomials at a second point"
     BRANCHES = "another number of branches over a second abscissa"
     LAW = "a law of arrangements"
+    JUMP = "counts on a curve that continuity excludes"
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A disagreement in a region or on an arc, at about ``near``; of a law, ``breach`` says which."""
+    """A disagreement in a region, on an arc or at a corner, at about ``near``; of a law, ``breach`` says which."""
 
     mistake: Mistake
     region: int | None = None
     arc: int | None = None
     near: tuple[float, ...] = ()
     breach: Breach | None = None
+    corner: int | None = None
 
 
 @dataclass(frozen=True)
@@ -96,14 +100,18 @@ def check(
     found: Arrangement | Line,
     regions: Verdicts,
     arcs: Verdicts = (),
+    corners: Verdicts = (),
     seed: int = 20261122,
     progress: Callable[[str, int, int], None] = nothing,
 ) -> Check:
-    """Every cell of a map by another route; ``regions`` and ``arcs`` are the verdicts that are to be confirmed.
+    """Every cell of a map by another route; ``regions``, ``arcs``, ``corners`` are verdicts that are to be confirmed.
 
-    Of a line the regions are its intervals.
+    Of a line the regions are its intervals, the corners its zeros.
     """
     one = _Checking(section, Random(seed))
+    doubted = jumps(found, regions, arcs, corners)
+    one.findings += [Finding(Mistake.JUMP, arc=k) for k in doubted[0]]
+    one.findings += [Finding(Mistake.JUMP, corner=k) for k in doubted[1]]
     if isinstance(found, Line):
         count = len(found.intervals)
         for at, interval in enumerate(found.intervals * (1 + FEWEST // count)):

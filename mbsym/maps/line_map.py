@@ -61,11 +61,17 @@ def line_map(
     regions, zeros = strata[: len(line.intervals)], strata[len(line.intervals) :]
     checked = None
     if not interrupted:
-        checked = check(there, line, [one.judged for one in regions], progress=watch)
+        intervals, points = ([one.judged for one in part] for part in (regions, zeros))
+        checked = check(there, line, intervals, corners=points, progress=watch)
         wrong = {one.region for one in checked.findings}
         regions = [
             replace(one, standing=Standing.WITHDRAWN, judged=None) if one.judged and one.number in wrong else one
             for one in regions
+        ]
+        doubted = {one.corner for one in checked.findings}
+        zeros = [
+            replace(one, standing=Standing.WITHDRAWN, judged=None) if one.judged and one.number in doubted else one
+            for one in zeros
         ]
     return LineMap(
         of, there, kept, replace(found, factors=tuple(factors)), line, tuple(regions), tuple(zeros), lengths(line),

@@ -82,8 +82,8 @@ def mapped(
     checked = None
     if not interrupted:
         try:
-            cells, arcs = ([x.judged for x in part] for part in parts[:2])
-            checked = check(there, made, cells, arcs, progress=watch)
+            cells, arcs, points = ([x.judged for x in part] for part in parts)
+            checked = check(there, made, cells, arcs, points, progress=watch)
             parts = withdrawn(parts, checked)
         except KeyboardInterrupt:
             interrupted = True
@@ -101,9 +101,11 @@ def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Str
     """
     if checked.holds:
         return parts
-    lone = all(one.breach is None and (one.region is not None or one.arc is not None) for one in checked.findings)
+    places = [(one.region, one.arc, one.corner) for one in checked.findings if one.breach is None]
+    lone = len(places) == len(checked.findings) and all(place != (None, None, None) for place in places)
     regions = {one.region for one in checked.findings}
     arcs = {one.arc for one in checked.findings}
+    corners = {one.corner for one in checked.findings}
 
     def kept(stratum: Stratum, doubted: bool) -> Stratum:
         falls = stratum.judged is not None and (doubted or not lone)
@@ -112,7 +114,7 @@ def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Str
     return (
         [kept(one, one.number in regions) for one in parts[0]],
         [kept(one, one.number in arcs) for one in parts[1]],
-        [kept(one, False) for one in parts[2]],
+        [kept(one, one.number in corners) for one in parts[2]],
     )
 
 

@@ -134,7 +134,7 @@ def stack(
     """The slices of a description over three axes, at all critical values of the third and between them.
 
     Raises what ``plane_map`` raises, TooLargeError for more than ``MOST_LEVELS`` critical values, too.
-    KeyboardInterrupt ends the work once slices are judged: what was not reached says so.
+    KeyboardInterrupt ends the work once a slice is judged: what was not reached says so.
     """
     watch("first approximation", 0, 1)
     there = section(analysis, axes, settings)
@@ -164,6 +164,8 @@ def stack(
             except KeyboardInterrupt:
                 interrupted = True
         layers.append(Layer(number, z, critical, missing=Missing.NOT_REACHED))
+    if interrupted and all(one.plane is None for one in layers):
+        raise KeyboardInterrupt
     return Stack(of, there, kept, found, line, tuple(layers), _pictures(layers), interrupted)
 
 

@@ -118,7 +118,13 @@ def check_data(found: Check | None) -> dict[str, Any] | None:
     if found is None:
         return None
     findings = [
-        {"mistake": one.mistake.value, "region": one.region, "arc": one.arc, "near": list(one.near)}
+        {
+            "mistake": one.mistake.value,
+            "region": one.region,
+            "arc": one.arc,
+            "corner": one.corner,
+            "near": list(one.near),
+        }
         for one in found.findings
     ]
     return {"points": found.points, "arcs": found.arcs, "enclosed": found.enclosed, "findings": findings}

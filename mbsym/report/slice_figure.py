@@ -39,7 +39,7 @@ from mbsym.report.map_language import say
 from mbsym.report.unit_text import pretty
 
 #: Panels beside each other, and rows of them on one page.
-ACROSS, ROWS = 2, 4
+ACROSS, ROWS = 2, 3
 #: Inches: of a row of panels, and of a line of the legend.
 _ROW, _LINE = 1.45, 0.155
 #: Points: numbers and letters in panels.

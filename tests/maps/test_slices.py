@@ -7,10 +7,12 @@ import json
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import combinations
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from flint import fmpq
@@ -25,6 +27,7 @@ from mbsym.maps.slices import Missing, Stack, stack
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 from mbsym.report.latex_reading import read_latex
+from mbsym.report.map_located import stratum_at
 from mbsym.report.schemas import schema
 from mbsym.report.slice_figure import page_names, panels
 from mbsym.report.slice_located import Locating
@@ -61,6 +64,13 @@ def stacked(analysis: Any, axes: Any, settings: Any = ()) -> Stack:
 def shipped(name: str, axes: Any, settings: Any = ()) -> Stack:
     return stacked(mbsym.load(f"systems/{name}.yaml"), axes, settings)
 
+
+#: det = lambda^4 + a lambda^2 + b lambda + c: the swallowtail is its discriminant.
+SWALLOWTAIL = HEAD.format(name="swallowtail", parameters="a, b, c") + (
+    "linear system:\n  coordinates: [s, u]\n  M: [[1, 0], [0, 1]]\n"
+    "  D: [[0, b/2], [b/2, 0]]\n  G: [[0, -b/2], [b/2, 0]]\n"
+    "  K: [[0, (c - 1)/2], [(c - 1)/2, a]]\n  N: [[0, -(1 + c)/2], [(1 + c)/2, 0]]\n"
+)
 
 UNIT = (("x", -2, 2), ("y", -2, 2), ("z", -1, 1))
 RIGID = ("gravity-gradient", (("A", 0, 2), ("B", 0, 2), ("C", "9/10", "11/10")))
@@ -102,6 +112,41 @@ def test_a_double_cone_closes_and_opens(tmp_path: Path) -> None:
         assert where.startswith(("slice", "beside slice"))
         assert (verdict == Word.CRITICAL) == (below == 0), (x, y, z)
         assert (verdict == Word.UNSTABLE) == (below > 0)
+
+
+def test_the_swallowtail(tmp_path: Path) -> None:
+    """For a < 0 the discriminant curve has two cusps, at c = -a^2/12; for a > 0 none; all of it changes at a = 0.
+
+    How many roots lie to the right, and are real, is counted from floating-point roots at random points.
+    """
+    found = stacked(analysed(SWALLOWTAIL, tmp_path), (("b", -1, 1), ("c", "-1/2", "1/2"), ("a", -1, "1/2")))
+    assert found.sound
+    assert fmpq(0) in [one.z for one in found.layers if one.critical]
+    b, c, a = found.section.context.gens()
+    tail = 16 * a**4 * c - 4 * a**3 * b**2 - 128 * a**2 * c**2 + 144 * a * b**2 * c - 27 * b**4 + 256 * c**3
+    curve = next(k for k, p in enumerate(found.boundaries.factors) if p / p.leading_coefficient() == tail / -27)
+    for layer in found.layers:
+        if layer.plane is None or layer.critical:
+            continue
+        cusps = [
+            one.point.floats()
+            for one in layer.plane.arrangement.corners
+            if one.kind == "singular" and one.factors == (curve,)
+        ]
+        assert len(cusps) == (2 if layer.z < 0 else 0)
+        assert all(abs(y + float(layer.z) ** 2 / 12) < 1e-9 for _, y in cusps)
+        random = Random(4)
+        for _ in range(25):
+            x, y = (Fraction(random.randint(-499, 499), 499 * k) for k in (1, 2))
+            roots = np.roots([1, 0, float(layer.z), float(x), float(y)])
+            stratum = stratum_at(layer.plane, x, y)
+            if min(abs(p - q) for p, q in combinations(roots, 2)) < 1e-3 or min(abs(roots.real)) < 1e-6:
+                continue
+            assert stratum is not None
+            assert stratum.judged is not None
+            right = [r for r in roots if r.real > 0]
+            assert stratum.judged.right == len(right)
+            assert stratum.judged.real_right == sum(abs(r.imag) < 1e-9 for r in right)
 
 
 def test_a_slice_at_an_irrational_value_is_exact(tmp_path: Path) -> None:
