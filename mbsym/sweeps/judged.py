@@ -8,7 +8,7 @@ judge at the number which the column holds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
 from typing import Any
 
@@ -16,9 +16,11 @@ import numpy as np
 from flint import fmpq
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import admissibility
 from mbsym.maps.line_map import LineJudge
+from mbsym.maps.mapping import Judge
 from mbsym.maps.result import Shape, Standing, Stratum
 from mbsym.maps.section import Complaint, Fault, Section, Unfit
 from mbsym.maps.verdicts import matrix_at, verdict_at
@@ -26,7 +28,7 @@ from mbsym.numerics.kernels import llvm
 from mbsym.problems.stability.exact import inertia
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
-from mbsym.sweeps.measure import Column, Unsuitable
+from mbsym.sweeps.measure import Column
 
 #: What may stand in place of a verdict, before the words of verdicts.
 OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"
@@ -60,12 +62,15 @@ class StabilityMeasure:
             *(demand.condition.polynomial for demand in self.admissibility.demands),
         ]
         self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes], section.constant)
-        self._line: LineJudge | None = None
+        #: Judges one point in a field of algebraic numbers, where a constant is irrational.
+        self._judge: Callable[[Sequence[Any]], Stratum] | None = None
         if section.constant is not None:
-            if len(section.axes) > 1:
-                told = f"{section.constant.text} stands among the coefficients: only one name can be varied then"
-                raise Unsuitable(told)
-            self._line = LineJudge(section, self.admissibility)
+            if len(section.axes) == 1:
+                line = LineJudge(section, self.admissibility)
+                self._judge = lambda point: line(Shape.INTERVAL, 0, point[0])
+            else:
+                plane = Judge(section, self.admissibility)
+                self._judge = lambda point: plane(Shape.REGION, 0, Point(*point))
         self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
         self._known: dict[tuple[int, ...], tuple[int, int]] = {}
         self._lock = Lock()
@@ -95,9 +100,9 @@ class StabilityMeasure:
         """(place of the word in ``WORDS``, roots with Re > 0) at one point, exactly."""
         if not np.all(np.isfinite(point)):
             return WORDS.index(UNDEFINED), -1
-        if self._line is not None:
-            return self._irrationally(self._line(Shape.INTERVAL, 0, fmpq(*float(point[0]).as_integer_ratio())))
         numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
+        if self._judge is not None:
+            return self._irrationally(self._judge(numbers))
         demands = self.admissibility.demands
         if any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
             return WORDS.index(OUTSIDE), -1

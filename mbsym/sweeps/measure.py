@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from mbsym.algebra.failures import Failure
-
 
 @dataclass(frozen=True)
 class Column:
@@ -21,12 +19,6 @@ class Column:
     meaning: str
     words: tuple[str, ...] = ()
     whole: bool = False
-
-
-class Unsuitable(Failure):
-    """What is asked for does not fit the system."""
-
-    code = "unsuitable-sweep"
 
 
 class Measure(Protocol):
