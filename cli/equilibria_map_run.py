@@ -167,9 +167,10 @@ def _show(request: Request, found: EquilibriaMap, names: Sequence[str], seconds:
     asked = [one for one in found.cells if one.confirmed is not None and one.counted]
     if asked:
         same = sum(one.confirmed == one.count for one in asked)
+        exact = "the exact numbers agree, and " if not found.unfinished else ""
         told.append(
-            f"check at another point of {counted(len(asked), 'region')}: the exact numbers agree, and Newton's method "
-            f"from many points finds no more; all of them in {counted(same, 'region')}"
+            f"check at another point of {counted(len(asked), 'region')}: {exact}Newton's method from many points finds "
+            f"no more than the list there; as many as at the sample in {counted(same, 'region')}"
         )
     if any(one.standing is Standing.INCOMPLETE for one in found.cells):
         told.append("where the list is not complete nothing is counted")

@@ -61,7 +61,8 @@ def cell_words(cell: Cell, language: Language = ENGLISH) -> str:
     """``24 equilibria, 4 stable``."""
     if not cell.counted:
         return say(language, STANDINGS[cell.standing])
-    stable = say(language, "stable" if cell.throughout else "stable at the sample")
+    as_said = cell.throughout or cell.standing is Standing.SAMPLE
+    stable = say(language, "stable" if as_said else "stable at the sample")
     if language.name == "en":
         told = f"{counted(cell.count, 'equilibrium', 'equilibria')}, {cell.stable} {stable}"
     else:
