@@ -45,10 +45,11 @@ def command(
 ) -> None:
     """Find all polynomial first integrals of FILE up to a weighted degree, or prove that there are no others.
 
-    FILE has its equations in speeds and unit vectors (keys 'speeds' and 'orientation').  Parameters stay symbols, so
+    Variables are speeds and unit vectors where FILE declares them (keys 'speeds' and 'orientation'), otherwise rates,
+    sines and cosines of angles, and lengths.  Parameters stay symbols, so
     that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
     A weighted degree counts each variable with its weight: those under which the equations are quasi-homogeneous where
-    there are such, otherwise 1 for speeds and 2 for the rest.
+    there are such, otherwise 1, but 2 for unit vectors.
 
     --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
     another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,
@@ -78,10 +79,6 @@ def command(
         asked.complain("--set", "repeated-name", f"'{axis.name}' has an interval and a number", "leave one of them out")
     if asked.refused(None if system is None else file) or system is None or most is None:
         sys.exit(BAD_INPUT)
-    if not system.speeds:
-        told = "the equations are in angles and their rates, and are looked at in speeds and unit vectors"
-        complain(file, f"no integrals: {told}; declare 'speeds' and 'orientation' (mbsym explain description)")
-        sys.exit(FAILED)
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import integrals_of, setting
@@ -124,7 +121,7 @@ def _weights(texts: tuple[str, ...], asked: Options) -> dict[str, int]:
     found: dict[str, int] = {}
     for text in texts:
         name, equals, right = (part.strip() for part in text.partition("="))
-        if not equals or not name.isidentifier():
+        if not equals or not name:
             asked.complain("--weight", "bad-assignment", "a variable and its weight are wanted", "for example gamma1=2")
             continue
         weight = asked.whole("--weight", right, 1, MOST_WEIGHT)

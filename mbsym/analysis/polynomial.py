@@ -11,9 +11,9 @@ from flint import fmpq
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.formulas.formula import Formula
 from mbsym.problems import perturbation
+from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import PROVED, Integral
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
@@ -55,17 +55,21 @@ class Setting:
 def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Setting:
     """The equations of motion as a polynomial field, with numbers in place of some parameters.
 
-    Raises Unavailable for systems without speeds, NoClosedForm where they are no such field, ZeroDivisionError where it
+    Raises NoClosedForm where they are no such field, ZeroDivisionError where it
     divides by zero at these numbers.
     """
     form = analysis.speed_form
-    if form is None:
-        reason = "polynomial integrals are looked for of equations in speeds (and unit vectors)"
-        hint = "declare 'speeds' and 'orientation' (mbsym explain description)"
-        raise Unavailable("speeds", NoResult(reason, hint, "no speeds", "no-speeds"))
     equations: Any = analysis.equations
     listed = analysis.integrals
-    whole, transfer = in_speeds(form, equations, [one.formula.polynomial for one in listed])
+    also = [one.formula.polynomial for one in listed]
+    if form is None:
+        whole, transfer = in_angles(analysis.ring, analysis.system.coordinates, equations, also)
+        angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
+        vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
+        speeds: tuple[str, ...] = whole.variables
+    else:
+        whole, transfer = in_speeds(form, equations, also)
+        vectors, speeds = equations.vectors, equations.speeds
     numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     known = []
@@ -76,13 +80,13 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
             continue  # it holds the time, or positions on which the equations do not depend
         if not any(bottom.degrees()[k] for k in whole.places):
             known.append((one.name, _at(whole, field, numbers, top)))
-    vectors = [tuple(x for x in components if x in whole.variables) for _, components in equations.vectors]
-    grouped = {name for vector in vectors for name in vector}
-    speeds = tuple(name for name in equations.speeds if name in whole.variables)
+    grouped_by = [tuple(x for x in components if x in whole.variables) for _, components in vectors]
+    grouped = {name for vector in grouped_by for name in vector}
+    speeds = tuple(name for name in speeds if name in whole.variables)
     alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
-    vectors = [one for one in vectors if one]
-    kinds = tuple(x for x in (speeds, *dict.fromkeys(vectors), *alone) if x)
-    return Setting(whole, field, transfer, kinds, tuple(vectors), tuple(known))
+    found = [one for one in grouped_by if one]
+    kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
+    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known))
 
 
 def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, Any], p: Any) -> Any:
@@ -127,6 +131,7 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
     on = [one for one in (on_level(found, level) for level in levels(found)) if one.integrals]
     return Polynomials(
         found,
+        tuple(there.formula(there.field.generator(name)) for name in there.field.variables),
         tuple(there.formula(one.polynomial) for one in found.generators),
         tuple(on),
         tuple(tuple(there.formula(f) for _, f in one.integrals) for one in on),

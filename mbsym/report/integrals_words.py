@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from mbsym.problems.polynomial_integrals import Case, Generator, OnLevel, PolynomialIntegrals, Sure
+from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals, Sure
 from mbsym.report.said import Said
 
 #: One integral of a list, and one that holds where another is zero.
@@ -85,7 +85,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
                 "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.",
                 {"weight": count.weight, "more": count.most - count.products},
             )
-    if found.complete and not found.new:
+    if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
         yield "Up to weighted degree [[degree]] there is none beyond those of problem 7.", values
 
 

@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.report.integrals_words import LEVEL, LISTED, sentences, title
 from mbsym.report.language import Language
+from mbsym.report.latex_formulas import formula
 from mbsym.report.latex_words import escaped
 
 
 def of_integrals(result: Polynomials, tongue: Language) -> list[tuple[str, Formula]]:
     """Every integral, those of levels last: what it is, and its formula."""
     told = []
-    for one, formula in zip(result.found.generators, result.formulas, strict=True):
+    for one, x in zip(result.found.generators, result.formulas, strict=True):
         words = {"name": escaped(tongue.say(title(one))), "weight": one.weight}
-        told.append((tongue.sentence(LISTED, **words), formula))
+        told.append((tongue.sentence(LISTED, **words), x))
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
-        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
+        for (weight, _), x in zip(level.integrals, formulas, strict=True):
             words = {"name": escaped(tongue.say(title(level.level))), "own": level.level.weight, "weight": weight}
-            told.append((tongue.sentence(LEVEL, **words), formula))
+            told.append((tongue.sentence(LEVEL, **words), x))
     return told
 
 
-def weights_of(result: Polynomials, names: LatexNames) -> str:
+def weights_of(result: Polynomials) -> str:
     """``p, q, r: 1; gamma_1, gamma_2, gamma_3: 2``."""
     groups: dict[int, list[str]] = {}
-    for name, weight in zip(result.found.field.variables, result.found.grading.weights, strict=True):
-        groups.setdefault(weight, []).append(f"${names[name]}$")
+    for x, weight in zip(result.variables, result.found.grading.weights, strict=True):
+        groups.setdefault(weight, []).append(f"${formula(x)}$")
     return "; ".join(f"{', '.join(listed)}: {weight}" for weight, listed in groups.items())
 
 

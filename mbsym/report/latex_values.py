@@ -145,7 +145,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
         "polynomial_integrals": lambda one: of_integrals(one, tongue),
-        "polynomial_weights": lambda one: weights_of(one, names),
+        "polynomial_weights": lambda one: weights_of(one),
         "polynomial_sentences": lambda one: of_list(one, tongue),
         "OPENING": OPENING,
         "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),

@@ -20,4 +20,7 @@ SENTENCES = {
     "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.": "No está decidido si la de peso [[weight]] ([[name]]) es independiente de las anteriores.",
 }
 
-WORDS = {"further integral": "integral nueva"}
+WORDS = {
+    "function of the integrals of problem 7": "función de las integrales del problema 7",
+    "further integral": "integral nueva",
+}

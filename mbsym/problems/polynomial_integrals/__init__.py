@@ -32,6 +32,7 @@ from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
+    FUNCTION,
     Along,
     Case,
     Cases,
@@ -49,6 +50,7 @@ from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.polynomial_integrals.values import along
 
 __all__ = [
+    "FUNCTION",
     "Along",
     "Case",
     "Cases",

@@ -43,6 +43,12 @@ class Independence:
         moves = any(self.there.slopes)
         return False, Sure.PROVED if self.rank == self.most and moves else Sure.VERIFIED
 
+    def depends(self, f: Terms) -> bool:
+        """Whether f adds nothing to the rank of those before it, at the random state."""
+        if self.state is None:
+            return False
+        return bool(nmod_mat([*self.rows, self._gradient(f)], self.there.prime).rank() == len(self.rows))
+
     def _gradient(self, f: Terms) -> list[int]:
         assert self.state is not None
         return [slope(f, k, self.state, self.there.prime) for k in range(len(self.state))]

@@ -20,13 +20,17 @@ class Sure(Enum):
     UNDECIDED = "undecided"
 
 
+#: The name of an integral that depends on those of problem 7 as a function, at a random state.
+FUNCTION = "function of the integrals of problem 7"
+
+
 @dataclass(frozen=True)
 class Generator:
     """An integral that is no polynomial in those before it.
 
     ``polynomial`` in the field's context, df/dt = 0 (modulo the relations), proved by substitution.  ``name``: that of
-    the integral of problem 7 which it is, or is a part of; "" for one that problem 7 does not know.  ``independent`` of
-    those before it as a function, and how that is known.
+    the integral of problem 7 which it is, or is a part of; FUNCTION; "" for one that is no function of these.
+    ``independent`` of those before it as a function, and how that is known.
     """
 
     polynomial: Any
@@ -151,10 +155,11 @@ class Cases:
 class Polynomials:
     """What problem 9 tells of a system: the integrals found, and those that hold where one of them is zero.
 
-    ``formulas`` of the generators, ``on_levels`` of ``levels``, one by one.
+    ``variables`` of the field; ``formulas`` of the generators, ``on_levels`` of ``levels``, one by one.
     """
 
     found: PolynomialIntegrals
+    variables: tuple[Formula, ...]
     formulas: tuple[Formula, ...]
     levels: tuple[OnLevel, ...]
     on_levels: tuple[tuple[Formula, ...], ...]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Any
 
@@ -27,7 +27,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     monomials,
     times,
 )
-from mbsym.problems.polynomial_integrals.result import Count, Generator, PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.result import FUNCTION, Count, Generator, PolynomialIntegrals
 
 #: Products of generators of one weight.
 MOST_PRODUCTS = 3000
@@ -75,8 +75,13 @@ class Search:
         for weight in range(1, self.degree + 1):
             self._of_weight(weight)
         judged = Independence(self.there, self.grading.free)
+        of_known = Independence(self.there, self.grading.free)
+        for known in self.waiting:
+            of_known.of(known.terms)
         listed = []
         for one in self.generators:
+            if not one.name and of_known.rank and of_known.depends(one.terms):
+                one = replace(one, name=FUNCTION)
             independent, sure = judged.of(one.terms)
             listed.append(Generator(one.polynomial, one.weight, one.name, independent, sure))
         return PolynomialIntegrals(

@@ -75,10 +75,29 @@ def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
     assert "polynomialIntegrals = {" in (tmp_path / "out" / "report.wl").read_text("utf-8")
 
 
-def test_systems_in_angles_are_told_what_is_missing():
-    stage = Analysis(mbsym.load(SYSTEMS / "heavy-top.yaml").system, problems=(9,)).stage(9)
-    assert stage.value is None
-    assert "speeds" in str(stage.failure)
+def test_systems_in_angles_have_sines_and_cosines_for_variables():
+    """The heavy top in Cardan angles: its energy and the momentum of phi, the area integral of degree four."""
+    analysis = Analysis(mbsym.load(SYSTEMS / "heavy-top.yaml").system, problems=(9,))
+    result = analysis.polynomial_integrals
+    assert result.found.field.variables[3:] == ("sin(alpha)", "cos(alpha)", "sin(beta)", "cos(beta)")
+    assert result.found.new == ()
+    assert result.found.complete
+    assert [one.weight for one in result.found.generators] == [2, 3, 4]
+    assert str(result.formulas[0]) in ("alpha_dot*sin(beta) + phi_dot", "phi_dot + alpha_dot*sin(beta)")
+    # A damped pendulum keeps nothing.
+    damped = Analysis(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    assert (damped.found.generators, damped.found.complete) == ((), True)
+
+
+def test_a_wrong_sign_in_angles_is_found():
+    analysis = Analysis(mbsym.load(SYSTEMS / "double-pendulum.yaml").system, problems=(9,))
+    there = polynomial.setting(analysis)
+    (energy,) = [p for _, p in there.known]
+    field = there.field
+    assert field.reduced(field.derivative(energy)) == 0
+    wrong = replace(field, numerators=(-field.numerators[0], *field.numerators[1:]))
+    assert wrong.reduced(wrong.derivative(energy)) != 0
+    assert polynomial.integrals_of(replace(there, field=wrong), 3).generators == ()
 
 
 def test_every_sentence_has_its_translations():
