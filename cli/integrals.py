@@ -106,7 +106,7 @@ def command(
         complain(file, f"no integrals: {reason}")
         sys.exit(BAD_INPUT)
     except Failure as reason:
-        complain(file, f"no integrals: {reason}" + (f"; {reason.remedy}" if reason.remedy else ""))
+        complain(file, f"no integrals: {reason}" + (f"; {reason.remedy}" if reason.limit is Limit.DEGREE else ""))
         sys.exit(BAD_INPUT if reason.limit is Limit.DEGREE else FAILED)
     if as_json:
         from mbsym.report.integrals_json import integrals_json

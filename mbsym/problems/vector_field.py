@@ -107,6 +107,8 @@ def transfer_of(ring: Ring, places: dict[int, str], polynomials: Sequence[Polyno
 
 def _told(ring: Ring, k: int) -> str:
     g = ring.generators[k]
+    if g.kind == "prescribed":
+        return f"the prescribed {g.name}"
     return (
         "the time" if g.kind == "time" else f"{g.kind} of {g.name}" if g.name and not g.name.startswith("#") else g.kind
     )

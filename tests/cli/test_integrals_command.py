@@ -105,3 +105,17 @@ def test_hess_relation_is_told_with_its_condition():
     text = run(TOP, "--set", "y0=0", "--degree", "1", "--relations").stdout
     assert "A*x0*p + C*z0*r = 0" in text
     assert "is undecided" in text
+
+
+def test_systems_in_angles_have_rates_sines_and_cosines():
+    """The spherical pendulum: its energy, and the momentum of psi, sin(theta)^2 psi_dot."""
+    data = json.loads(run("systems/spherical-pendulum.yaml", "--json").stdout)
+    assert data["weights"] == dict.fromkeys(("psi_dot", "theta_dot", "sin(theta)", "cos(theta)"), 1)
+    assert [(one["weight"], one["name"]) for one in data["integrals"]] == [
+        (3, "momentum of psi"),
+        (4, "generalised energy"),
+    ]
+    assert data["complete"] is True
+    driven = run("systems/cart-pole.yaml")
+    assert driven.exit_code == 1
+    assert "the prescribed F occurs" in driven.stderr

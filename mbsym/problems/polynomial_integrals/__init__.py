@@ -1,4 +1,4 @@
-"""Problem 9: polynomial first integrals of equations that are polynomial in speeds and direction cosines.
+"""Problem 9: polynomial first integrals of equations in speeds and direction cosines, or in rates, sines and cosines.
 
 Of  x' = P(x)/d  the polynomials f with  sum_i P_i df/dx_i = 0  (modulo the relations that all states keep) are the
 kernel of a linear map on the monomials of one weighted degree.  The search goes through the weights w from below:
