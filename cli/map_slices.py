@@ -144,6 +144,8 @@ def remarks(found: Stack) -> list[str]:
     told = [
         f"{counted(len(critical), 'value')} of {name} at which the curves may be arranged in another way; between them "
         "regions are deformed into each other with their verdicts"
+        if critical
+        else f"the curves are arranged in one way at all values of {name}, and regions keep their verdicts"
     ]
     if unseen:
         irrational = sum(not isinstance(one.z, fmpq) for one in unseen)
@@ -160,7 +162,8 @@ def remarks(found: Stack) -> list[str]:
     if seconds and found.sound:
         told.append(
             f"check: {counted(sum(one.points for one in checks), 'more point')} in regions agree; a second slice "
-            f"between each two of the values, {seconds} in all, corresponds to the first"
+            + (f"between each two of the values, {seconds} in all, corresponds" if critical else "corresponds")
+            + " to the first"
         )
     return told
 
