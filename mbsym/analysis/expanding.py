@@ -137,7 +137,10 @@ def _quotient(transfer: Transfer, names: tuple[str, ...], numbers: Mapping[str, 
         context.constant(numbers[name]) if name in numbers else context.gen(names.index(name))
         for name in transfer.context.names()
     ]
-    top, bottom = transfer.fraction(p)
+    try:
+        top, bottom = transfer.fraction(p)
+    except NoClosedForm as reason:
+        raise NoClosedForm("the unperturbed motion is no rational function of the parameters") from reason
     return Quotient.of(top.compose(*images, ctx=context), bottom.compose(*images, ctx=context))
 
 

@@ -58,3 +58,14 @@ def test_a_system_without_fast_variables(tmp_path):
     done = run(str(tmp_path / "slow.yaml"))
     assert done.exit_code == 1
     assert "no variable is fast" in done.stderr
+
+
+def test_the_map_gives_the_range_that_the_reduced_condition_misjudges(tmp_path):
+    """lambda = 1/1000, kappa = omega = 1 keep the reduced condition; divergence where eps^2 > lambda kappa/omega^3."""
+    numbers = {"s": "1", "eta": "1/1000", "kappa": "1", "omega": "1", "rho": "0", "delta": "2/5", "A": "1", "b0": "1"}
+    settings = [word for name, value in numbers.items() for word in ("--set", f"{name}={value}")]
+    done = CliRunner().invoke(main, ["map", SLOW, "--x", "eps=0:1/2", *settings, "--out", str(tmp_path)])
+    assert done.exit_code == 0
+    told = " ".join(done.stdout.split())
+    assert "at 0.0316227766 (exactly: a root of a polynomial of degree 2" in told
+    assert "unstable: divergence, 1 root to the right" in told

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import SHIPPED, reference
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -209,3 +210,68 @@ def test_repelling_and_undecided_manifolds(damper, third):
     second = expansion(damper, 2)
     assert second.slow[0] is Outcome.UNDECIDED  # friction comes in with the third order
     assert not second.manifold.steady.slow.decided
+
+
+def changed(old, new):
+    text = (SHIPPED / "satellite-with-damper-slow.yaml").read_text(encoding="utf-8")
+    assert old in text
+    return expansion(mbsym.loads(text.replace(old, new).replace("delta: 0.4, ", "")), 3)
+
+
+def test_where_the_friction_is_negative_none_or_unknown():
+    """The fast roots are -delta/2 + O(eps) +- i sqrt(kappa/eps)."""
+    assert changed("delta: {sign: positive", "delta: {sign: negative").fast == (Outcome.FAILS, ())
+    unknown = changed("delta: {sign: positive", "delta: {sign: real").fast
+    assert (unknown[0], [one.kind for one in unknown[1]]) == (Outcome.CONDITIONAL, ["inequality"])
+    without = changed("  - damper: {coordinate: x, coefficient: eps*delta*A}\n", "")
+    assert (without.fast, without.slow) == ((Outcome.UNDECIDED, ()), (Outcome.UNDECIDED, ()))
+    inclined = changed("  a: 0\n", "  a: 1\n")
+    assert (inclined.manifold.steady, inclined.fast[0]) == (None, Outcome.UNDECIDED)
+    assert "motion" in inclined.missing
+
+
+def test_the_error_of_the_flow_against_a_run_of_all_equations(third):
+    """Largest errors of omega1, omega2, omega on [0, 10] from (3/10, 1/5, 1): orders 3 and 4 (3.01, 4.01 there)."""
+    manifold = third.manifold
+    field = manifold.field.field
+    names = field.context.names()
+    numbers = {"kappa": 1.0, "delta": 0.4, "s": 0.6, "rho": 0.25, "eta": 1.0, "omega": 1.0}
+
+    def compiled(p):
+        terms = (
+            "*".join([repr(int(c.p) / int(c.q)), *(f"{n}**{e}" for n, e in zip(names, m, strict=True) if e)])
+            for m, c in p.to_dict().items()
+        )
+        return "(" + ("+".join(terms) or "0.0") + ")"
+
+    def function(texts, arguments):
+        return eval(f"lambda {', '.join(arguments)}: [{', '.join(texts)}]", dict(numbers))
+
+    def series(one, most):
+        kept = (k for k in one.coefficients if k <= most)
+        return "+".join(
+            f"eps**{k}*{compiled(one.coefficients[k].top)}/{compiled(one.coefficients[k].bottom)}" for k in kept
+        )
+
+    below = compiled(field.denominator)
+    whole = function([f"{compiled(p)}/{below}" for p in field.numerators], ("eps", *field.variables))
+    start = dict(zip(manifold.slow, (0.3, 0.2, 1.0), strict=True))
+    times = np.linspace(0, 10, 41)
+    errors = {2: [], 3: []}
+
+    def run(f, eps, first):
+        done = solve_ivp(lambda _, x: f(eps, *x), (0, 10), first, "DOP853", times, rtol=1e-12, atol=1e-14)
+        assert done.success
+        return done.y
+
+    for eps in (1 / 20, 1 / 40, 1 / 80):
+        onto = function([series(one, 3) for one in manifold.functions], ("eps", *manifold.slow))
+        all_of = start | dict(zip(manifold.fast, onto(eps, *start.values()), strict=True))
+        truth = run(whole, eps, [all_of[name] for name in field.variables])
+        places = [field.variables.index(name) for name in manifold.slow]
+        for order, kept in errors.items():
+            flow = function([series(one, order) for one in manifold.flow], ("eps", *manifold.slow))
+            kept.append(abs(run(flow, eps, list(start.values())) - truth[places]).max())
+    slopes = {order: np.log2(kept[1] / kept[2]) for order, kept in errors.items()}
+    assert slopes[2] == pytest.approx(3, abs=0.1)
+    assert slopes[3] == pytest.approx(4, abs=0.1)
