@@ -10,7 +10,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from flint import fmpq, fmpq_mpoly_ctx, fmpq_poly
+from flint import fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, decompose
@@ -198,3 +198,13 @@ def test_what_curves_share_at_a_corner_is_of_lower_degree() -> None:
     assert field.value(line) == 0
     assert field.value(X**2 - 2) == 0
     assert len(corner.point.y.polynomial) == 2
+
+
+def test_inverses_at_one_point_are_bounded() -> None:
+    """In QQ(2^(1/40)) the root itself has an inverse, numbers of 3000 digits are left alone."""
+    p = fmpz_poly([-2] + [0] * 39 + [1])
+    field = SimpleField(number(roots_between(p, fmpq(0), fmpq(2))[0]))
+    long = fmpq_poly([fmpq(7**3000 + k, 5**3000) for k in range(40)])
+    assert field.inverse(fmpq_poly([0, 1])) == fmpq_poly([0] * 39 + [fmpq(1, 2)])
+    with pytest.raises(TooLargeError, match="arithmetic at a point in a number field of degree 40"):
+        field.inverse(long)

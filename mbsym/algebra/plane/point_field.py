@@ -23,6 +23,24 @@ from mbsym.algebra.plane.projection import Polynomial, coefficients
 MOST_DEGREE = 48
 
 
+#: At one point inverses may take so much work, degree^3 times bits: some seconds.
+MOST_WORK = 400_000_000
+
+
+class _Purse:
+    """What inverses at one point have cost so far."""
+
+    def __init__(self) -> None:
+        self.spent = 0
+
+    def pay(self, degree: int, a: Any) -> None:
+        """Raises TooLargeError where the inverse of a would be too much."""
+        bits = int(a.denom()).bit_length() + max((int(c).bit_length() for c in a.numer().coeffs()), default=0)
+        self.spent += degree**3 * bits
+        if self.spent > MOST_WORK:
+            raise TooLargeError(f"arithmetic at a point in a number field of degree {degree}", limit=Limit.WORK)
+
+
 def _affordable(degree: int) -> None:
     if degree > MOST_DEGREE:
         raise TooLargeError(f"a point in a number field of degree {degree}", limit=Limit.DEGREE)
@@ -37,7 +55,7 @@ class SimpleField:
 
     def __init__(self, alpha: AlgebraicNumber) -> None:
         self.alpha, self.modulus = alpha, alpha.modulus
-        self._extension = Extension(alpha)
+        self._extension, self._purse = Extension(alpha), _Purse()
 
     def constant(self, x: Any) -> Any:
         return fmpq_poly([x])
@@ -49,6 +67,7 @@ class SimpleField:
         return a * b % self.modulus
 
     def inverse(self, a: Any) -> Any:
+        self._purse.pay(self.modulus.degree(), a)
         return self._extension.inverse(a)
 
     def sign(self, a: Any) -> int:
@@ -59,7 +78,7 @@ class TowerField:
     """QQ(alpha)[y]/B: values are polynomials in y of lower degree than B over QQ(alpha)."""
 
     def __init__(self, root: Over) -> None:
-        self.root, self.over = root, root.over
+        self.root, self.over, self._purse = root, root.over, _Purse()
 
     def constant(self, x: Any) -> OverField:
         return [] if x == 0 else [fmpq_poly([x])]
@@ -109,6 +128,7 @@ class TowerField:
         s0: OverField = []
         s1: OverField = [fmpq_poly([1])]
         while len(r1) > 1:
+            self._purse.pay(over.modulus.degree(), r1[-1])
             unit = over.inverse(r1[-1])
             monic = over.trimmed([x * unit for x in r1])
             quotient, rest = over.divided(r0, monic)
@@ -116,6 +136,7 @@ class TowerField:
             r0, r1 = r1, rest
             product = self.times(quotient, s1)
             s0, s1 = s1, self.add(s0, [-x for x in product])
+        self._purse.pay(over.modulus.degree(), r1[0])
         unit = over.inverse(r1[0])
         return over.trimmed([x * unit for x in s1])
 
