@@ -47,6 +47,7 @@ class Limits:
     pairs: int = 3_000
     solutions: int = 96
     work: int = 10_000_000
+    reduction: int = 0  # elements x terms x bits before one interreduction; 0: any
 
 
 @dataclass(frozen=True)
@@ -285,6 +286,7 @@ class _Solver:
         """Interreduced irreducible equations; None where the branch is empty or was split."""
         current = [x for x in branch.equations if not x.is_zero()]
         while True:
+            self._check_reduction(current)
             current = [x for x in _vector(current, self.context).autoreduction() if not x.is_zero()]
             self.spend(sum(map(len, current)) * (1 + len(current)))
             smaller, splitting = [], []
@@ -310,6 +312,13 @@ class _Solver:
             if all(_key(a) == _key(b) for a, b in zip(smaller, current, strict=True)):
                 return smaller
             current = smaller
+
+    def _check_reduction(self, current: list[Polynomial]) -> None:
+        """One interreduction is one call that nothing stops: its size is looked at before."""
+        if self.limits.reduction and current:
+            bits = max(int(c).bit_length() for x in current for c in x.coeffs())
+            if len(current) * sum(map(len, current)) * bits > self.limits.reduction:
+                raise _TooLarge(f"an interreduction of coefficients of {bits} bits")
 
     # --- Buchberger --------------------------------------------------------------------------------------------------
 

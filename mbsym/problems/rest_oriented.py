@@ -26,8 +26,9 @@ from mbsym.problems.rest_cosines import Choice, Cosines, choices
 from mbsym.problems.rest_place import PRECISION, Place, angle_of, exact_rates
 from mbsym.problems.rest_unknowns import Unknowns
 
-#: How many times the bits of a coefficient that are allowed in sines and cosines: there are fewer of them here.
-BITS = 20
+#: The bits of a coefficient that are allowed here, as a multiple of those in sines and cosines; the part of the work (the
+#: general gyrostat takes 150,000 steps of ten million); and the size of one interreduction (the gyrostat: 40 million).
+BITS, PART, REDUCTION = 3, 20, 100_000_000
 
 Split = Callable[[Polynomial], Iterable[Polynomial]]
 
@@ -147,7 +148,12 @@ class _System:
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
         if used != set(range(self.context.nvars())):
             return None
-        result = solve(self.equations, (), bounded, replace(limits, bits=BITS * limits.bits))
+        result = solve(
+            self.equations,
+            (),
+            bounded,
+            replace(limits, bits=BITS * limits.bits, work=limits.work // PART, reduction=REDUCTION),
+        )
         if result.unfinished or result.families:
             return None
         places: list[Place] = []

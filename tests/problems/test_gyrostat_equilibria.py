@@ -26,6 +26,25 @@ Array = NDArray[np.float64]
 
 GYROSTAT = mbsym.load(SHIPPED / "orbital-gyrostat.yaml").system
 
+ON_AN_ARM = """
+mbsym: 1
+name: spun
+prescribed: {chi: {rate: 1}}
+bodies:
+  - {name: arm, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - name: body
+    attached to: arm
+    connection point: [2, 0, 0]
+    rotation: {axes: [1, 2, 3], angles: [p, q, r]}
+    mass: 1
+    mass centre: [0.3, -0.2, 0.1]
+    inertia about: joint
+    inertia: [3, 2, 4]
+    gyrostatic moment: [0.1, 0.3, 0.2]
+loads:
+  - uniform gravity: {vector: [0, 0, -1]}
+"""
+
 
 def listed(inertia: tuple[str, str, str], h: tuple[str, str, str], limits: Limits | None = None) -> Equilibria:
     given = dict(zip(("A", "B", "C", "h1", "h", "h3"), map(Fraction, (*inertia, *h)), strict=True))
@@ -172,3 +191,10 @@ def test_a_gyrostat_without_symmetry_is_not_counted_up_to_turns() -> None:
     assert found.complete
     assert all(not one.free for one in found.equilibria)
     assert not any("up to turns" in x for x in found.remarks)
+
+
+def test_a_body_whose_conditions_are_too_large_stays_open_in_bounded_time() -> None:
+    """A heavy gyrostat on a turning arm, its mass centre off every axis: once an interreduction of minutes."""
+    found = equilibria(mbsym.loads(ON_AN_ARM).system, {})
+    assert not found.complete
+    assert any("not finished" in x for x in found.remarks)
