@@ -26,7 +26,7 @@ from mbsym.problems.rest_cosines import Choice, Cosines, choices
 from mbsym.problems.rest_place import PRECISION, Place, angle_of, exact_rates
 from mbsym.problems.rest_unknowns import Unknowns
 
-#: The bits of a coefficient that are allowed here, as a multiple of those in sines and cosines; the part of the work (the
+#: Bits of a coefficient that are allowed, as a multiple of those in sines and cosines; the part of the work (the
 #: general gyrostat takes 150,000 steps of ten million); and the size of one interreduction (the gyrostat: 40 million).
 BITS, PART, REDUCTION = 3, 20, 100_000_000
 
