@@ -117,6 +117,7 @@ bench: robot-data
 	$(BIN)/python tests/bench/rows_bench.py
 	$(BIN)/python tests/bench/loops_bench.py --large
 	$(BIN)/python tests/bench/sweep_bench.py
+	$(BIN)/python tests/bench/maps_bench.py
 	$(BIN)/python tests/bench/peers_bench.py
 	$(BIN)/python tests/bench/choice_bench.py
 	$(BIN)/python tests/bench/equilibria_bench.py
