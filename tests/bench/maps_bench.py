@@ -6,7 +6,7 @@
 The counts are exact (characteristic polynomial of the first-order matrix, Sturm's chains); beside them stands the time
 that a grid of as many points takes with NumPy's eigvals, which says nothing between its points.
 
-Growth: oscillators  x'' + p_k x' + q_k x = 0,  p_k and q_k random polynomials of the degree in two parameters: each gives
+Growth: oscillators  x'' + p_k x' + q_k x = 0,  p_k and q_k random polynomials of two parameters: each gives
 two conditions.  Beside them a grid with as many rows and columns as the map has corners: a coarser one has corners that
 share a cell.  Its time is that of NumPy's eigvals at so many points, from a sample of them.
 """
