@@ -9,7 +9,7 @@ from typing import Any
 from mbsym.algebra.characteristic import BUDGET as DETERMINANT
 from mbsym.algebra.characteristic import characteristic_polynomial
 from mbsym.algebra.failures import Failure, Limit
-from mbsym.analysis import PROBLEMS
+from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS
 from mbsym.formulas.formula import Matrix
 from mbsym.numerics.kinds import ENTRIES, NOT_ASKED, SUBSYSTEMS
 from mbsym.numerics.ledger.entry import COUNT, PROVED, Measure, Saving
@@ -21,9 +21,9 @@ TOO_LARGE = (Limit.TERMS, Limit.WORK, Limit.MEMORY)
 
 
 def problems_not_asked(work: Work) -> Iterator[Saving]:
-    """Problems that nobody asked for and nothing asked for needed, against deriving them."""
+    """Problems of every run that nobody asked for and nothing asked for needed, against deriving them."""
     analysis = work.analysis
-    left = [n for n in PROBLEMS if n not in analysis.problems and PROBLEMS[n].attribute not in analysis.derived]
+    left = [n for n in USUAL_PROBLEMS if n not in analysis.problems and PROBLEMS[n].attribute not in analysis.derived]
     for number in left:
         work.require(0.0)
         problem, stage = PROBLEMS[number], work.bounded.stage(number)
