@@ -101,6 +101,19 @@ def test_the_euler_top_about_its_axes(tmp_path):
     assert told
 
 
+def test_the_middle_axis_of_a_given_body(tmp_path):
+    """I = (2, 4, 3): about the third axis roots are r/sqrt(8) and -r/sqrt(8), and no combination is definite."""
+    found = _heavy(tmp_path, [], [0, 0, 0], "[2, 4, 3]").invariant_sets
+    one = next(x for x in found.families[0].sets if x.free == ("r",))
+    assert one.variation.outcome is Definiteness.NEVER
+    assert not _all_hold(one.first.necessary, r=1)
+    assert _all_hold(one.first.necessary, r=0)  # at rest nothing is said against it
+    assert one.first.complete
+    largest = next(x for x in found.families[0].sets if x.free == ("q",))
+    assert _all_hold(largest.first.necessary, q=1)
+    assert largest.variation.outcome is Definiteness.CONDITIONAL
+
+
 def _all_hold(relations, **numbers):
     for one in relations:
         x = _value(one.formula, **numbers)

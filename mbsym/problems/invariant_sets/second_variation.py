@@ -207,8 +207,13 @@ def first_approximation(place: Place) -> FirstApproximation | None:
             if condition.kind == "inequality":
                 unless = tuple(arena.formula(f) for f in condition.nonzero if not place.never_zero(f))
                 necessary.append(Relation(arena.formula(condition.polynomial), ">=", unless))
+            elif sign == "nonpositive":  # it has to vanish: one of these factors does
+                product = arena.ring.one
+                for f in arena.signs.nonzero_condition(p).nonzero:
+                    product = product * f
+                necessary.append(Relation(arena.formula(-product * product), ">="))
             else:
-                complete = False  # never positive, and perhaps zero
+                complete = False
     return FirstApproximation(zeros, tuple(factors), () if unstable else tuple(necessary), unstable, complete)
 
 
