@@ -12,6 +12,7 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.motion import relations
 from mbsym.problems import perturbation
 from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import PROVED, Integral
@@ -62,13 +63,14 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     equations: Any = analysis.equations
     listed = analysis.integrals
     also = [one.formula.polynomial for one in listed]
+    images = relations(analysis.parameters_scene)
     if form is None:
-        whole, transfer = in_angles(analysis.ring, analysis.system.coordinates, equations, also)
+        whole, transfer = in_angles(analysis.ring, analysis.system.coordinates, equations, also, images)
         angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
         vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
         speeds: tuple[str, ...] = whole.variables
     else:
-        whole, transfer = in_speeds(form, equations, also)
+        whole, transfer = in_speeds(form, equations, also, images)
         vectors, speeds = equations.vectors, equations.speeds
     numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
@@ -139,7 +141,12 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
 
 
 def check(analysis: Analysis) -> Check | None:
-    """Only where somebody has asked for it: dI/dt of those found, by d'Alembert's principle along the motion."""
+    """Only where somebody has asked for it: dI/dt of those found, by d'Alembert's principle along the motion.
+
+    Of a system whose parameters are related there is none: the states of the oracles take them for independent.
+    """
+    if analysis.system.relations:
+        return None
     found = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
     if found is None:
         return None

@@ -8,7 +8,7 @@ depends are left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flint import fmpq
@@ -18,15 +18,19 @@ from mbsym.algebra.matrices import determinant
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.problems.equations import Equations
-from mbsym.problems.vector_field import Transfer, transfer_of
+from mbsym.problems.vector_field import NOTHING, Transfer, put_in, transfer_of
 
 
 def in_angles(
-    ring: Ring, coordinates: Sequence[str], equations: Equations, also: Sequence[Polynomial] = ()
+    ring: Ring,
+    coordinates: Sequence[str],
+    equations: Equations,
+    also: Sequence[Polynomial] = (),
+    images: Mapping[int, Polynomial] = NOTHING,
 ) -> tuple[PolynomialField, Transfer]:
     """(q', sin, cos, q)' over QQ[parameters], det(M) a part of the denominator, and the way from the ring there.
 
-    Raises NoClosedForm where the time, roots or functions occur.
+    ``images`` take the place of dependent parameters.  Raises NoClosedForm where the time, roots or functions occur.
     """
     mass = equations.mass_matrix.polynomials
     forcing = [x.polynomial for x in equations.forcing]
@@ -35,6 +39,7 @@ def in_angles(
         determinant(ring, [[*row[:k], f, *row[k + 1 :]] for row, f in zip(mass, forcing, strict=True)])
         for k in range(len(coordinates))
     ]
+    whole, *scaled = (put_in(ring, p, images) for p in (whole, *scaled))
     used = set(occurring([whole, *scaled]))
     places: dict[int, str] = {ring.index("velocity", name): f"{name}_dot" for name in coordinates}
     rates = list(scaled)
@@ -58,8 +63,9 @@ def in_angles(
     rates = [ring.reduce(x) for x in rates]
     fractions = [ring.fraction(p) for p in (whole, *rates)]
     held = [factor for _, factors in fractions for factor, _ in factors]
+    also = [put_in(ring, x, images) for x in also]
     also = [p for x in also for p in (ring.fraction(x)[0], *(f for f, _ in ring.fraction(x)[1]))]
-    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also])
+    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also], images)
     tops, bottoms = zip(*(transfer.fraction(p) for p in (whole, *rates)), strict=True)
     common: Any = bottoms[0]
     for bottom in bottoms[1:]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx
@@ -15,20 +15,27 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.speed_integrals import Field
 from mbsym.problems.speeds import SpeedEquations
 
+#: No relations between parameters.
+NOTHING: Mapping[int, Polynomial] = {}
+
 
 def in_speeds(
-    form: SpeedForm, equations: SpeedEquations, also: Sequence[Polynomial] = ()
+    form: SpeedForm,
+    equations: SpeedEquations,
+    also: Sequence[Polynomial] = (),
+    images: Mapping[int, Polynomial] = NOTHING,
 ) -> tuple[PolynomialField, Transfer]:
     """(u, s)' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
 
     Variables are the speeds and the positions on which the equations depend; parameters are those that occur in the
-    equations and in ``also``.  Raises NoClosedForm where the time, roots
-    or functions occur, or angles do (their sines and cosines are no variables of these equations).
+    equations and in ``also``, where ``images`` (by generator) take the place of dependent ones.  Raises NoClosedForm
+    where the time, roots or functions occur, or angles do: their sines and cosines are no variables here.
     """
     ring = form.ring
     field = Field(form, equations)
     positions = [one for one in form.positions if one.name not in equations.aside]
     numerators = [*field.scaled, *(ring.times(field.determinant, form.rates[one.name]) for one in positions)]
+    scaled = [put_in(ring, p, images) for p in (field.determinant, *numerators)]
     variables = [*form.speeds, *positions]
     relations = []
     names = {one.name for one in positions}
@@ -41,11 +48,12 @@ def in_speeds(
             total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
         relations.append(total)
     places = {one.index: one.name for one in variables}
-    fractions = [ring.fraction(p) for p in (field.determinant, *numerators)]
+    fractions = [ring.fraction(p) for p in scaled]
     held = [factor for _, factors in fractions for factor, _ in factors]
+    also = [put_in(ring, x, images) for x in also]
     also = [p for x in also for p in (ring.fraction(x)[0], *(f for f, _ in ring.fraction(x)[1]))]
-    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also])
-    tops, bottoms = zip(*(transfer.fraction(p) for p in (field.determinant, *numerators)), strict=True)
+    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also], images)
+    tops, bottoms = zip(*(transfer.fraction(p) for p in scaled), strict=True)
     common = bottoms[0]
     for bottom in bottoms[1:]:
         common = common * (bottom / bottom.gcd(common))
@@ -61,11 +69,22 @@ def in_speeds(
     ), transfer
 
 
+def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:
+    """p with what relations say in place of dependent parameters."""
+    return ring.substitute(p, images) if images else p
+
+
 class Transfer:
     """Polynomials of a ring over a context of parameters and variables alone.  Raises NoClosedForm for others."""
 
-    def __init__(self, ring: Ring, places: dict[int, str], parameters: Sequence[int]) -> None:
-        self.ring = ring
+    def __init__(
+        self,
+        ring: Ring,
+        places: dict[int, str],
+        parameters: Sequence[int],
+        images: Mapping[int, Polynomial] = NOTHING,
+    ) -> None:
+        self.ring, self.images = ring, images
         self.parameters = tuple(ring.generators[k].name for k in parameters)
         self.variables = tuple(places.values())
         self.places = (*parameters, *places)
@@ -81,8 +100,8 @@ class Transfer:
         return self.context.from_dict({tuple(m[k] for k in self.places): c for m, c in p.to_dict().items()})
 
     def fraction(self, p: Polynomial) -> tuple[Any, Any]:
-        """(P, Q) with p = P/Q, for p with reciprocals of polynomials in the parameters."""
-        top, factors = self.ring.fraction(p)
+        """(P, Q) with p = P/Q, for p with reciprocals of polynomials in the parameters; relations are used."""
+        top, factors = self.ring.fraction(put_in(self.ring, p, self.images))
         bottom = self.context.constant(1)
         for factor, exponent in factors:
             bottom *= self(factor) ** exponent
@@ -99,10 +118,12 @@ class Transfer:
         return self.ring.context.from_dict(total)
 
 
-def transfer_of(ring: Ring, places: dict[int, str], polynomials: Sequence[Polynomial]) -> Transfer:
+def transfer_of(
+    ring: Ring, places: dict[int, str], polynomials: Sequence[Polynomial], images: Mapping[int, Polynomial] = NOTHING
+) -> Transfer:
     """With the parameters that occur; ``places``: generators of the ring that are variables, by name."""
     parameters = [k for k in occurring(polynomials) if k not in places and ring.generators[k].kind == "parameter"]
-    return Transfer(ring, places, parameters)
+    return Transfer(ring, places, parameters, images)
 
 
 def _told(ring: Ring, k: int) -> str:

@@ -179,7 +179,7 @@ def test_orbital_equilibria_in_quaternions():
     assert not found.complete
     assert family.unfinished
     assert all(one.kind is Kind.STEADY and one.invariant is Proof.PROVED for one in family.sets)
-    numbers = {"omega0": 1, "nu": 1, "R": 1, "m": 1}
+    numbers = {"omega0": 1, "R": 1, "m": 1}  # nu = omega0^2 R^3 is a relation of the description
     for A, B, C in ((5, 4, 6), (4, 5, 6), (5, 6, 4), (6, 4, 5)):
         for one in family.sets:
             spin = {name: x for name, x in one.solved if name in "pqr" and str(x) != "0"}
