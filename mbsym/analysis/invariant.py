@@ -6,8 +6,6 @@ import random
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from flint import nmod_mat
-
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.problems.claims.forms import in_parameters
@@ -21,8 +19,6 @@ if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.vector_field import Transfer
-
-_PRIME = (1 << 31) - 1
 
 
 def invariant_sets_of(analysis: Analysis) -> InvariantSets:
@@ -97,13 +93,15 @@ def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> list[t
 
     The relations come last, with names of their own: they take part in the families.
     """
+    from mbsym.problems.invariant_sets.branches import PRIME, rank
+
     chance = random.Random(3)
-    point = [chance.randrange(2, _PRIME) for _ in range(field.context.nvars())]
+    point = {k: chance.randrange(2, PRIME) for k in range(field.context.nvars())}
     rows = [_gradient(field, relation, point) for relation in field.relations]
     kept = []
     for name, p in found:
         row = _gradient(field, p, point)
-        if _rank([*rows, row]) > len(rows):
+        if rank([*rows, row]) > len(rows):
             rows.append(row)
             kept.append((name, p))
     if not kept:
@@ -114,22 +112,10 @@ def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> list[t
     return kept
 
 
-def _gradient(field: PolynomialField, p: Any, point: list[int]) -> list[int]:
-    return [_value(p.derivative(k), point) for k in field.places]
+def _gradient(field: PolynomialField, p: Any, point: dict[int, int]) -> list[int]:
+    from mbsym.problems.invariant_sets.branches import evaluate
 
-
-def _value(p: Any, point: list[int]) -> int:
-    total = 0
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) * pow(int(c.q), -1, _PRIME)
-        for x, power in zip(point, monomial, strict=True):
-            term = term * pow(x, power, _PRIME) % _PRIME
-        total += term
-    return total % _PRIME
-
-
-def _rank(rows: list[list[int]]) -> int:
-    return int(nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], _PRIME).rank())
+    return [evaluate(p.derivative(k), point) for k in field.places]
 
 
 def _assumptions(analysis: Analysis, transfer: Transfer) -> list[tuple[Any, str]]:

@@ -26,7 +26,7 @@ Point = dict[int, arb]
 
 def is_real(place: Place) -> bool:
     """Whether a real point of the set was found at parameters that the description allows."""
-    with _precision():
+    with ctx.workprec(BITS):
         return next(_points(place, POINTS), None) is not None
 
 
@@ -37,7 +37,7 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
     if variation.outcome not in (Definiteness.CONDITIONAL, Definiteness.STABLE):
         return Gap.UNTRIED
     tried = False
-    with _precision():
+    with ctx.workprec(BITS):
         for point in _points(place, POINTS):
             if not _hold(first.necessary, point, strictly=True):
                 continue
@@ -45,14 +45,6 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
             if not any(_definite(variation, choice) for choice in _choices(place, point)):
                 return Gap.FOUND
     return Gap.NONE_FOUND if tried else Gap.UNTRIED
-
-
-class _precision:
-    def __enter__(self) -> None:
-        self.before, ctx.prec = ctx.prec, BITS
-
-    def __exit__(self, *_: object) -> None:
-        ctx.prec = self.before
 
 
 def _definite(variation: SecondVariation, point: Mapping[int, arb]) -> bool:
