@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import sympy
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
@@ -245,3 +246,39 @@ def test_definiteness_agrees_with_eigenvalues(clebsch):
             for side, sign in ((one.variation.positive, 1), (one.variation.negative, -1)):
                 assert (side is not None and _all_hold(side, **numbers)) == bool((sign * eigenvalues > 0).all())
     assert compared > 60
+
+
+def test_definiteness_where_values_have_denominators():
+    """A steady motion of Kovalevskaya's top with r = x0 m g gamma3/(C p): projected Hessians by SymPy, at numbers."""
+    found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+    family = found.families[0]
+    one = next(x for x in family.sets if x.kind is Kind.STEADY and {"p", "gamma3"} == set(x.free))
+    state = sympy.symbols("p q r gamma1 gamma2 gamma3")
+    formulas = {name: x.to_sympy() for name, x in found.integrals}
+    compared = set()
+    for gamma3 in (Fraction(4, 5), Fraction(-4, 5)):
+        for free in [Fraction(k, 40) for k in range(-60, 61, 7)]:
+            # C^2 p^4 + (x0 m g gamma3)^2 = (x0 m g)^2
+            numbers = {"C": 3, "x0": 5, "m": 1, "g": 1, "p": 1, "gamma3": gamma3, "lambda1": free}
+            numbers |= {name: _value(x, **numbers) for name, x in one.solved}
+            numbers |= {name: _value(x, **numbers) for name, x in one.multipliers if x is not None}
+            at = {sympy.Symbol(name): sympy.Rational(str(x)) for name, x in numbers.items()}
+            parameters = {s: v for s, v in at.items() if s not in state}
+            parts = [formulas[name].subs(parameters) for name in family.integrals]
+            whole = parts[0] + sum(
+                parameters[sympy.Symbol(name)] * x for name, x in zip(family.multipliers, parts[1:], strict=True)
+            )
+            place = {s: at[s] for s in state}
+            assert all(sympy.diff(whole, s).subs(place) == 0 for s in state)
+            gradients = np.array([[float(sympy.diff(x, s).subs(place)) for s in state] for x in parts])
+            hessian = np.array(sympy.hessian(whole, state).subs(place), dtype=float)
+            _, singular, rows = np.linalg.svd(gradients)
+            tangent = rows[np.sum(singular > 1e-9 * singular[0]) :].T
+            eigenvalues = np.linalg.eigvalsh(tangent.T @ hessian @ tangent)
+            if np.abs(eigenvalues).min() < 1e-6 * np.abs(eigenvalues).max():
+                continue
+            for side, sign in ((one.variation.positive, 1), (one.variation.negative, -1)):
+                definite = bool((sign * eigenvalues > 0).all())
+                assert (side is not None and _all_hold(side, **numbers)) == definite
+                compared.add(definite)
+    assert False in compared

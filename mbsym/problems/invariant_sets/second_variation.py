@@ -33,10 +33,8 @@ MOST_TERMS = 600
 def on_level(place: Place, family: Polynomial) -> SecondVariation:
     """Of a steady motion: definiteness on the common tangent space of all integrals and relations."""
     arena = place.arena
-    gradients = [
-        [place.shortened(place.fraction(p.derivative(g))[0]) for g in arena.variables]
-        for p in (*arena.integrals, *arena.relations)
-    ]
+    integrals = (*arena.integrals, *arena.relations)
+    gradients = [_cleared(place, [[place.fraction(p.derivative(g)) for g in arena.variables]])[0][0] for p in integrals]
     hessian, scale = _hessian(place, family, arena.variables)
     rows, pivots = _independent(place, gradients)
     if rows is None:
@@ -63,7 +61,11 @@ def across(place: Place, family: Polynomial) -> SecondVariation:
 
 def _hessian(place: Place, family: Polynomial, variables: Sequence[int]) -> tuple[Rows, Polynomial]:
     """K'' times ``scale`` on the branch, without denominators."""
-    parts = [[place.fraction(family.derivative(a).derivative(b)) for b in variables] for a in variables]
+    return _cleared(place, [[place.fraction(family.derivative(a).derivative(b)) for b in variables] for a in variables])
+
+
+def _cleared(place: Place, parts: list[list[tuple[Polynomial, Polynomial]]]) -> tuple[Rows, Polynomial]:
+    """Fractions times one common denominator, and that."""
     scale = place.arena.ring.one
     for row in parts:
         for _, bottom in row:
