@@ -34,9 +34,10 @@ BELOW = {
     "editing": "expressions algebra model source formulas analysis",
     "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
     "diff": "expressions algebra formulas report",
+    "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",
     "__init__": "source model analysis numerics simulation studies",
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
-    " diff editing maps sweeps __init__",
+    " diff editing maps sweeps picture __init__",
 }
 MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

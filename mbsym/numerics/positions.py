@@ -138,35 +138,35 @@ def positions(scenario: Scenario, times: Any, states: Any, ring: Ring | None = N
     scene = scene_without_accelerations(system, ring if ring is not None else ring_of(system), program, environment)
     fresh = bound(scenario)
     inputs = ("t", *system.coordinates, *system.velocities)
-    frames = _frames(system)
+    carriers = frames(system)
     codes = {}
-    for number, frame in enumerate(frames):
+    for number, frame in enumerate(carriers):
         vectors = [*(_place(scene, frame, point) for point in _points(system, frame)), *_upward(scene, frame)]
         nodes = substituted(program, [x for vector in vectors for x in vector], fresh)
         codes[f"frame{number}"] = Code(fresh, inputs, tuple(nodes))
     compiled = kernels(codes)
     moments = np.vstack([times, np.asarray(states, dtype=float)])
     with np.errstate(all="ignore"):
-        places = [compiled[f"frame{i}"](moments) for i in range(len(frames))]
-        found = [_positions(system, frame, rows, moments[0]) for frame, rows in zip(frames, places, strict=True)]
+        places = [compiled[f"frame{i}"](moments) for i in range(len(carriers))]
+        found = [_positions(system, frame, rows, moments[0]) for frame, rows in zip(carriers, places, strict=True)]
         found = [item for item in found if 0 < item.size < np.inf]
         least = min(map(_extent, found), default=0.0)
     return next((item for item in found if _extent(item) <= COMPACT * least), None)
 
 
-def _frames(system: System) -> list[str]:
+def frames(system: System) -> list[str]:
     """The inertial frame, and further in those that carry everything and that no coordinate moves."""
     moving = {*system.coordinates, *system.velocities}
-    frames = [INERTIAL]
+    found = [INERTIAL]
     while True:
-        carried = [body for body in system.bodies if body.attached_to == frames[-1]]
+        carried = [body for body in system.bodies if body.attached_to == found[-1]]
         if len(carried) != 1 or carried[0].mass != ZERO or carried[0].inertia is not None:
-            return frames
+            return found
         (body,) = carried
         alone = not any(other.attached_to == body.name for other in system.bodies)
         if alone or any(moving & names(x) for x in expressions((body.rotation, body.connection_point))):
-            return frames
-        frames.append(body.name)
+            return found
+        found.append(body.name)
 
 
 def _points(system: System, frame: str) -> list[Point]:

@@ -68,12 +68,12 @@ def body_lines(body: Body, values: Mapping[str, Fraction]) -> tuple[Any, ...]:
 
 def _placed(shape: Shape, values: Mapping[str, Fraction]) -> list[Any]:
     at = np.array([float(exact(x, values)) for x in shape.at])
-    turn = _turned(shape.rotation, values)
+    turn = turned(shape.rotation, values)
     size = [float(exact(x, values)) for x in shape.size]
     return [line @ turn.T + at for line in shape_lines(shape.kind, size)]
 
 
-def _turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Any:
+def turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Any:
     """The matrix that turns components along the shape's axes into those along the body's."""
     whole = np.eye(3)
     for axis, angle in rotation.turns():

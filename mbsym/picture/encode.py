@@ -1,0 +1,122 @@
+"""Pictures as JSON values: what a page reads (editor/src/picture/types.ts has the same names).
+
+Numbers that are not finite become null; floats are written whole, so that the page computes with the same doubles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isfinite
+from typing import Any
+
+from mbsym.expressions.table import Curve
+from mbsym.picture.program import PoseProgram
+from mbsym.picture.values import Closure, Drawn, Picture
+from mbsym.picture.words import sentences
+
+
+def as_json(found: Picture) -> dict[str, Any]:
+    """The picture with the sentences that have to stand beside it."""
+    return {
+        "name": found.name,
+        "frame": found.frame,
+        "units": dict(found.units),
+        "coordinates": [
+            {
+                "name": x.name,
+                "kind": x.kind.value,
+                "unit": x.unit,
+                "value": number(x.value),
+                "velocity": number(x.velocity),
+                "minimum": number(x.minimum),
+                "maximum": number(x.maximum),
+                "limited": x.limited,
+            }
+            for x in found.coordinates
+        ],
+        "parameters": {name: number(value) for name, value in found.parameters},
+        "program": _program(found.program),
+        "bodies": [_body(x) for x in found.bodies],
+        "arrows": [
+            {"load": x.load, "of": x.of.value, "body": x.body, "point": x.point, "along": x.along} for x in found.arrows
+        ],
+        "lines": [{"kind": x.kind.value, "start": x.start, "end": x.end, "of": x.of} for x in found.lines],
+        "closure": None if found.closure is None else _closure(found.closure),
+        "view": {
+            "up": numbers(found.view.up),
+            "azimuth": found.view.azimuth,
+            "elevation": found.view.elevation,
+            "plane": found.view.plane,
+        },
+        "middle": numbers(found.middle),
+        "extent": number(found.extent),
+        "sentences": list(sentences(found)),
+    }
+
+
+def number(value: float) -> float | None:
+    """null for what is not finite."""
+    return float(value) if isfinite(value) else None
+
+
+def numbers(values: Iterable[float]) -> list[float | None]:
+    """The same for many."""
+    return [number(x) for x in values]
+
+
+def _program(found: PoseProgram) -> dict[str, Any]:
+    return {
+        "inputs": list(found.inputs),
+        "constants": numbers(found.constants),
+        "steps": [list(step) for step in found.steps],
+        "tables": [_table(curve) for curve in found.tables],
+    }
+
+
+def _table(curve: Curve) -> dict[str, Any]:
+    """f = c_0 + u (c_1 + ...), u = x - base of the piece: the i-th lies before knot i, the last behind all."""
+    return {
+        "knots": [float(x) for x in curve.knots],
+        "bases": [float(x) for x in curve.bases],
+        "pieces": [[float(x) for x in piece] for piece in curve.polynomials],
+    }
+
+
+def _body(found: Drawn) -> dict[str, Any]:
+    joint = found.joint
+    return {
+        "name": found.name,
+        "parent": found.parent,
+        "axes": found.axes,
+        "origin": found.origin,
+        "centre": found.centre,
+        "massive": found.massive,
+        "joint": {
+            "hinges": [
+                {"along": x.along, "coordinates": list(x.coordinates), "slides": x.slides} for x in joint.hinges
+            ],
+            "sprung": list(joint.sprung),
+            "damped": list(joint.damped),
+        },
+        "shapes": [
+            {"kind": x.kind, "size": numbers(x.size), "at": numbers(x.at), "axes": [numbers(row) for row in x.axes]}
+            for x in found.shapes
+        ],
+        "ellipsoid": None
+        if found.ellipsoid is None
+        else {
+            "halfAxes": numbers(found.ellipsoid.half_axes),
+            "axes": [numbers(row) for row in found.ellipsoid.axes],
+            "trueSize": found.ellipsoid.true_size,
+        },
+    }
+
+
+def _closure(found: Closure) -> dict[str, Any]:
+    return {
+        "coordinates": list(found.coordinates),
+        "rows": list(found.rows),
+        "slopes": [list(row) for row in found.slopes],
+        "names": list(found.names),
+        "tolerance": found.tolerance,
+    }

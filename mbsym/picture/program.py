@@ -1,0 +1,112 @@
+"""Straight-line programs as plain data: what a page evaluates for itself, sixty times a second.
+
+    value k = input k                                       k < inputs
+    value k = constant k - inputs                           k < inputs + constants
+    value k = operation(value a[, value b])                 of step k - inputs - constants; a, b < k
+
+Operations: + - * / neg sqrt sin cos exp log atan sinh cosh tanh abs sign, and ``table i``, the i-th of ``tables``.
+Constants are the doubles nearest to the exact numbers; the order of operations is that of ``mbsym.algebra.program``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.lookup import looked_up
+from mbsym.algebra.program import Node, Program
+from mbsym.expressions.table import Curve, Tabulated
+
+_SHORT = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "negative": "neg"}
+
+_TWO: Mapping[str, Callable[[Any, Any], Any]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+}
+_ONE: Mapping[str, Callable[[Any], Any]] = {
+    "neg": np.negative,
+    "sqrt": np.sqrt,
+    "sin": np.sin,
+    "cos": np.cos,
+    "exp": np.exp,
+    "log": np.log,
+    "atan": np.arctan,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "tanh": np.tanh,
+    "abs": np.abs,
+    "sign": np.sign,
+}
+
+#: All operations but tables: who interprets programs must know these.
+OPERATIONS = (*_TWO, *_ONE)
+
+
+@dataclass(frozen=True)
+class PoseProgram:
+    """See the module.  ``steps`` are (operation, a) or (operation, a, b)."""
+
+    inputs: tuple[str, ...]
+    constants: tuple[float, ...]
+    steps: tuple[tuple[Any, ...], ...]
+    tables: tuple[Curve, ...] = ()
+
+    def evaluate(self, given: Mapping[str, Any]) -> list[Any]:
+        """Every value, numbers or arrays of one shape; what has no value (1/0, log of -1) is inf or nan.
+
+        Raises KeyError for an input that is not ``given``.
+        """
+        values: list[Any] = [np.asarray(given[name], dtype=float) for name in self.inputs]
+        values += [np.float64(x) for x in self.constants]
+        with np.errstate(all="ignore"):
+            for operation, *operands in self.steps:
+                arguments = [values[k] for k in operands]
+                if operation in _TWO:
+                    values.append(_TWO[operation](*arguments))
+                elif operation in _ONE:
+                    values.append(_ONE[operation](*arguments))
+                else:
+                    values.append(looked_up(self.tables[int(operation.removeprefix("table "))], *arguments))
+        return values
+
+
+def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -> tuple[PoseProgram, dict[int, int]]:
+    """The outputs as data, inputs in ``order`` (those that are needed), and which value each live instruction is.
+
+    Raises NoClosedForm for an operation that pages do not know.
+    """
+    live = program.live(outputs)
+    instructions = [(number, program.instructions[number]) for number in live]
+    needed = {str(one.payload): number for number, one in instructions if one.operation == "input"}
+    unknown = sorted(needed.keys() - set(order))
+    if unknown:
+        raise NoClosedForm(f"the places of bodies depend on {', '.join(unknown)}, of which no value is known")
+    inputs = tuple(name for name in order if name in needed)
+    value = {needed[name]: k for k, name in enumerate(inputs)}
+    constants = [(number, one) for number, one in instructions if one.operation == "constant"]
+    for number, _ in constants:
+        value[number] = len(value)
+    tables: list[Curve] = []
+    steps: list[tuple[Any, ...]] = []
+    for number, one in instructions:
+        if one.operation in ("input", "constant"):
+            continue
+        name: str = one.operation
+        if isinstance(name, Tabulated):
+            if name.curve not in tables:
+                tables.append(name.curve)
+            name = f"table {tables.index(name.curve)}"
+        else:
+            name = _SHORT.get(name, name)
+            if name not in OPERATIONS:
+                raise NoClosedForm(f"'{name}' is no operation of pictures")
+        steps.append((name, *(value[k] for k in one.operands)))
+        value[number] = len(value)
+    numbers = tuple(float(one.payload) for _, one in constants)  # type: ignore[arg-type]
+    return PoseProgram(inputs, numbers, tuple(steps), tuple(tables)), value
