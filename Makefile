@@ -12,7 +12,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery docs robots robot-data consumers bench clean
+.PHONY: all lint types test demo systems gallery docs page robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -99,6 +99,10 @@ gallery: $(READY)
 docs: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	$(BIN)/mkdocs build --strict --quiet
+
+# What is built is shipped, so that installing needs no Node; tests/browser holds it against the sources.
+page:
+	cd editor && npm ci --ignore-scripts --no-audit --no-fund --silent && npm run --silent build
 
 # Four of them are among the tests already where the data are there.
 robots: robot-data

@@ -1,0 +1,4 @@
+import "./page.css";
+import { start } from "./shell.js";
+
+void start(document.getElementById("shell")!);

@@ -1,0 +1,340 @@
+// The one document of the page: its text, what the server understands of it, what is selected, whether it is saved.
+//
+// The text is the document. Form and graph ask the server which edits of the text an operation means (`change`) and
+// those are applied as one transaction of the text's editor, so that one history undoes and redoes across all views.
+
+import { history, redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
+import { EditorState, Transaction, type Extension } from "@codemirror/state";
+import { EditorView } from "@codemirror/view";
+
+import { Listeners } from "./listeners.js";
+import type { Body, Changed, Complaint, FileState, Format, Operation, Path, Told, View } from "./seam.js";
+import { Away, get, post, Refused } from "./server.js";
+
+/** So long after a key the text is looked at: short, because a look has to be shown within 100 ms of the key. */
+const LOOK_AFTER = 15;
+const JOURNAL_AFTER = 1000;
+
+export type Connection = "there" | "away";
+
+export interface Events {
+  /** The text is another one. */
+  text: string;
+  /** The server has looked at the text. */
+  view: View;
+  /** The selected body, by name; null: none. */
+  selection: string | null;
+  /** Another file, format, or saved state. */
+  file: FileState;
+  saved: boolean;
+  connection: Connection;
+  /** The server tells something by itself: of jobs, of the file. */
+  told: Told;
+  /** A sentence for the status line, also read to those who listen. */
+  said: string;
+  theme: "light" | "dark";
+}
+
+export interface Outcome {
+  done: boolean;
+  complaints: Complaint[];
+  select?: Path;
+}
+
+export class Model extends Listeners<Events> {
+  /** The text's editor; `text.ts` gives it a place and its looks. */
+  readonly editor: EditorView;
+  /** What the server last understood; null before its first answer. */
+  view: View | null = null;
+  /** The text that `view` is of. */
+  viewed: string | null = null;
+  /** The last view with bodies: what graph, form and picture go on showing while a line is half typed. */
+  understood: View | null = null;
+  selected: string | null = null;
+  connection: Connection = "there";
+  /** The text as it stands in the file. */
+  private stored: string;
+  private lookTimer: number | undefined;
+  private journalTimer: number | undefined;
+  private looking: AbortController | null = null;
+  private changes: Promise<unknown> = Promise.resolve();
+  private listeningTo: EventSource | null = null;
+
+  constructor(
+    public file: FileState,
+    extensions: Extension,
+    root: Document | ShadowRoot,
+  ) {
+    super();
+    this.stored = file.new ? "" : file.text;
+    this.editor = new EditorView({
+      root,
+      state: EditorState.create({
+        doc: file.text,
+        extensions: [
+          history(),
+          // The file's own line ends are kept: CodeMirror counts every line end as one character.
+          EditorState.lineSeparator.of("\n"),
+          extensions,
+          EditorView.updateListener.of((update) => {
+            if (update.docChanged) this.textChanged();
+          }),
+        ],
+      }),
+    });
+  }
+
+  get text(): string {
+    return this.editor.state.doc.toString();
+  }
+
+  get format(): Format {
+    return this.file.format;
+  }
+
+  get saved(): boolean {
+    return this.text === this.stored;
+  }
+
+  /** Whether `view` is what the server understands of the text as it is now. */
+  get fresh(): boolean {
+    return this.viewed === this.text;
+  }
+
+  body(name: string | null): Body | null {
+    return this.understood?.bodies.find((body) => body.name === name) ?? null;
+  }
+
+  select(name: string | null): void {
+    if (name === this.selected) return;
+    this.selected = name;
+    this.tell("selection", name);
+  }
+
+  say(words: string): void {
+    this.tell("said", words);
+  }
+
+  themeChanged(theme: "light" | "dark"): void {
+    this.tell("theme", theme);
+  }
+
+  // ---- the text --------------------------------------------------------------------------------------------------
+
+  undo(): boolean {
+    return undo(this.editor);
+  }
+
+  redo(): boolean {
+    return redo(this.editor);
+  }
+
+  get undoable(): boolean {
+    return undoDepth(this.editor.state) > 0;
+  }
+
+  get redoable(): boolean {
+    return redoDepth(this.editor.state) > 0;
+  }
+
+  /** The whole text replaced by another: only what differs is touched, so that one undo brings it back. */
+  replaceText(text: string): void {
+    const old = this.text;
+    let from = 0;
+    while (from < old.length && from < text.length && old[from] === text[from]) from += 1;
+    let [to, end] = [old.length, text.length];
+    while (to > from && end > from && old[to - 1] === text[end - 1]) [to, end] = [to - 1, end - 1];
+    if (from === to && from === end) return;
+    this.apply([{ from, to, insert: text.slice(from, end) }]);
+  }
+
+  private apply(changes: { from: number; to: number; insert: string }[]): void {
+    this.editor.dispatch({ changes, annotations: [Transaction.userEvent.of("input.operation")], scrollIntoView: false });
+  }
+
+  private textChanged(): void {
+    this.tell("text", this.text);
+    this.tell("saved", this.saved);
+    window.clearTimeout(this.lookTimer);
+    this.lookTimer = window.setTimeout(() => void this.look(), LOOK_AFTER);
+    window.clearTimeout(this.journalTimer);
+    this.journalTimer = window.setTimeout(() => void this.journal(), JOURNAL_AFTER);
+  }
+
+  // ---- the server ------------------------------------------------------------------------------------------------
+
+  /** A request about the text as it is now: `text` and `format` go with it. */
+  request<Answer>(name: string, body: object = {}, signal?: AbortSignal): Promise<Answer> {
+    return this.watched(post<Answer>(name, { text: this.text, format: this.format, ...body }, signal));
+  }
+
+  /** A request that is not about the text: cancel, save. */
+  post<Answer>(name: string, body: object): Promise<Answer> {
+    return this.watched(post<Answer>(name, body));
+  }
+
+  private async watched<Answer>(asked: Promise<Answer>): Promise<Answer> {
+    try {
+      const answer = await asked;
+      this.connected("there");
+      return answer;
+    } catch (failure) {
+      if (failure instanceof Away) this.connected("away");
+      else if (failure instanceof Refused) this.connected("there");
+      throw failure;
+    }
+  }
+
+  private connected(connection: Connection): void {
+    if (connection === this.connection) return;
+    this.connection = connection;
+    this.tell("connection", connection);
+    if (connection === "there") void this.look();
+    else this.waitForServer();
+  }
+
+  /** A server that was stopped may come back at the same address, with the same token or not. */
+  private waitForServer(): void {
+    window.setTimeout(() => {
+      if (this.connection === "there") return;
+      this.watched(get("digest")).catch(() => this.waitForServer());
+    }, 2000);
+  }
+
+  /** Asks the server what the text means. Answers that have become old are dropped. */
+  async look(): Promise<void> {
+    window.clearTimeout(this.lookTimer);
+    this.looking?.abort();
+    const asking = new AbortController();
+    this.looking = asking;
+    const text = this.text;
+    try {
+      const view = await this.request<View>("look", {}, asking.signal);
+      if (this.looking !== asking) return;
+      this.view = view;
+      this.viewed = text;
+      if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) this.understood = view;
+      if (this.selected !== null && !this.body(this.selected)) this.select(null);
+      this.tell("view", view);
+    } catch (failure) {
+      if (!(failure instanceof DOMException && failure.name === "AbortError") && !(failure instanceof Away)) {
+        this.say(String(failure instanceof Error ? failure.message : failure));
+      }
+    }
+  }
+
+  /** Waits until the server has looked at the text as it is. */
+  async looked(): Promise<View | null> {
+    if (!this.fresh) await this.look();
+    return this.fresh ? this.view : null;
+  }
+
+  /**
+   * Does what form and graph ask for, as one step of the history. One after the other: each is asked about the text that
+   * the one before has left. Where the server complains nothing is done, and it is said.
+   */
+  change(operations: Operation[], words?: string): Promise<Outcome> {
+    const next = this.changes.then(() => this.changeNow(operations, words));
+    this.changes = next.catch(() => undefined);
+    return next;
+  }
+
+  private async changeNow(operations: Operation[], words?: string): Promise<Outcome> {
+    for (let attempt = 0; attempt < 3; attempt += 1) {
+      const text = this.text;
+      let answer: Changed;
+      try {
+        answer = await this.request<Changed>("change", { operations });
+      } catch (failure) {
+        this.say(failure instanceof Error ? failure.message : String(failure));
+        return { done: false, complaints: [] };
+      }
+      // Typed on meanwhile: the places in the answer are of another text.
+      if (text !== this.text) continue;
+      if (!answer.edits) {
+        const complaints = answer.complaints ?? [];
+        this.say(complaints.map((one) => one.message).join("; ") || "this cannot be done here");
+        return { done: false, complaints };
+      }
+      if (answer.edits.length > 0) this.apply(answer.edits);
+      await this.look();
+      if (words) this.say(words);
+      return { done: true, complaints: [], ...(answer.select ? { select: answer.select } : {}) };
+    }
+    this.say("the text changes faster than the operation can be made");
+    return { done: false, complaints: [] };
+  }
+
+  // ---- the file --------------------------------------------------------------------------------------------------
+
+  /** What the file holds was changed by someone else: it is remembered, the text here stays. */
+  fileIs(digest: string, text: string): void {
+    this.file = { ...this.file, digest, new: false };
+    this.stored = text;
+    this.tell("file", this.file);
+    this.tell("saved", this.saved);
+  }
+
+  /** Saves; `force` writes over what someone else has written. Another text in the file is answered, not overwritten. */
+  async save(force = false): Promise<{ saved: true } | { saved: false; other: { digest: string; text: string } | null }> {
+    const text = this.text;
+    try {
+      const answer = await this.post<{ digest: string }>("save", { text, digest: this.file.digest, ...(force ? { force } : {}) });
+      this.file = { ...this.file, digest: answer.digest, new: false, journal: null };
+      this.stored = text;
+      this.tell("file", this.file);
+      this.tell("saved", this.saved);
+      return { saved: true };
+    } catch (failure) {
+      if (failure instanceof Refused && failure.status === 409) {
+        return { saved: false, other: { digest: String(failure.body["digest"]), text: String(failure.body["text"]) } };
+      }
+      this.say(failure instanceof Error ? failure.message : String(failure));
+      return { saved: false, other: null };
+    }
+  }
+
+  private async journal(): Promise<void> {
+    try {
+      await this.post("journal", { text: this.text, digest: this.file.digest });
+    } catch {
+      // The status line tells that the server is away; the next change tries again.
+    }
+  }
+
+  /** The same description in the other spelling; refused while it has mistakes. */
+  async convert(to: Format): Promise<boolean> {
+    try {
+      const answer = await this.request<{ text: string }>("convert", { to });
+      this.file = { ...this.file, format: to };
+      this.replaceText(answer.text);
+      this.tell("file", this.file);
+      await this.look();
+      return true;
+    } catch (failure) {
+      this.say(failure instanceof Error ? failure.message : String(failure));
+      return false;
+    }
+  }
+
+  /** Begins to listen to what the server tells by itself. */
+  listen(): void {
+    this.listeningTo?.close();
+    const source = new EventSource("api/events");
+    this.listeningTo = source;
+    source.onmessage = (event) => {
+      try {
+        this.tell("told", JSON.parse(String(event.data)) as Told);
+      } catch (failure) {
+        console.error(failure);
+      }
+    };
+    source.onopen = () => this.connected("there");
+    source.onerror = () => this.connected("away");
+  }
+}
+
+/** The model of the page, once the server has said which file it is about. */
+export async function opened(extensions: Extension, root: Document | ShadowRoot): Promise<Model> {
+  return new Model(await get<FileState>("file"), extensions, root);
+}

@@ -1,0 +1,6 @@
+import type { Model } from "./model.js";
+
+export function panel(host: HTMLElement, model: Model): void {
+  model.on("view", () => undefined);
+  host.replaceChildren();
+}

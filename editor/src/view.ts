@@ -1,0 +1,2 @@
+// The viewer of `mbsym view`: picture and motion alone, in one file.
+export {};
