@@ -63,9 +63,13 @@ def animation_page(found: Animation, run: Simulation) -> str:
 def run_motion(found: Animation, run: Simulation) -> Motion:
     """What the template needs of a run, with what is to be said of it."""
     shown = motion(found, tuple(_sentences(found, run)))
-    # What is conserved drifts by errors alone; anything else may well change.
+    return replace(shown, drift_of=drift_of(run))
+
+
+def drift_of(run: Simulation) -> str:
+    """What is conserved drifts by errors alone; anything else may well change."""
     what = "drift" if run.conservation.standing.conserved is True else "change"
-    return replace(shown, drift_of=f"{what} of the {run.conservation.quantity}")
+    return f"{what} of the {run.conservation.quantity}"
 
 
 def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
@@ -140,9 +144,15 @@ def _room(found: Animation) -> tuple[list[float], float]:
 
 
 def _sentences(found: Animation, run: Simulation) -> Iterator[str]:
+    yield from run_sentences(run)
+    yield from drawn_sentences(found)
+
+
+def run_sentences(run: Simulation) -> Iterator[str]:
+    """How it was integrated, whether it reached its end, what it keeps, how large its error is."""
     trajectory, setting = run.trajectory, run.trajectory.setting
     how = f"tolerance {setting.tolerance:g} per step" if setting.step is None else f"step {setting.step:g}"
-    unit = pretty(time_unit(found.system))
+    unit = pretty(time_unit(run.system))
     until = with_unit(f"{float(trajectory.times[-1]):.9g}", unit)
     yield (
         f"Integrated from t = 0 to {until} by {run.chosen.method.traits.title} ({how}, {run.arithmetic}; {run.why})."
@@ -155,7 +165,6 @@ def _sentences(found: Animation, run: Simulation) -> Iterator[str]:
     yield f"Error of the run: {'; '.join(errors)}." if errors else "The error of the run was not estimated."
     for text in warnings(run.conservation, run.error):
         yield f"Warning: {text}."
-    yield from drawn_sentences(found)
 
 
 def drawn_sentences(found: Animation) -> Iterator[str]:

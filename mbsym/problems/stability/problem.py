@@ -178,10 +178,10 @@ def _spectrum(
     if given is not None and given.of_first_order:
         first_order = set(part.coordinates)
     following = [i for i, name in enumerate(part.coordinates) if name in first_order]
-    return from_matrices(part.coordinates, _matrices_at(scene, linear, part.coordinates, values), following)
+    return from_matrices(part.coordinates, matrices_at(scene, linear, part.coordinates, values), following)
 
 
-def _matrices_at(
+def matrices_at(
     scene: Scene, linear: Linearisation, coordinates: Sequence[str], values: Mapping[str, Fraction]
 ) -> list[list[list[Any]]]:
     """The blocks of M, D, G, K, N that belong to some coordinates, as enclosures at parameter values."""
@@ -191,7 +191,7 @@ def _matrices_at(
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
     """Formulas in the parameters as enclosures."""
-    numbers = _numbers(scene.ring, values)
+    numbers = ring_numbers(scene.ring, values)
     with ctx.workprec(PRECISION):
         return [[scene.ring.evaluate(x, numbers) for x in row] for row in rows]
 
@@ -208,7 +208,7 @@ def _enclosed(
     there = balance.at(values)
     constant = not any(name in there.driven for name in part.coordinates)  # the momenta of cyclic coordinates
     cyclic = part.system.cyclic if constant else ()
-    matrices = _matrices_at(scene, linear, part.coordinates, values)
+    matrices = matrices_at(scene, linear, part.coordinates, values)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
         return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
@@ -491,7 +491,7 @@ def _number(value: Any) -> Any:
     return fmpq(value.numerator, value.denominator) if isinstance(value, Fraction) else value
 
 
-def _numbers(ring: Ring, values: Mapping[str, Any]) -> dict[str, Any]:
+def ring_numbers(ring: Ring, values: Mapping[str, Any]) -> dict[str, Any]:
     """Values of all names of the ring: those of the parameters, 0 for the others, which do not occur."""
     return dict.fromkeys(ring.names(), fmpq(0)) | {name: _number(value) for name, value in values.items()}
 
@@ -500,7 +500,7 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
     """ "undecided", with the reason, where the given values break a condition of problem 4; None where they do not."""
     if values is None:
         return None
-    numbers = _numbers(scene.ring, values)
+    numbers = ring_numbers(scene.ring, values)
     for condition in equilibrium.conditions:
         value = scene.ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
@@ -515,7 +515,7 @@ def _solved_at(scene: Scene, linear: Linearisation, values: Mapping[str, Any] | 
     """ "undecided" where the given values are not shown to keep what was divided by when constraints were expanded."""
     if values is None or linear.constrained is None:
         return None
-    numbers = _numbers(scene.ring, values)
+    numbers = ring_numbers(scene.ring, values)
     for assumed in linear.constrained.assumed:
         if scene.ring.evaluate(assumed.polynomial, numbers).contains(0):
             return undecided(
