@@ -34,5 +34,5 @@ export function makeSvg<Tag extends keyof SVGElementTagNameMap>(
 /** Whether keys typed at `target` belong to what is typed there. */
 export function isTyping(target: EventTarget | null): boolean {
   if (!(target instanceof Element)) return false;
-  return target.closest("input, textarea, select, [contenteditable=true], .text-host") !== null;
+  return target.closest("input, textarea, select, [contenteditable=true], .text-shadow") !== null;
 }

@@ -3,17 +3,28 @@
 // The text is the document. Form and graph ask the server which edits of the text an operation means (`change`) and
 // those are applied as one transaction of the text's editor, so that one history undoes and redoes across all views.
 
-import { history, redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
-import { EditorState, Transaction, type Extension } from "@codemirror/state";
+import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
+import { EditorState, StateEffect, StateField, Transaction, type Extension } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 
 import { Listeners } from "./listeners.js";
-import type { Body, Changed, Complaint, FileState, Format, Operation, Path, Told, View } from "./seam.js";
+import type { Body, Changed, Complaint, Edit, FileState, Format, Operation, Path, Told, View } from "./seam.js";
 import { Away, get, post, Refused } from "./server.js";
 
 /** So long after a key the text is looked at: short, because a look has to be shown within 100 ms of the key. */
 const LOOK_AFTER = 15;
 const JOURNAL_AFTER = 1000;
+
+/** In which of its two spellings the text is; undone and redone with the conversion that changed it. */
+export const formatIs = StateEffect.define<Format>();
+const spelling = StateField.define<Format>({
+  create: () => "yaml",
+  update: (format, transaction) =>
+    transaction.effects.reduce((last, effect) => (effect.is(formatIs) ? effect.value : last), format),
+});
+const undoneWithTheText = invertedEffects.of((transaction) =>
+  transaction.effects.some((effect) => effect.is(formatIs)) ? [formatIs.of(transaction.startState.field(spelling))] : [],
+);
 
 export type Connection = "there" | "away";
 
@@ -24,9 +35,12 @@ export interface Events {
   view: View;
   /** The selected body, by name; null: none. */
   selection: string | null;
-  /** Another file, format, or saved state. */
+  format: Format;
+  /** The file is another than before: written by us or by someone else. */
   file: FileState;
   saved: boolean;
+  /** A place of the text is to be shown, with the cursor in it. */
+  goto: { from: number; to: number };
   connection: Connection;
   /** The server tells something by itself: of jobs, of the file. */
   told: Told;
@@ -54,6 +68,7 @@ export class Model extends Listeners<Events> {
   connection: Connection = "there";
   /** The text as it stands in the file. */
   private stored: string;
+  private changedAt: number | null = null;
   private lookTimer: number | undefined;
   private journalTimer: number | undefined;
   private looking: AbortController | null = null;
@@ -73,10 +88,13 @@ export class Model extends Listeners<Events> {
         doc: file.text,
         extensions: [
           history(),
+          spelling.init(() => file.format),
+          undoneWithTheText,
           // The file's own line ends are kept: CodeMirror counts every line end as one character.
           EditorState.lineSeparator.of("\n"),
           extensions,
           EditorView.updateListener.of((update) => {
+            if (update.startState.field(spelling) !== update.state.field(spelling)) this.formatChanged();
             if (update.docChanged) this.textChanged();
           }),
         ],
@@ -89,7 +107,7 @@ export class Model extends Listeners<Events> {
   }
 
   get format(): Format {
-    return this.file.format;
+    return this.editor.state.field(spelling);
   }
 
   get saved(): boolean {
@@ -109,6 +127,11 @@ export class Model extends Listeners<Events> {
     if (name === this.selected) return;
     this.selected = name;
     this.tell("selection", name);
+  }
+
+  /** Shows a place of the text, the cursor in it. */
+  goTo(from: number, to: number = from): void {
+    this.tell("goto", { from, to });
   }
 
   say(words: string): void {
@@ -137,22 +160,29 @@ export class Model extends Listeners<Events> {
     return redoDepth(this.editor.state) > 0;
   }
 
-  /** The whole text replaced by another: only what differs is touched, so that one undo brings it back. */
-  replaceText(text: string): void {
+  /** The whole text replaced by another: only what differs is touched, and one undo brings it back. */
+  replaceText(text: string, format: Format = this.format): void {
     const old = this.text;
     let from = 0;
     while (from < old.length && from < text.length && old[from] === text[from]) from += 1;
     let [to, end] = [old.length, text.length];
     while (to > from && end > from && old[to - 1] === text[end - 1]) [to, end] = [to - 1, end - 1];
-    if (from === to && from === end) return;
-    this.apply([{ from, to, insert: text.slice(from, end) }]);
+    if (from === to && from === end && format === this.format) return;
+    this.apply([{ from, to, insert: text.slice(from, end) }], format === this.format ? [] : [formatIs.of(format)]);
   }
 
-  private apply(changes: { from: number; to: number; insert: string }[]): void {
-    this.editor.dispatch({ changes, annotations: [Transaction.userEvent.of("input.operation")], scrollIntoView: false });
+  /** One step of the history, joined with no typing before or after it. */
+  private apply(changes: Edit[], effects: StateEffect<Format>[] = []): void {
+    const annotations = [Transaction.userEvent.of("input.operation"), isolateHistory.of("full")];
+    this.editor.dispatch({ changes, effects, annotations });
+  }
+
+  private formatChanged(): void {
+    this.tell("format", this.format);
   }
 
   private textChanged(): void {
+    this.changedAt ??= performance.now();
     this.tell("text", this.text);
     this.tell("saved", this.saved);
     window.clearTimeout(this.lookTimer);
@@ -208,6 +238,8 @@ export class Model extends Listeners<Events> {
     const asking = new AbortController();
     this.looking = asking;
     const text = this.text;
+    const begun = this.changedAt ?? performance.now();
+    this.changedAt = null;
     try {
       const view = await this.request<View>("look", {}, asking.signal);
       if (this.looking !== asking) return;
@@ -216,6 +248,8 @@ export class Model extends Listeners<Events> {
       if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) this.understood = view;
       if (this.selected !== null && !this.body(this.selected)) this.select(null);
       this.tell("view", view);
+      // From the first key that this look is about until everything is told: read by the tests.
+      performance.measure("mbsym:look", { start: begun, end: performance.now() });
     } catch (failure) {
       if (!(failure instanceof DOMException && failure.name === "AbortError") && !(failure instanceof Away)) {
         this.say(String(failure instanceof Error ? failure.message : failure));
@@ -306,9 +340,7 @@ export class Model extends Listeners<Events> {
   async convert(to: Format): Promise<boolean> {
     try {
       const answer = await this.request<{ text: string }>("convert", { to });
-      this.file = { ...this.file, format: to };
-      this.replaceText(answer.text);
-      this.tell("file", this.file);
+      this.replaceText(answer.text, to);
       await this.look();
       return true;
     } catch (failure) {

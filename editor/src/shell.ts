@@ -1,16 +1,25 @@
 // The page around the panels: what stands where, the menu, the status line, keys that hold everywhere.
 
+import { bannersOf } from "./banners.js";
+import { make } from "./elements.js";
+import { commandsOf, keysOf, type Command } from "./commands.js";
 import { panel as formPanel } from "./form.js";
 import { panel as graphPanel } from "./graph.js";
-import { make } from "./elements.js";
 import { Model, opened } from "./model.js";
+import { arranged } from "./panels.js";
 import { panel as picturePanel } from "./picture.js";
 import { panel as resultsPanel } from "./results.js";
+import { statusOf } from "./status.js";
 import { extensions, panel as textPanel } from "./text.js";
+import { themeOf } from "./theme.js";
 
-type Panel = (host: HTMLElement, model: Model) => void;
+export interface Part {
+  name: string;
+  title: string;
+  panel: (host: HTMLElement, model: Model) => void;
+}
 
-export const PANELS: { name: string; title: string; panel: Panel }[] = [
+const PARTS: Part[] = [
   { name: "graph", title: "Structure", panel: graphPanel },
   { name: "form", title: "Body and system", panel: formPanel },
   { name: "text", title: "Text", panel: textPanel },
@@ -18,16 +27,52 @@ export const PANELS: { name: string; title: string; panel: Panel }[] = [
   { name: "results", title: "Results", panel: resultsPanel },
 ];
 
+function header(model: Model, commands: Command[]): HTMLElement {
+  const title = make("h1", {}, "mbsym ", make("span", { class: "file-name", title: model.file.path }, model.file.name));
+  const buttons = commands
+    .filter((command) => command.button)
+    .map((command) => {
+      const button = make(
+        "button",
+        {
+          type: "button",
+          id: `do-${command.id}`,
+          title: command.keys ? `${command.words} (${command.keys})` : command.words,
+          "aria-keyshortcuts": command.keys?.replaceAll("Ctrl", "Control") ?? null,
+          click: () => void command.act(),
+        },
+        command.button!,
+      );
+      const enabled = (): void => {
+        button.disabled = command.enabled ? !command.enabled() : false;
+        button.textContent = typeof command.label === "function" ? command.label() : command.button!;
+      };
+      for (const event of ["text", "saved", "format", "view"] as const) model.on(event, () => queueMicrotask(enabled));
+      enabled();
+      return button;
+    });
+  return make("header", { class: "top" }, title, make("div", { class: "menu", role: "toolbar", "aria-label": "Document" }, ...buttons, themeOf(model)));
+}
+
 export async function start(host: HTMLElement): Promise<void> {
-  const model = await opened(extensions, document);
-  const main = make("main", { class: "panels" });
-  for (const { name, title, panel } of PANELS) {
-    const inside = make("div", { class: `panel-body ${name}-host` });
-    const heading = make("h2", { id: `${name}-title` }, title);
-    main.append(make("section", { id: name, class: "panel", "aria-labelledby": heading.id, tabindex: -1 }, heading, inside));
-    panel(inside, model);
+  const textPlace = make("div", { class: "text-shadow" });
+  const shadow = textPlace.attachShadow({ mode: "open" });
+  let model: Model;
+  try {
+    model = await opened(extensions, shadow);
+  } catch (failure) {
+    host.replaceChildren(make("p", { class: "waiting", role: "alert" }, failure instanceof Error ? failure.message : String(failure)));
+    return;
   }
-  host.replaceChildren(main);
-  model.listen();
+  document.title = `${model.file.name} — mbsym`;
+  const commands = commandsOf(model);
+  const { main, skips, show } = arranged(PARTS, model);
+  host.replaceChildren(skips, header(model, commands), bannersOf(model), main, statusOf(model));
+  keysOf(commands, show);
+  window.addEventListener("beforeunload", (event) => {
+    if (!model.saved) event.preventDefault();
+  });
   await model.look();
+  // Listening last: a request that never ends must not stand before those that the page begins with.
+  model.listen();
 }
