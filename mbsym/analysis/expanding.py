@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.algebra.quotients import Quotient, Series
-from mbsym.algebra.signs import Condition
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.quotients import Quotient
+from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.motion import relations
 from mbsym.model.small import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
@@ -31,7 +33,8 @@ class Expansion:
     """The manifold with the ring in which it is told.
 
     ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have
-    negative real parts for all sufficiently small eps > 0, with what that takes of the parameters.
+    negative real parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what
+    was divided by, and is not zero where the expansion holds.
     """
 
     manifold: SlowManifold
@@ -40,6 +43,7 @@ class Expansion:
     missing: str
     fast: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
     slow: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
+    provided: tuple[Formula, ...] = ()
 
     def formula(self, c: Quotient) -> Formula:
         """A coefficient as a formula of the description."""
@@ -67,14 +71,13 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     form = analysis.speed_form
     if form is None:
         raise NoClosedForm("expansions are made of equations in speeds", remedy="declare 'speeds' in the bodies")
+    images = relations(analysis.parameters_scene)
+    _refuse(analysis, small, values or {}, images)
     equations: Any = analysis.equations
     motion = _motion(analysis)
     steady = () if isinstance(motion, str) else tuple(motion.values())
-    whole, transfer = in_speeds(form, equations, steady)
+    whole, transfer = in_speeds(form, equations, steady, images)
     numbers = {n: fmpq(x.numerator, x.denominator) for n, x in (values or {}).items() if n in whole.parameters}
-    for name in (small.name, *(scaled_one for scaled_one, _ in small.powers)):
-        if name in (values or {}):
-            raise NoClosedForm(f"{name} depends on the small parameter: it cannot be a number")
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
         raise NoClosedForm(f"the equations do not depend on {small.name}")
@@ -94,20 +97,54 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     if not found.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
     names = tuple(field.context.names())
+    plain = Expansion(found, transfer, names, "")
+    divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, functions))
+    plain = replace(plain, provided=tuple({str(x): x for x in _open(analysis, divided)}.values()))
     if isinstance(motion, str):
-        return Expansion(found, transfer, names, motion)
+        return replace(plain, missing=motion)
     try:
         at = {n: _quotient(transfer, names, numbers, x) for n, x in motion.items()}
         for name in (*fast, *moving):
             at.setdefault(name, Quotient.of(field.context.constant(0)))
         steady_found = steady_states(there, moving, dict(zip(fast, functions, strict=True)), at, order)
     except Failure as reason:
-        return Expansion(found, transfer, names, str(reason))
-    found = replace(found, steady=steady_found)
-    plain = Expansion(found, transfer, names, "")
+        return replace(plain, missing=str(reason))
+    except ZeroDivisionError:
+        return replace(plain, missing="a denominator of the expansion vanishes on the motion")
+    plain = replace(plain, manifold=replace(found, steady=steady_found))
     return replace(
         plain, fast=_judged(analysis, plain, steady_found.fast), slow=_judged(analysis, plain, steady_found.slow)
     )
+
+
+def _refuse(
+    analysis: Analysis, small: SmallParameter, values: Mapping[str, Fraction], images: Mapping[int, Any]
+) -> None:
+    """Raises NoClosedForm for what cannot be scaled, or cannot be a number."""
+    scales = (small.name, *(name for name, _ in small.powers))
+    related = {analysis.ring.generators[k].name for k in images}
+    for name in scales:
+        if name in related:
+            raise NoClosedForm(
+                f"{name} is given by a relation: it has no power of {small.name} of its own",
+                remedy="solve the relation for another parameter",
+            )
+        if name in values:
+            raise NoClosedForm(f"{name} depends on the small parameter: it cannot be a number")
+    for name in values:
+        if name in related:
+            raise NoClosedForm(f"{name} is given by a relation: it cannot be another number")
+    signs = {one.name: one.sign for one in analysis.system.parameters}
+    if signs.get(small.name) in ("negative", "nonpositive", "zero"):
+        raise NoClosedForm(f"expansions are about {small.name} > 0, and it is declared {signs[small.name]}")
+
+
+def _open(analysis: Analysis, divided: Iterable[Formula]) -> Iterator[Formula]:
+    """The factors of formulas that may be zero."""
+    for one in divided:
+        for factor, _ in one.polynomial.factor()[1]:
+            if analysis.signs.sign(factor) not in ("positive", "negative"):
+                yield Formula(one.ring, factor)
 
 
 def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...]:
@@ -146,7 +183,7 @@ def _quotient(transfer: Transfer, names: tuple[str, ...], numbers: Mapping[str, 
 
 def _judged(analysis: Analysis, told: Expansion, hurwitz: Hurwitz) -> tuple[Outcome, tuple[Condition, ...]]:
     """Hurwitz's minors by their first coefficients, under the assumptions of the description."""
-    signs, conditions = analysis.signs, []
+    signs, conditions = _unscaled(analysis), []
     for minor in hurwitz.minors:
         if minor.lowest is None:
             return Outcome.UNDECIDED, ()
@@ -162,6 +199,15 @@ def _judged(analysis: Analysis, told: Expansion, hurwitz: Hurwitz) -> tuple[Outc
     return (Outcome.CONDITIONAL if left else Outcome.HOLDS), left
 
 
-def series_text(told: Expansion, one: Series) -> list[tuple[int, Formula]]:
-    """Exponents and coefficients, in order."""
-    return [(k, told.formula(one.coefficients[k])) for k in sorted(one.coefficients)]
+def _unscaled(analysis: Analysis) -> Signs:
+    """What is known of signs without the assumptions that hold the small parameter: eps tends to zero beyond them."""
+    small, ring = analysis.system.small, analysis.ring
+    assert small is not None
+    scales = {small.name, *(name for name, _ in small.powers)}
+
+    def held(p: Any) -> bool:
+        generators = [ring.generators[k] for k in occurring([p])]
+        return any(g.name in scales or (g.argument is not None and held(g.argument)) for g in generators)
+
+    kept = tuple(one for one in analysis.signs.assumptions if not held(one[0]))
+    return replace(analysis.signs, assumptions=kept)

@@ -30,6 +30,7 @@ def expansion_json(system: System, values: Mapping[str, Fraction], found: Expans
         "small": manifold.field.small,
         "powers": dict(manifold.field.powers),
         "order": manifold.order,
+        "provided_nonzero": [str(x) for x in found.provided],
         "manifold": [
             {"variable": name, "residual": left, "coefficients": _series(found, one)}
             for name, one, left in zip(manifold.fast, manifold.functions, manifold.residuals, strict=True)

@@ -46,6 +46,11 @@ def sentences(found: Expansion) -> Iterator[Said]:
         )
     else:
         yield "Put into the equations at a random rational state, it leaves nothing (verified).", values
+    if found.provided:
+        yield (
+            "It holds where these are not zero, which were divided by: [[provided]].",
+            {"provided": ", ".join(map(str, found.provided))},
+        )
     if manifold.steady is None:
         yield "Nothing is said of stability: [[missing]].", {"missing": found.missing}
         return

@@ -4,10 +4,10 @@ With slow variables s and fast ones z of  D x' = N(s, z, eps)  the manifold is i
 
     N_z(s, h, eps) = sum_j dh/ds_j N_j(s, h, eps),
 
-times eps^k_i in row i, so that its lowest order in eps is 0.  Where the part of lowest order in z, L z + ..., has a
-constant matrix L with det L != 0,
+times eps^k_i in row i, so that its lowest order in eps is 0.  Where the part of lowest order g(s, z) = 0 has a root
+z = h_0(s) that is found by elimination (``root``), and L(s) = dg/dz there has det L != 0,
 
-    h  <-  h - L^-1 (what is left in these equations)
+    h  <-  h - L^-1 (what is left in these equations),      first h = h_0,
 
 gains an order of eps with every few steps (one for each derivative that has to be known first, such as that of a
 position whose velocity is fast, too), and ends when all coefficients up to the order asked for stay the same.
@@ -23,6 +23,7 @@ from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.quotients import LOWER, Polynomial, Quotient, Series
+from mbsym.problems.small_parameter.root import root
 from mbsym.problems.small_parameter.scaled import Graded, ScaledField
 
 #: Choices of fast variables that are looked at.
@@ -33,7 +34,8 @@ MOST_STEPS = 60
 def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, ...]:
     """The smallest set that holds all variables with x' ~ 1/eps or faster, and none of ``slow``, with det L != 0.
 
-    Raises NoClosedForm where there is none, or more than one of the smallest.
+    Sets whose L holds parameters alone come before others.  Raises NoClosedForm where there is none, or more than one
+    of the smallest.
     """
     names = there.field.variables
     swift = [i for i, k in enumerate(there.scales) if k > 0]
@@ -44,14 +46,14 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
         )
     others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
     looked = 0
-    for more in range(len(others) + 1):
+    for constant, more in ((constant, more) for constant in (True, False) for more in range(len(others) + 1)):
         found = []
         for chosen in combinations(others, more):
             looked += 1
             if looked > MOST_CHOICES:
                 raise NoClosedForm("too many variables to find the fast ones among them", remedy=DECLARE)
             places = tuple(sorted((*swift, *chosen)))
-            if _matrix(there, places) is not None:
+            if root(there, places, constant) is not None:
                 found.append(places)
         if len(found) > 1:
             told = " or ".join(", ".join(names[i] for i in one) for one in found[:3])
@@ -59,51 +61,13 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
         if found:
             return tuple(names[i] for i in found[0])
     raise NoClosedForm(
-        "the lowest order in the small parameter does not determine fast variables by slow ones: their matrix is "
-        "singular, or depends on the state",
+        "the lowest order in the small parameter does not determine fast variables by slow ones: it is singular, or "
+        "not solved by equations that are linear in one of them",
         remedy=DECLARE,
     )
 
 
 DECLARE = "declare them: 'small parameter: {eps: {fast: [x, y]}}'"
-
-
-def _matrix(there: ScaledField, fast: Sequence[int]) -> list[list[Polynomial]] | None:
-    """L, in parameters alone with det L != 0; None where it is not so."""
-    first = len(there.field.parameters)
-    rows = []
-    for i in fast:
-        k = -there.scales[i]
-        lowest = there.rows[i].get(k)
-        if lowest is None:
-            return None
-        row = [lowest.derivative(first + j) for j in fast]
-        if any(any(x.degrees()[first:]) for x in row if x != 0):
-            return None
-        rows.append(row)
-    return rows if inverse(rows) is not None else None
-
-
-def inverse(matrix: Sequence[Sequence[Polynomial]]) -> list[list[Quotient]] | None:
-    """Gauss-Jordan's, exactly; None for a singular matrix."""
-    n = len(matrix)
-    one = matrix[0][0] * 0 + 1
-    work = [
-        [*(Quotient.of(x) for x in row), *(Quotient.of(one if i == j else one - one) for j in range(n))]
-        for i, row in enumerate(matrix)
-    ]
-    for column in range(n):
-        pivot = next((r for r in range(column, n) if not work[r][column].is_zero), None)
-        if pivot is None:
-            return None
-        work[column], work[pivot] = work[pivot], work[column]
-        lead = work[column][column]
-        work[column] = [x / lead for x in work[column]]
-        for r in range(n):
-            factor = work[r][column]
-            if r != column and not factor.is_zero:
-                work[r] = [a - factor * b for a, b in zip(work[r], work[column], strict=True)]
-    return [row[n:] for row in work]
 
 
 class OnManifold:
@@ -160,29 +124,24 @@ class OnManifold:
 
 
 def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series]:
-    """h up to eps^order.  Raises NoClosedForm where L is singular or depends on the state, or the steps do not settle.
-
-    The fast variables are zero, or affine in L, at the lowest order.
-    """
+    """h up to eps^order.  Raises NoClosedForm where the lowest order is not solved, or the steps do not settle."""
     variables = there.field.variables
     indices = [variables.index(name) for name in fast]
-    matrix = _matrix(there, indices)
-    if matrix is None:
+    start = root(there, indices)
+    if start is None:
         raise NoClosedForm(
-            f"at the lowest order in {there.small} the equations of {', '.join(fast)} are not linear in them with a "
-            "constant regular matrix"
+            f"at the lowest order in {there.small} the equations of {', '.join(fast)} do not determine them: they are "
+            "singular, or not solved by equations that are linear in one of them"
         )
-    inverted = inverse(matrix)
-    assert inverted is not None
     on = OnManifold(there, fast)
     slow = [i for i in range(len(variables)) if i not in indices]
-    functions = [Series(there.field.context, {}) for _ in fast]
+    functions = [Series.constant(value) for value in start.values]
     for _ in range(MOST_STEPS):
         left = equations(there, indices, slow, functions, on, order + 1)
         if not any(one.coefficients for one in left):
             return [one.exactly() for one in functions]
         changed = []
-        for function, row in zip(functions, inverted, strict=True):
+        for function, row in zip(functions, start.inverse, strict=True):
             for c, one in zip(row, left, strict=True):
                 function = function - Series.constant(c) * one
             changed.append(function.up_to(order + 1).exactly())
@@ -219,6 +178,15 @@ def equations(
     return found
 
 
+def divisors(there: ScaledField, fast: Sequence[str], functions: Sequence[Series]) -> tuple[Polynomial, ...]:
+    """What is not zero where the expansion holds: det L, and the denominator of the equations at eps = 0 on h_0."""
+    found = root(there, [there.field.variables.index(name) for name in fast])
+    below = OnManifold(there, fast)(there.denominator, [one.up_to(1) for one in functions], 1).coefficients.get(0)
+    quotients = [one for one in (None if found is None else found.determinant, below) if one is not None]
+    parts = [p for one in quotients for p in (one.top, one.bottom)]
+    return tuple(p for p in parts if not p.is_constant())
+
+
 def derivative(x: Series, place: int) -> Series:
     """By a generator."""
     slopes = {k: c.derivative(place) for k, c in x.coefficients.items()}
@@ -226,15 +194,15 @@ def derivative(x: Series, place: int) -> Series:
 
 
 def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], order: int) -> dict[str, Series]:
-    """s' on the manifold, up to the order to which it follows from h up to eps^order.  Raises NoClosedForm where the
-    denominator at eps = 0 depends on the state."""
+    """s' on the manifold, up to the order to which it follows from h up to eps^order.
+
+    Raises NoClosedForm where the denominator vanishes at eps = 0 on the whole manifold.
+    """
     on = OnManifold(there, fast)
     near = [one.up_to(order + 1) for one in functions]
     below = on(there.denominator, near, None)
-    lead = below.coefficients.get(0)
-    first = len(there.field.parameters)
-    if lead is None or any(lead.top.degrees()[first:]):
-        raise NoClosedForm(f"the matrix of inertia at {there.small} = 0 depends on the state, or is singular there")
+    if 0 not in below.coefficients:
+        raise NoClosedForm(f"the matrix of inertia is singular at {there.small} = 0 on the whole manifold")
     found = {}
     for name, row in zip(there.field.variables, there.rows, strict=True):
         if name not in fast:

@@ -183,12 +183,61 @@ def test_powers_say_the_same_as_a_parameter():
     assert residual_orders(there, ("z",), functions) == (4,)
 
 
+def test_a_matrix_that_depends_on_the_state():
+    """eps z' = 1 - (1 + s) z, s' = 1: (1 + s) h_n = -h_(n-1)', so that h_n = (2n - 1)!!/(1 + s)^(2n + 1)."""
+    field = made(
+        ("s", "z"), (lambda eps, s, z: eps, lambda eps, s, z: 1 - (1 + s) * z), denominator=lambda eps, **_: eps
+    )
+    there = scaled(field, "eps", {})
+    assert slow.fast_variables(there) == ("z",)
+    functions = slow.manifold(there, ("z",), 3)
+    _, s, _ = field.context.gens()
+    found = functions[0].coefficients
+    assert found == {n: Quotient.of(0 * s + c, (1 + s) ** (2 * n + 1)) for n, c in enumerate((1, 1, 3, 15))}
+    assert residual_orders(there, ("z",), functions) == (4,)
+    assert slow.divisors(there, ("z",), functions) == (-1 - s,)
+
+
+def test_michaelis_and_menten():
+    """eps c' = s - (s + k) c, s' = -s + (s + k - l) c: c = s/(s + k) + eps k l s/(s + k)^4 + ...
+
+    From h_0' s'_0 = -(s + k) h_1 with s'_0 = -l s/(s + k).
+    """
+    field = made(
+        ("s", "c"),
+        (lambda eps, k, l, s, c: eps * ((s + k - l) * c - s), lambda eps, k, l, s, c: s - (s + k) * c),
+        ("eps", "k", "l"),
+        lambda eps, **_: eps,
+    )
+    there = scaled(field, "eps", {})
+    functions = slow.manifold(there, slow.fast_variables(there), 2)
+    _, k, l, s, _ = field.context.gens()
+    found = functions[0].coefficients
+    assert (found[0], found[1]) == (Quotient.of(s, s + k), Quotient.of(k * l * s, (s + k) ** 4))
+    assert residual_orders(there, ("c",), functions) == (3,)
+
+
+def test_a_lowest_order_that_is_solved_by_elimination():
+    """eps x' = s - x, eps y' = x^2 - y, s' = -s: x = s/(1 - eps), y = s^2/((1 - eps)^2 (1 - 2 eps))."""
+    field = made(
+        ("s", "x", "y"),
+        (lambda eps, s, x, y: -s * eps, lambda eps, s, x, y: s - x, lambda eps, s, x, y: x**2 - y),
+        denominator=lambda eps, **_: eps,
+    )
+    there = scaled(field, "eps", {})
+    functions = slow.manifold(there, slow.fast_variables(there), 2)
+    _, s, _, _ = field.context.gens()
+    assert {k: c.top for k, c in functions[1].coefficients.items()} == {0: s**2, 1: 4 * s**2, 2: 11 * s**2}
+    assert residual_orders(there, ("x", "y"), functions) == (3, 3)
+
+
 @pytest.mark.parametrize(
     ("rows", "reason"),
     [
         ((lambda eps, s, z: eps * z, lambda eps, s, z: -s), "no variable is fast"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - s * z), "singular, or depends on the state"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**2), "singular, or depends on the state"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: 1 * s), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**2), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: z * (s - z)), "does not determine fast variables"),
     ],
 )
 def test_where_there_is_none_it_is_said(rows, reason):

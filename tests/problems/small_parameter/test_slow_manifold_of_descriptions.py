@@ -1,0 +1,78 @@
+"""Slow manifolds of descriptions: relations between parameters, signs, what is divided by, assumptions in eps."""
+
+from __future__ import annotations
+
+import pytest
+
+import mbsym
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis.expanding import expansion
+from mbsym.problems.small_parameter.result import Outcome
+
+#: eps x'' + c x' + k (x - y) = 0, y' is a speed, y'' = -a y - k (y - x): a light body on a spring, with friction.
+LIGHT = """
+mbsym: 1
+name: A light body on a heavy one
+parameters: {{m: positive, M: positive, c: {c}, k: {k}, a: positive, b: positive}}
+{relations}
+small parameter: {small}
+bodies:
+  - {{name: heavy, attached to: 0, coordinates: [y], connection point: [y, 0, 0], mass: M, speeds: {{v: y_dot}}}}
+  - {{name: light, attached to: 0, coordinates: [x], connection point: [x, 0, 0], mass: m, speeds: {{u: x_dot}}}}
+loads:
+  - force function: -k*(x - y)**2/2 - a*y**2/2
+  - damper: {{coordinate: x, coefficient: c}}
+motion: {{x: 0, y: 0}}
+{more}
+"""
+
+
+def light(small="m", relations="", c="positive", k="positive", more=""):
+    return mbsym.loads(LIGHT.format(small=small, relations=relations, c=c, k=k, more=more))
+
+
+def told(one, found):
+    return {n: str(found.formula(c)) for n, c in one.coefficients.items()}
+
+
+def test_a_light_body_by_hand():
+    """m u' = -c u - k (x - y) with m -> 0: u = -(k/c)(x - y) + O(m), the body creeps; x stays slow."""
+    found = expansion(light(), 1)
+    assert found.manifold.fast == ("u",)
+    assert told(found.manifold.functions[0], found)[0] in ("k*(y - x)/c", "-k*(x - y)/c")
+    # u_1 = -(1/c) du_0/dt = (k/c^2)(u_0 - v)
+    assert found.fast == (Outcome.HOLDS, ())
+    assert found.provided == ()
+    assert found.manifold.residuals == (2,)
+
+
+def test_what_is_divided_by_is_told_where_it_may_be_zero():
+    found = expansion(light(c="nonnegative"), 1)
+    assert [str(x) for x in found.provided] == ["c"]
+    assert found.fast[0] is Outcome.CONDITIONAL
+
+
+def test_relations_are_put_in_before_powers_are_counted():
+    """k = b c: the same system as with b c in the place of k."""
+    found = expansion(light(relations="relations: {k: b*c}"), 1)
+    assert told(found.manifold.functions[0], found)[0] in ("b*(y - x)", "-b*(x - y)")
+
+
+def test_a_parameter_that_follows_a_scaled_one_is_scaled_with_it():
+    """M = b m: both are light; at m = 0 y = k x/(k + a) and c x' = -k (x - y)."""
+    found = expansion(light(relations="relations: {M: b*m}"), 1)
+    first = {name: told(one, found)[0] for name, one in zip(found.manifold.fast, found.manifold.functions, strict=True)}
+    assert first == {"u": "-k*a*x/(c*(k + a))", "v": "-k**2*a*x/(c*(k + a)**2)", "y": "k*x/(k + a)"}
+
+
+@pytest.mark.parametrize("small", ["m", "{mu: {powers: {m: 1}}}"])
+def test_a_relation_that_ties_the_small_parameter_is_refused_by_name(small):
+    with pytest.raises(NoClosedForm, match="m is given by a relation"):
+        expansion(light(small, relations="relations: {m: b*M}"), 1)
+
+
+def test_assumptions_in_the_small_parameter_decide_nothing():
+    """c > 3 m says nothing of c as m tends to zero, however large m is said to be."""
+    found = expansion(light(c="real", more="assumptions: [c > 3*m]"), 1)
+    assert found.fast[0] is Outcome.CONDITIONAL
+    assert expansion(light(c="real", more="assumptions: [c > 3*k]"), 1).fast == (Outcome.HOLDS, ())
