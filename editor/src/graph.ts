@@ -33,7 +33,7 @@ class Graph {
     this.structure = new Structure(model, (name) => this.await(name));
     this.sheet = make("div", { class: "sheet" }, this.edges, this.tree);
     this.scroller = make("div", { class: "graph-scroller" }, this.sheet);
-    host.append(this.tools(), this.scroller, this.hint);
+    host.append(this.tools(), this.scroller, this.sizes(), this.hint);
     this.tree.addEventListener("keydown", (event) => this.key(event));
     this.scroller.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     model.on("view", () => this.draw());
@@ -42,20 +42,24 @@ class Graph {
   }
 
   private tools(): HTMLElement {
-    const button = (words: string, key: string, title: string, act: () => unknown): HTMLElement =>
-      make("button", { type: "button", title: key ? `${title} (${key})` : title, "aria-keyshortcuts": key || null, click: () => void act() }, words);
     return make(
       "div",
       { class: "tools", role: "toolbar", "aria-label": "Structure" },
-      button("Add body", "A", "Add a body on the selected one", () => this.structure.add(this.current)),
-      button("Rename", "F2", "Rename the selected body", () => this.structure.rename(this.current)),
-      button("Duplicate", "D", "Duplicate the selected body and what hangs on it", () => this.structure.duplicate(this.current)),
-      button("Attach to", "X, V", "Hang the selected body on another one", () => this.structure.askReattach(this.current)),
-      button("Delete", "Delete", "Delete the selected body and what hangs on it", () => this.structure.remove(this.current)),
-      make("span", { class: "gap" }),
-      button("−", "", "Smaller", () => this.zoomTo(this.zoom / 1.25)),
-      button("+", "", "Larger", () => this.zoomTo(this.zoom * 1.25)),
-      button("Fit", "", "All bodies at once", () => this.fit()),
+      tool("Add body", "A", "Add a body on the selected one", () => this.structure.add(this.current)),
+      tool("Rename", "F2", "Rename the selected body", () => this.structure.rename(this.current)),
+      tool("Duplicate", "D", "Duplicate the selected body and what hangs on it", () => this.structure.duplicate(this.current)),
+      tool("Attach to", "X, V", "Hang the selected body on another one", () => this.structure.askReattach(this.current)),
+      tool("Delete", "Delete", "Delete the selected body and what hangs on it", () => this.structure.remove(this.current)),
+    );
+  }
+
+  private sizes(): HTMLElement {
+    return make(
+      "div",
+      { class: "tools sizes", role: "toolbar", "aria-label": "Size of the structure" },
+      tool("−", "", "Smaller", () => this.zoomTo(this.zoom / 1.25)),
+      tool("+", "", "Larger", () => this.zoomTo(this.zoom * 1.25)),
+      tool("Fit", "", "All bodies at once", () => this.fit()),
     );
   }
 
@@ -346,6 +350,11 @@ class Graph {
     event.preventDefault();
     this.zoomTo(this.zoom * Math.exp(-event.deltaY / 500));
   }
+}
+
+function tool(words: string, key: string, title: string, act: () => unknown): HTMLElement {
+  const named = key ? `${title} (${key})` : title;
+  return make("button", { type: "button", title: named, "aria-label": words.length === 1 ? title : null, click: () => void act() }, words);
 }
 
 /** The coordinates that the body's form shows, without brackets. */

@@ -44,7 +44,7 @@ export function arranged(parts: Part[], model: Model): Arranged {
   for (const failure of failures) console.error(failure);
   const at = (name: string): HTMLElement => sections.get(name)!;
   const main = make("main", { class: "panels" });
-  const left = make("div", { class: "column" }, at("graph"), splitter("rows", "--left-row", "Height of the structure", 45), at("form"));
+  const left = make("div", { class: "column" }, at("graph"), splitter("rows", "--left-row", "Height of the structure", 48), at("form"));
   const middle = make("div", { class: "column" }, at("text"));
   const right = make("div", { class: "column" }, at("picture"), splitter("rows", "--right-row", "Height of the picture", 52), at("results"));
   main.append(

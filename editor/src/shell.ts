@@ -72,6 +72,10 @@ export async function start(host: HTMLElement): Promise<void> {
   window.addEventListener("beforeunload", (event) => {
     if (!model.saved) event.preventDefault();
   });
+  // Whether what is shown is of the text as it is: scripts that drive the page wait for it.
+  const root = document.documentElement;
+  model.on("text", () => (root.dataset["fresh"] = "false"));
+  model.on("view", () => (root.dataset["fresh"] = String(model.fresh)));
   await model.look();
   // Listening last: a request that never ends must not stand before those that the page begins with.
   model.listen();

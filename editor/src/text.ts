@@ -5,7 +5,7 @@ import { defaultKeymap, historyKeymap } from "@codemirror/commands";
 import { bracketMatching, foldGutter, foldKeymap, indentOnInput, indentUnit } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics, type Diagnostic } from "@codemirror/lint";
 import { highlightSelectionMatches, openSearchPanel, searchKeymap } from "@codemirror/search";
-import { Compartment, StateEffect, StateField, type Extension } from "@codemirror/state";
+import { Compartment, StateEffect, StateField, type Extension, type Text } from "@codemirror/state";
 import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
 
 import { complaintList } from "./complaints.js";
@@ -30,7 +30,7 @@ const selectedLines = StateField.define<DecorationSet>({
       now = Decoration.none;
       if (effect.value === null) continue;
       const doc = transaction.state.doc;
-      const [first, last] = [doc.lineAt(Math.min(effect.value.from, doc.length)), doc.lineAt(Math.min(effect.value.to, doc.length))];
+      const [first, last] = [doc.lineAt(Math.min(effect.value.from, doc.length)), doc.lineAt(Math.min(Math.max(effect.value.from, lastInk(doc, effect.value.to)), doc.length))];
       const all = [];
       for (let line = first.number; line <= last.number; line += 1) {
         all.push(Decoration.line({ class: "cm-selected-body" }).range(doc.line(line).from));
@@ -41,6 +41,13 @@ const selectedLines = StateField.define<DecorationSet>({
   },
   provide: (field) => EditorView.decorations.from(field),
 });
+
+/** The last character of a range that is not blank. */
+function lastInk(doc: Text, to: number): number {
+  const end = Math.min(to, doc.length);
+  const before = doc.sliceString(Math.max(0, end - 2000), end);
+  return end - (before.length - before.trimEnd().length) - (before.trimEnd().length > 0 ? 1 : 0);
+}
 
 const looks = EditorView.theme({
   "&": { height: "100%", color: "var(--front)", backgroundColor: "var(--back)", fontSize: "13px" },
@@ -78,6 +85,7 @@ export const extensions: Extension = [
   highlightActiveLine(),
   highlightActiveLineGutter(),
   drawSelection(),
+  EditorView.lineWrapping,
   indentOnInput(),
   indentUnit.of("  "),
   bracketMatching(),

@@ -1,0 +1,152 @@
+"""A real browser before `mbsym edit`: skipped by name where Playwright or Chromium is missing.
+
+The fixtures are taken by name (`browser, opened = windows.browser, windows.opened`): a second conftest would hide the first.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import CHROMIUM
+
+#: So long may an answer of the page take on a machine that does other things, too.
+PATIENCE = 20_000
+
+
+@contextmanager
+def serving(path: Path) -> Iterator[str]:
+    """The address of a server for one file, in a process of its own."""
+    command = [sys.executable, "-m", "mbsym_cli", "edit", str(path), "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        try:
+            assert process.stdout is not None
+            said = ""
+            for line in process.stdout:
+                said += line
+                if found := re.search(r"http://127\.0\.0\.1:\d+/\S+/", line):
+                    break
+            else:
+                raise AssertionError(said)
+            yield found.group()
+        finally:
+            process.terminate()
+            process.wait(20)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """One Chromium for all tests of a worker."""
+    if CHROMIUM is None:
+        pytest.skip("no chromium")
+    playwright = pytest.importorskip("playwright.sync_api", reason="no playwright")
+    with playwright.sync_playwright() as running:
+        started = running.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+class Window:
+    """A page of the editor, with the things that a person does there."""
+
+    def __init__(self, page: Any, path: Path) -> None:
+        self.page, self.path = page, path
+        self.troubles: list[str] = []
+        page.set_default_timeout(PATIENCE)
+        page.on("console", lambda one: one.type in ("error", "warning") and self.troubles.append(one.text))
+        page.on("pageerror", lambda one: self.troubles.append(str(one)))
+        page.add_init_script(
+            "window.violations = []; document.addEventListener('securitypolicyviolation',"
+            " e => window.violations.push(`${e.violatedDirective} ${e.blockedURI}`));"
+        )
+
+    def open(self, address: str) -> None:
+        """Loads the page and waits for the first look at the text."""
+        self.page.goto(address)
+        self.settled()
+
+    def settled(self) -> None:
+        """Until the server has looked at the text as it is, whatever it says of it."""
+        self.page.wait_for_function("document.documentElement.dataset.fresh === 'true'")
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def typed(self, text: str) -> None:
+        self.page.keyboard.type(text)
+
+    def body(self, name: str) -> Any:
+        """The body in the graph."""
+        return self.page.locator("#graph [role=treeitem]").filter(has=self.page.get_by_text(name, exact=True))
+
+    @property
+    def bodies(self) -> dict[str, str]:
+        """What hangs on what, as the graph tells those who listen."""
+        labels = self.page.locator("#graph [role=treeitem]").evaluate_all("all => all.map(e => e.ariaLabel)")
+        found = (re.match(r"(.*), body \d+ on ([^;]*)", label) for label in labels)
+        return {match[1]: match[2] for match in found if match}
+
+    def in_dialog(self, text: str | None = None) -> None:
+        """Answers the open dialog with Enter, after typing `text` over what is marked."""
+        self.page.locator("dialog[open]").wait_for()
+        if text is not None:
+            self.typed(text)
+        self.press("Enter")
+        self.page.locator("dialog[open]").wait_for(state="detached")
+
+    def write(self, text: str) -> None:
+        """The whole text replaced, by keys as a person would: mark all, paste."""
+        self.page.locator(".cm-content").focus()
+        self.press("Control+a")
+        self.page.keyboard.insert_text(text)
+        self.settled()
+
+    @property
+    def text(self) -> str:
+        """The text as it is saved."""
+        self.save()
+        return self.path.read_bytes().decode()
+
+    def save(self) -> None:
+        if self.page.locator("#do-save").is_enabled():
+            self.press("Control+s")
+            self.page.wait_for_function("document.querySelector('#saved').textContent === 'saved'")
+
+    @property
+    def complaints(self) -> list[str]:
+        self.settled()
+        return self.page.locator(".complaint .message").all_text_contents()
+
+    def is_quiet(self) -> None:
+        """Nothing on the console, nothing that the security policy had to stop."""
+        assert self.troubles == []
+        assert self.page.evaluate("window.violations") == []
+
+
+@pytest.fixture
+def opened(browser: Any) -> Iterator[Callable[..., Window]]:
+    """Opens a file in a window; all windows are closed and have to be quiet at the end."""
+    windows: list[Window] = []
+    contexts = []
+
+    def open_one(address: str, path: Path, **settings: Any) -> Window:
+        context = browser.new_context(viewport={"width": 1280, "height": 720}, **settings)
+        contexts.append(context)
+        window = Window(context.new_page(), path)
+        window.open(address)
+        windows.append(window)
+        return window
+
+    yield open_one
+    for window in windows:
+        window.is_quiet()
+    for context in contexts:
+        context.close()
