@@ -1,6 +1,7 @@
 """A real browser before `mbsym edit`: skipped by name where Playwright or Chromium is missing.
 
-The fixtures are taken by name (`browser, opened = windows.browser, windows.opened`): a second conftest would hide the first.
+The fixtures are taken by name (`browser, opened = windows.browser, windows.opened`), since a second conftest would
+hide the first.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
 from conftest import CHROMIUM
 
 #: So long may an answer of the page take on a machine that does other things, too.
