@@ -291,11 +291,13 @@ class Graph {
   // ---- the pointer -------------------------------------------------------------------------------------------------
 
   private pressed(event: PointerEvent, name: string): void {
-    if (event.button !== 0) return;
-    const element = this.elements.get(name)!;
+    if (event.button !== 0 || name === FIXED) return;
     const [x0, y0] = [event.clientX, event.clientY];
+    const listening = new AbortController();
+    const always = { signal: listening.signal, capture: true };
     let ghost: HTMLElement | null = null;
     let over: HTMLElement | null = null;
+    let scrolling: number | undefined;
     const target = (at: PointerEvent): [string, HTMLElement] | null => {
       const found = document.elementFromPoint(at.clientX, at.clientY)?.closest<HTMLElement>("[role=treeitem]");
       const entry = [...this.elements].find(([, one]) => one === found);
@@ -303,8 +305,7 @@ class Graph {
     };
     const moved = (at: PointerEvent): void => {
       if (ghost === null) {
-        if (name === FIXED || Math.hypot(at.clientX - x0, at.clientY - y0) < DRAG_FROM) return;
-        element.setPointerCapture(event.pointerId);
+        if (Math.hypot(at.clientX - x0, at.clientY - y0) < DRAG_FROM) return;
         ghost = make("div", { class: "body ghost", "aria-hidden": "true" }, make("span", { class: "name" }, name));
         document.body.append(ghost);
       }
@@ -312,25 +313,30 @@ class Graph {
       over?.classList.remove("over");
       over = target(at)?.[1] ?? null;
       over?.classList.add("over");
+      window.clearInterval(scrolling);
+      const [down, right] = this.edge(at);
+      if (down !== 0 || right !== 0) scrolling = window.setInterval(() => this.scroller.scrollBy(right, down), 16);
     };
-    const ended = (at: PointerEvent | KeyboardEvent): void => {
-      element.removeEventListener("pointermove", moved);
-      element.removeEventListener("pointerup", ended);
-      element.removeEventListener("pointercancel", ended);
-      document.removeEventListener("keydown", escaped, true);
+    const ended = (at: PointerEvent | null): void => {
+      listening.abort();
+      window.clearInterval(scrolling);
       over?.classList.remove("over");
+      const found = ghost !== null && at !== null ? target(at) : null;
       ghost?.remove();
-      if (ghost === null || !(at instanceof PointerEvent) || at.type === "pointercancel") return;
-      const found = target(at);
       if (found) void this.structure.reattach(name, found[0]);
     };
-    const escaped = (at: KeyboardEvent): void => {
-      if (at.key === "Escape") ended(at);
-    };
-    element.addEventListener("pointermove", moved);
-    element.addEventListener("pointerup", ended);
-    element.addEventListener("pointercancel", ended);
-    document.addEventListener("keydown", escaped, true);
+    // Heard on the document: the first move may already be over another body.
+    document.addEventListener("pointermove", moved, always);
+    document.addEventListener("pointerup", ended, always);
+    document.addEventListener("pointercancel", () => ended(null), always);
+    document.addEventListener("keydown", (at) => at.key === "Escape" && ended(null), always);
+  }
+
+  /** How fast the graph scrolls while a body is dragged near its border: down, right. */
+  private edge(at: PointerEvent): [number, number] {
+    const box = this.scroller.getBoundingClientRect();
+    const near = (low: number, high: number, place: number): number => (place < low + 24 ? -8 : place > high - 24 ? 8 : 0);
+    return [near(box.top, box.bottom, at.clientY), near(box.left, box.right, at.clientX)];
   }
 
   // ---- how large ---------------------------------------------------------------------------------------------------

@@ -39,6 +39,7 @@ export interface Events {
   /** The file is another than before: written by us or by someone else. */
   file: FileState;
   saved: boolean;
+  busy: boolean;
   /** A place of the text is to be shown, with the cursor in it. */
   goto: { from: number; to: number };
   connection: Connection;
@@ -71,7 +72,8 @@ export class Model extends Listeners<Events> {
   private changedAt: number | null = null;
   private lookTimer: number | undefined;
   private journalTimer: number | undefined;
-  private looking: AbortController | null = null;
+  private looking: Promise<void> | null = null;
+  private pending = 0;
   private changes: Promise<unknown> = Promise.resolve();
   private listeningTo: EventSource | null = null;
 
@@ -112,6 +114,11 @@ export class Model extends Listeners<Events> {
 
   get saved(): boolean {
     return this.text === this.stored;
+  }
+
+  /** Whether an operation is on its way. */
+  get busy(): boolean {
+    return this.pending > 0;
   }
 
   /** Whether `view` is what the server understands of the text as it is now. */
@@ -231,18 +238,27 @@ export class Model extends Listeners<Events> {
     }, 2000);
   }
 
-  /** Asks the server what the text means. Answers that have become old are dropped. */
+  /**
+   * Asks the server what the text means; done when that is known of the text as it is. One question at a time: who types
+   * faster than the server answers must not pile up work there.
+   */
   async look(): Promise<void> {
     window.clearTimeout(this.lookTimer);
-    this.looking?.abort();
-    const asking = new AbortController();
-    this.looking = asking;
+    if (this.looking) {
+      await this.looking;
+      return this.fresh ? undefined : this.look();
+    }
+    this.looking = this.lookNow();
+    await this.looking;
+  }
+
+  private async lookNow(): Promise<void> {
     const text = this.text;
     const begun = this.changedAt ?? performance.now();
     this.changedAt = null;
     try {
-      const view = await this.request<View>("look", {}, asking.signal);
-      if (this.looking !== asking) return;
+      const view = await this.request<View>("look");
+      this.looking = null;
       this.view = view;
       this.viewed = text;
       if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) this.understood = view;
@@ -251,9 +267,9 @@ export class Model extends Listeners<Events> {
       // From the first key that this look is about until everything is told: read by the tests.
       performance.measure("mbsym:look", { start: begun, end: performance.now() });
     } catch (failure) {
-      if (!(failure instanceof DOMException && failure.name === "AbortError") && !(failure instanceof Away)) {
-        this.say(String(failure instanceof Error ? failure.message : failure));
-      }
+      if (!(failure instanceof Away)) this.say(failure instanceof Error ? failure.message : String(failure));
+    } finally {
+      this.looking = null;
     }
   }
 
@@ -268,7 +284,14 @@ export class Model extends Listeners<Events> {
    * the one before has left. Where the server complains nothing is done, and it is said.
    */
   change(operations: Operation[], words?: string): Promise<Outcome> {
-    const next = this.changes.then(() => this.changeNow(operations, words));
+    this.pending += 1;
+    this.tell("busy", true);
+    const next = this.changes
+      .then(() => this.changeNow(operations, words))
+      .finally(() => {
+        this.pending -= 1;
+        this.tell("busy", this.busy);
+      });
     this.changes = next.catch(() => undefined);
     return next;
   }

@@ -74,8 +74,9 @@ export async function start(host: HTMLElement): Promise<void> {
   });
   // Whether what is shown is of the text as it is: scripts that drive the page wait for it.
   const root = document.documentElement;
-  model.on("text", () => (root.dataset["fresh"] = "false"));
-  model.on("view", () => (root.dataset["fresh"] = String(model.fresh)));
+  for (const event of ["text", "view", "busy"] as const) {
+    model.on(event, () => (root.dataset["fresh"] = String(model.fresh && !model.busy)));
+  }
   await model.look();
   // Listening last: a request that never ends must not stand before those that the page begins with.
   model.listen();

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -74,7 +75,20 @@ class Window:
 
     def settled(self) -> None:
         """Until the server has looked at the text as it is, whatever it says of it."""
-        self.page.wait_for_function("document.documentElement.dataset.fresh === 'true'")
+        self.until("document.documentElement.dataset.fresh === 'true'")
+
+    def until(self, expression: str) -> None:
+        """Waits until an expression holds: asked from outside, since the page's policy forbids what Playwright's own
+        waiting evaluates."""
+        limit = time.monotonic() + PATIENCE / 1000
+        while not self.page.evaluate(expression):
+            assert time.monotonic() < limit, f"still not: {expression}"
+            self.page.wait_for_timeout(20)
+
+    def told(self, words: str) -> None:
+        """Waits until the status line tells something with these words, and the text is understood."""
+        self.page.locator("#said").filter(has_text=words).wait_for()
+        self.settled()
 
     def press(self, *keys: str) -> None:
         for key in keys:
@@ -101,6 +115,7 @@ class Window:
             self.typed(text)
         self.press("Enter")
         self.page.locator("dialog[open]").wait_for(state="detached")
+        self.settled()
 
     def write(self, text: str) -> None:
         """The whole text replaced, by keys as a person would: mark all, paste."""
@@ -118,7 +133,7 @@ class Window:
     def save(self) -> None:
         if self.page.locator("#do-save").is_enabled():
             self.press("Control+s")
-            self.page.wait_for_function("document.querySelector('#saved').textContent === 'saved'")
+            self.until("document.querySelector('#saved').textContent === 'saved'")
 
     @property
     def complaints(self) -> list[str]:
