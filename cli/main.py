@@ -42,6 +42,7 @@ COMMANDS = {
     "average": Listed("average", "Average a system over a fast phase."),
     "expand": Listed("expand", "Expand in a small parameter: the slow integral manifold, checked."),
     "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
+    "symmetries": Listed("symmetries", "Find symmetries that coordinates hide, and their integrals."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
     "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
     "nonlinear": Listed("nonlinear", "List where terms of higher order decide otherwise."),

@@ -1,0 +1,36 @@
+"""Symmetries of a system and their integrals, with numbers in place of some parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.mechanics.motion import relations
+from mbsym.problems.symmetries import Symmetries, in_coordinates, in_speeds, symmetries
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+
+
+def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Symmetries:
+    """All symmetries whose fields are of degree one in the positions, and their integrals.
+
+    Raises Failure where equations or their coefficients outgrow a bound, SingularPoint where formulas divide by zero at
+    the ``values``.
+    """
+    refuse_constraints(analysis.system, "symmetries are not looked for")
+    ring, form = analysis.ring, analysis.speed_form
+    numbers = {
+        ring.index("parameter", name): ring.number(x)
+        for name, x in (values or {}).items()
+        if ring.has("parameter", name)
+    }
+    images = {k: ring.substitute(x, numbers) for k, x in relations(analysis.parameters_scene).items()} | numbers
+    equations: Any = analysis.equations
+    if form is None:
+        blocks = in_coordinates(analysis.scene, analysis.energy, equations, images)
+    else:
+        blocks = in_speeds(form, analysis.energy, equations, images)
+    return symmetries(analysis.system, blocks, analysis.optional("integrals"))

@@ -1,0 +1,114 @@
+"""Linear relations between formulas with coefficients in the field of the parameters, fraction-free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+
+#: Terms of one entry while that is solved.
+MOST_ENTRY = 2000
+
+Key = tuple[int, ...]
+
+#: The kinds of generators that are no constants, and whose functions are none.
+MOVING = ("coordinate", "prescribed", "time")
+
+
+def kernel(ring: Ring, columns: Sequence[Polynomial]) -> list[dict[int, Polynomial]]:
+    """A basis of the c with  sum_k c_k columns_k = 0, as polynomials in the parameters, primitive.
+
+    Coefficients of equal monomials in everything but parameters are compared: where formulas have other normal forms
+    than these the basis may lack some.  Free are the last columns.  Raises NoClosedForm beyond the bounds.
+    """
+    rows: dict[Key, dict[int, Polynomial]] = {}
+    for k, column in enumerate(_cleared(ring, columns)):
+        for key, c in coefficients(ring, column).items():
+            rows.setdefault(key, {})[k] = c
+    pivots: dict[int, dict[int, Polynomial]] = {}
+    for row in sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values()))):
+        for k in [k for k in row if k in pivots]:
+            if k in row:
+                row = _combined(ring, row, pivots[k], k)
+        if not row:
+            continue
+        k = min(row)
+        for place, other in list(pivots.items()):
+            if k in other:
+                pivots[place] = _combined(ring, other, row, k)
+        pivots[k] = row
+    return [_vector(ring, pivots, k) for k in range(len(columns)) if k not in pivots]
+
+
+def coefficients(ring: Ring, x: Polynomial) -> dict[Key, Polynomial]:
+    """Polynomials in what does not change with the state or the time, by the powers of all other generators."""
+    moving = {g.name for g in ring.generators if g.kind in MOVING}
+    degrees = x.degrees()
+    fixed = [d > 0 and not ring.dependencies(ring.context.gen(k), moving) for k, d in enumerate(degrees)]
+    for k, g in enumerate(ring.generators[: len(fixed)]):
+        fixed[k] = fixed[k] and g.kind not in (*MOVING, "velocity", "acceleration")
+    parts: dict[Key, dict[Key, Any]] = {}
+    for monomial, c in x.to_dict().items():
+        own = tuple(int(a) if one else 0 for a, one in zip(monomial, fixed, strict=True))
+        rest = tuple(0 if one else int(a) for a, one in zip(monomial, fixed, strict=True))
+        parts.setdefault(rest, {})[own] = c
+    return {key: ring.context.from_dict(terms) for key, terms in parts.items()}
+
+
+def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:
+    """All of them times what they divide by."""
+    fractions = [ring.fraction(x) for x in columns]
+    common: list[tuple[Polynomial, int]] = []
+    for _, factors in fractions:
+        for factor, power in factors:
+            place = next((k for k, (one, _) in enumerate(common) if one == factor), None)
+            if place is None:
+                common.append((factor, power))
+            else:
+                common[place] = (factor, max(power, common[place][1]))
+    found = []
+    for top, factors in fractions:
+        for factor, power in common:
+            own = next((e for one, e in factors if one == factor), 0)
+            for _ in range(power - own):
+                top = ring.times(top, factor)
+        found.append(ring.reduce(top))
+    return found
+
+
+def _vector(ring: Ring, pivots: dict[int, dict[int, Polynomial]], free: int) -> dict[int, Polynomial]:
+    """The solution with 1 in the place ``free`` and 0 in the other free places, times its denominators."""
+    involved = {k: row for k, row in pivots.items() if free in row}
+    common = ring.one
+    for k, row in involved.items():
+        common = common * (row[k] / row[k].gcd(common))
+    found = {k: ring.reduce(-row[free] * (common / row[k])) for k, row in involved.items()} | {
+        free: ring.reduce(common)
+    }
+    shared = found[free]
+    for c in found.values():
+        shared = shared.gcd(c)
+    scale = shared * (found[free] / shared).leading_coefficient()
+    return {k: c / scale for k, c in found.items()}
+
+
+def _combined(ring: Ring, row: dict[int, Polynomial], pivot: dict[int, Polynomial], k: int) -> dict[int, Polynomial]:
+    """The row without its entry k, primitive."""
+    common = pivot[k].gcd(row[k])
+    a, b = pivot[k] / common, row[k] / common
+    found: dict[int, Polynomial] = {}
+    for j in {*row, *pivot}:
+        if j == k:
+            continue
+        value: Any = (row[j] * a if j in row else ring.zero) - (pivot[j] * b if j in pivot else ring.zero)
+        value = ring.reduce(value)
+        if value != 0:
+            if len(value) > MOST_ENTRY:
+                raise NoClosedForm("the coefficients of a symmetry are too long", limit=Limit.TERMS)
+            found[j] = value
+    shared: Any = None
+    for value in found.values():
+        shared = value if shared is None else shared.gcd(value)
+    return {j: value / shared for j, value in found.items()}

@@ -1,0 +1,298 @@
+"""The kernel of the condition of a symmetry: bounded at exact states modulo a prime, then solved in symbols."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from random import Random
+from typing import Any
+
+from flint import fmpq, fmpq_mat, nmod_mat
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import NOT_THERE, Failure, Limit, NoClosedForm
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.oracle import State
+from mbsym.mechanics.states import rational_states
+from mbsym.model.system import System
+from mbsym.problems.integrals import Integral
+from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
+from mbsym.problems.polynomial_integrals.result import FUNCTION, Sure
+from mbsym.problems.symmetries.blocks import Blocks
+from mbsym.problems.symmetries.kernel import coefficients, kernel
+from mbsym.problems.symmetries.result import DEPENDENT, Symmetries, Symmetry
+from mbsym.problems.vector_field import put_in
+
+#: Constants that are free, and states that are tried in vain.
+MOST_UNKNOWNS, SPARE = 400, 12
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A constant: of Gamma (``direction`` None), of xi_r, or tau (``time``); ``factors``: places of positions."""
+
+    factors: tuple[int, ...]
+    direction: int | None
+    time: bool = False
+
+
+def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None) -> Symmetries:
+    """A basis of the symmetries whose fields are of degree one in the positions; ``known``: problem 7,
+    None where that has no result.
+
+    Raises NoClosedForm where there are too many unknowns, or coefficients outgrow their bounds.
+    """
+    unknowns = _unknowns(blocks)
+    if len(unknowns) > MOST_UNKNOWNS:
+        told = f"a field of degree one has {len(unknowns)} constants, more than {MOST_UNKNOWNS}"
+        raise NoClosedForm(told, limit=Limit.WORK)
+    bound = _bound(system, blocks, unknowns)
+    able, most = (list(range(len(unknowns))), -1) if bound is None else bound
+    vectors = kernel(blocks.ring, [_condition(blocks, unknowns[k]) for k in able]) if able else []
+    found = []
+    right = len(vectors)
+    for vector in vectors:
+        made = _symmetry(blocks, unknowns, {able[k]: c for k, c in vector.items()})
+        if made is None:
+            right -= 1
+        else:
+            found.append(made)
+    judged = _told_apart(system, blocks, found, known)
+    bound_by_images = {blocks.ring.generators[k].name for k in blocks.images}
+    symbols = any(name not in bound_by_images for name in system.parameter_names)
+    return Symmetries(tuple(judged), right == most, len(unknowns), blocks.in_speeds, symbols)
+
+
+def _unknowns(blocks: Blocks) -> list[Unknown]:
+    """Those of Gamma first: pivots of the elimination, so that fields are what is free."""
+    positions, directions = range(len(blocks.positions)), range(len(blocks.names))
+    found = [Unknown((j, k), None) for j in positions for k in positions if j <= k]
+    found += [Unknown((j,), None) for j in positions]
+    found += [Unknown((j,), r) for r in directions for j in positions]
+    found += [Unknown((), r) for r in directions]
+    return [*found, Unknown((), None, True)]
+
+
+def _condition(blocks: Blocks, one: Unknown) -> Polynomial:
+    """What a constant is multiplied by, in independent variables."""
+    ring, s, changes = blocks.ring, blocks.positions, blocks.changes
+    if one.time:
+        return blocks.plain(blocks.power)
+    if one.direction is None:
+        if len(one.factors) == 1:
+            return blocks.plain(-changes[one.factors[0]])
+        j, k = one.factors
+        return blocks.plain(-ring.times(s[j], changes[k]) - ring.times(s[k], changes[j]))
+    rate = blocks.rates[one.direction]
+    if not one.factors:
+        return blocks.plain(rate)
+    (j,) = one.factors
+    return blocks.plain(ring.times(s[j], rate) + ring.times(changes[j], blocks.momenta[one.direction]))
+
+
+# --- how many there can be ---
+
+
+def _bound(system: System, blocks: Blocks, unknowns: Sequence[Unknown]) -> tuple[list[int], int] | None:
+    """The unknowns that occur in the kernel at random numbers, modulo a prime, and its dimension: at most as large for
+    symbols.  None where states are not rational.
+    """
+    rows = []
+    try:
+        for value in _states(system, blocks, len(unknowns) + SPARE):
+            rows.append(_row(value, blocks, unknowns))
+            if len(rows) == len(unknowns) + SPARE // 2:
+                break
+    except NOT_THERE:
+        return None
+    if len(rows) < len(unknowns):
+        return None
+    basis = null_space(nmod_mat(rows, PRIMES[0]))
+    return sorted({k for vector in basis for k, c in enumerate(vector) if c}), len(basis)
+
+
+def _states(system: System, blocks: Blocks, count: int) -> Any:
+    """Carriers at random exact states with the same parameters, angles among them too; quaternions of norm 1."""
+    source, same, turns = Random("symmetries"), None, None
+    fixed = {*system.parameter_names}
+    for state in rational_states(system, blocks.ring, count):
+        assert isinstance(state.numbers, Rationals)
+        same = same or {name: x for name, x in state.values.items() if name in fixed}
+        turns = turns or {name: x for name, x in state.numbers.basic.items() if name in fixed}
+        state.numbers.basic |= turns
+        values = {**state.values, **same, **_norms(blocks, source)}
+        yield Carrier(blocks.ring, state.numbers, State(state.numbers, values).values)
+
+
+def _norms(blocks: Blocks, source: Random) -> dict[str, fmpq]:
+    found: dict[str, fmpq] = {}
+    for names in blocks.norms:
+        plane = [fmpq(source.randint(-99, 99), source.randint(1, 99)) for _ in names[1:]]
+        square = sum((x * x for x in plane), fmpq(0))
+        values = [(1 - square) / (1 + square), *(2 * x / (1 + square) for x in plane)]
+        found |= dict(zip(names, values, strict=True))
+    return found
+
+
+def _row(carry: Carrier, blocks: Blocks, unknowns: Sequence[Unknown]) -> list[int]:
+    def at(listed: Sequence[Polynomial]) -> list[int]:
+        return [_residue(carry(blocks.plain(x))) for x in listed]
+
+    prime = PRIMES[0]
+    p, rates = at(blocks.momenta), at(blocks.rates)
+    s, changes = at(blocks.positions), at(blocks.changes)
+    (power,) = at([blocks.power])
+    found = []
+    for one in unknowns:
+        if one.time:
+            value = power
+        elif one.direction is None:
+            j, *rest = one.factors
+            value = -s[j] * changes[rest[0]] - s[rest[0]] * changes[j] if rest else -changes[j]
+        elif one.factors:
+            (j,) = one.factors
+            value = s[j] * rates[one.direction] + changes[j] * p[one.direction]
+        else:
+            value = rates[one.direction]
+        found.append(value % prime)
+    return found
+
+
+def _residue(x: fmpq) -> int:
+    return int(x.p) * pow(int(x.q), -1, PRIMES[0]) % PRIMES[0]
+
+
+# --- what they are ---
+
+
+def _symmetry(blocks: Blocks, unknowns: Sequence[Unknown], vector: dict[int, Polynomial]) -> Symmetry | None:
+    """The field of a vector of the kernel; None where the condition or the second route refutes it."""
+    ring = blocks.ring
+    left, time, gauge = ring.zero, ring.zero, ring.zero
+    field = [ring.zero for _ in blocks.names]
+    for k, c in vector.items():
+        one = unknowns[k]
+        left = left + ring.times(c, _condition(blocks, one))
+        if one.time:
+            time = c
+            continue
+        term = c
+        for j in one.factors:
+            term = ring.times(term, blocks.positions[j])
+        if one.direction is None:
+            gauge = gauge + term
+        else:
+            field[one.direction] = field[one.direction] + term
+    whole = ring.times(time, blocks.energy) - gauge
+    for xi, p in zip(field, blocks.momenta, strict=True):
+        whole = whole + ring.times(xi, p)
+    whole = ring.reduce(whole)
+    if ring.is_zero(blocks.plain(ring.reduce(left))) is not True:
+        return None
+    second = blocks.keeps(whole)
+    if second is None:
+        return None
+    directions = tuple((name, Formula(ring, xi)) for name, xi in zip(blocks.names, field, strict=True) if xi != 0)
+    shift, gained = Formula(ring, ring.reduce(time)), Formula(ring, ring.reduce(gauge))
+    return Symmetry(directions, shift, gained, Formula(ring, whole), "", Sure.UNDECIDED, second)
+
+
+def _told_apart(
+    system: System, blocks: Blocks, found: Sequence[Symmetry], known: Sequence[Integral] | None
+) -> list[Symmetry]:
+    """Without those whose integral is a constant; which are known, and how that is."""
+    listed = [(one.name, put_in(blocks.ring, one.formula.polynomial, blocks.images)) for one in known or ()]
+    of_known, of_all = _Gradients(system, blocks), _Gradients(system, blocks)
+    for _, x in listed:
+        of_known.add(x)
+        of_all.add(x)
+    moving = [
+        replace(one, name=_multiple(blocks, one.integral.polynomial, listed))
+        for one in found
+        if not _constant(blocks, one.integral.polynomial)
+    ]
+    judged = []
+    for one in sorted(moving, key=lambda one: (not one.name, one.integral.terms)):
+        x = one.integral.polynomial
+        if one.name:
+            judged.append(replace(one, sure=Sure.PROVED))
+        elif known is None or (grown := of_all.add(x)) is None:
+            judged.append(one)
+        elif grown:
+            judged.append(replace(one, sure=Sure.PROVED))
+        else:
+            name = FUNCTION if of_known.grows(x) is False else DEPENDENT
+            judged.append(replace(one, name=name, sure=Sure.VERIFIED))
+    return judged
+
+
+class _Gradients:
+    """Gradients at one exact state, and their rank; after what has no value there nothing is known any more."""
+
+    def __init__(self, system: System, blocks: Blocks) -> None:
+        self.blocks = blocks
+        self.rows: list[list[fmpq]] | None = []
+        try:
+            *_, self.carry = _states(system, blocks, 2)
+            for names in blocks.norms:
+                norm = blocks.ring.zero
+                for name in names:
+                    e = blocks.ring.generator("coordinate", name)
+                    norm = norm + e * e
+                self.rows.append(self._at(norm))
+        except NOT_THERE:
+            self.rows = None
+
+    def _at(self, x: Polynomial) -> list[fmpq]:
+        return [self.carry(slope(x)) for slope in self.blocks.state]
+
+    def grows(self, x: Polynomial) -> bool | None:
+        """Whether x is independent of those before it; None where that is not known."""
+        row = self._row(x)
+        return None if row is None or self.rows is None else self._rank(row) > len(self.rows)
+
+    def add(self, x: Polynomial) -> bool | None:
+        """The same, and x is one of them from now on."""
+        row = self._row(x)
+        if row is None or self.rows is None:
+            self.rows = None
+            return None
+        grown = self._rank(row) > len(self.rows)
+        if grown:
+            self.rows.append(row)
+        return grown
+
+    def _row(self, x: Polynomial) -> list[fmpq] | None:
+        try:
+            return self._at(self.blocks.plain(x))
+        except (Failure, *NOT_THERE):
+            return None
+
+    def _rank(self, row: list[fmpq]) -> int:
+        return int(fmpq_mat([*(self.rows or []), row]).rank())
+
+
+def _constant(blocks: Blocks, x: Polynomial) -> bool:
+    """Whether it does not depend on the state, as the norm of a quaternion does not."""
+    plain = blocks.plain(x)
+    return all(blocks.ring.is_zero(slope(plain)) is True for slope in blocks.state)
+
+
+def _multiple(blocks: Blocks, x: Polynomial, known: Sequence[tuple[str, Polynomial]]) -> str:
+    """The name of the first integral of which x is a multiple, up to a constant of parameters."""
+    mine = _by_state(blocks.ring, blocks.plain(x))
+    for name, other in known:
+        theirs = _by_state(blocks.ring, blocks.plain(other))
+        if mine and mine.keys() == theirs.keys():
+            first = next(iter(mine))
+            a, b = mine[first], theirs[first]
+            if all(blocks.ring.times(c, b) == blocks.ring.times(theirs[key], a) for key, c in mine.items()):
+                return name
+    return ""
+
+
+def _by_state(ring: Ring, x: Polynomial) -> dict[tuple[int, ...], Polynomial]:
+    """The coefficients of what depends on the state, polynomials in parameters."""
+    return {key: c for key, c in coefficients(ring, x).items() if any(key)}

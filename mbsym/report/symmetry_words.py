@@ -1,0 +1,57 @@
+"""What is said of symmetries: fields as text, and sentences with gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mbsym.problems.polynomial_integrals import Sure
+from mbsym.problems.symmetries import Symmetries, Symmetry
+from mbsym.report.said import Said
+
+HEADING = "Symmetries with fields of degree one in the positions, and their integrals"
+
+
+def field_text(one: Symmetry) -> str:
+    """``x: -y, y: x; time: 1; Gamma = b*y``."""
+    parts = [", ".join(f"{name}: {xi}" for name, xi in one.directions)] if one.directions else []
+    parts += [f"time: {one.time}"] if not one.time.is_zero else []
+    parts += [f"Gamma = {one.gauge}"] if not one.gauge.is_zero else []
+    return "; ".join(parts)
+
+
+def title(one: Symmetry) -> str:
+    """What its integral is called."""
+    if one.name:
+        return one.name
+    return "new: no function of the integrals of problem 7 and those before it (proved)" if one.is_new else "integral"
+
+
+def second_route(one: Symmetry) -> str:
+    """How dI/dt = 0 is known besides the identity."""
+    return {
+        Sure.PROVED: "dI/dt = 0 by substitution of the accelerations, too (proved)",
+        Sure.VERIFIED: "dI/dt = 0 at random states, too (verified exactly there)",
+        Sure.UNDECIDED: "dI/dt by substitution was not decided within the budget",
+    }[one.substituted]
+
+
+def sentences(found: Symmetries) -> Iterator[Said]:
+    """What is known of the list as a whole."""
+    values: dict[str, object] = {"unknowns": found.unknowns}
+    if not found.symmetries:
+        yield _NONE[found.symbols] if found.complete else "None was found; that there is none is not proved.", values
+        return
+    yield "Each of them is an identity of the exact ring (proved).", values
+    yield _ALL[found.symbols] if found.complete else "That there are no others is not proved.", values
+
+
+_BY = "(proved: rank of the conditions on [[unknowns]] constants at exact states)."
+_NONE = {
+    True: f"There is none, for almost all values of the parameters {_BY}",
+    False: f"There is none {_BY}",
+}
+_ALL = {
+    True: "Every other is a combination of these with constant coefficients, for almost all values of the parameters "
+    + _BY,
+    False: f"Every other is a combination of these with constant coefficients {_BY}",
+}

@@ -1,0 +1,63 @@
+"""``mbsym symmetries``: what it prints, as JSON by its schema, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema
+import pytest
+from click.testing import CliRunner
+
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+
+def run(*words):
+    return CliRunner().invoke(main, ["symmetries", *words])
+
+
+@pytest.fixture(autouse=True)
+def _at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+def test_a_constant_push_has_a_potential():
+    """The cart pushed by the constant F: T - U - F x is conserved; problem 7 does not know it."""
+    done = run("systems/cart-pendulum.yaml", "--json")
+    assert done.exit_code == 0
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("symmetries"))
+    (one,) = data["symmetries"]
+    assert (one["time"], one["gauge"], one["new"], one["substituted"]) == ("1", "F*x", True, "proved")
+    assert data["complete"] is True
+
+
+def test_the_table_says_what_is_proved():
+    told = " ".join(run("systems/spherical-pendulum.yaml").stdout.split())
+    assert "field psi: 1" in told
+    assert "momentum of psi" in told
+    assert "Every other is a combination of these with constant coefficients, for almost all values" in told
+    none = run("systems/ziegler.yaml")
+    assert (none.exit_code, "There is none, for almost all values" in none.stdout) == (0, True)
+    open_ = run("systems/three-bodies.yaml")  # roots: states are not rational
+    assert (open_.exit_code, "That there are no others is not proved." in open_.stdout) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("systems/rolling-disc.yaml",), "does not take constraints into account yet"),
+        (("systems/spherical-pendulum.yaml", "--set", "Q=1"), "there is no parameter called Q"),
+        (("systems/none.yaml",), "none.yaml"),
+    ],
+)
+def test_bad_input_is_complained_about(words, told):
+    done = run(*words)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert told in done.stderr.replace("'", "")
+
+
+def test_a_system_of_matrices_has_no_lagrangian_here():
+    done = run("systems/gyroscopic-pair.yaml")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert "given by its matrices" in done.stderr
