@@ -1,6 +1,101 @@
+// The panel of the picture: drawn anew when the server has understood another text; motion, modes, equilibria on demand.
+
+import { make } from "./elements.js";
 import type { Model } from "./model.js";
+import type { Equilibria, Modes, Motion, Picture } from "./picture/types.js";
+import { Viewer } from "./picture/viewer.js";
+import type { Told } from "./seam.js";
+
+/** So long after a change of the text it is drawn: sooner it would only flicker. */
+const DRAW_AFTER = 150;
+
+const SECTIONS = { motion: "simulate", modes: "modes", equilibria: "equilibria" } as const;
+type Section = keyof typeof SECTIONS;
 
 export function panel(host: HTMLElement, model: Model): void {
-  model.on("view", () => undefined);
-  host.replaceChildren();
+  const time = make("input", { type: "text", value: "10", size: 5, inputmode: "decimal", "aria-label": "Until t =" });
+  const ask = (section: Section, words: string, hint: string) =>
+    make("button", { type: "button", title: hint, click: () => void begin(section) }, words);
+  const buttons = make(
+    "div",
+    { class: "picture-asked" },
+    make("label", {}, "until t = ", time),
+    ask("motion", "Simulate", "Integrate the motion from the initial state"),
+    ask("modes", "Modes", "Linear modes about the given motion"),
+    ask("equilibria", "Equilibria", "All relative equilibria at the values"),
+  );
+  const stale = make("p", { class: "picture-stale", role: "status" });
+  const place = make("div", { class: "picture-place" });
+  host.replaceChildren(buttons, stale, place);
+  const viewer = new Viewer(place);
+  viewer.onSelect = (name) => model.select(name);
+
+  let timer = 0;
+  let asking: AbortController | null = null;
+  let drawn = "";
+  /** Jobs that are awaited: what was begun last for each section. */
+  const jobs = new Map<Section, string>();
+  /** What was told of jobs before their names were: the answer to a request may be overtaken. */
+  let early: Told[] = [];
+
+  async function draw(): Promise<void> {
+    asking?.abort();
+    const own = new AbortController();
+    asking = own;
+    try {
+      const answer = await model.request<Picture & { complaints?: { message: string }[] }>("picture", {}, own.signal);
+      if (asking !== own) return;
+      if (answer.complaints) {
+        stale.textContent = `Not drawn as it stands: ${answer.complaints[0]?.message ?? "see the complaints"}.`;
+        return;
+      }
+      stale.textContent = "";
+      // What is only spelled in another way looks the same: sliders and motion stay.
+      const now = JSON.stringify(answer);
+      if (now === drawn) return;
+      drawn = now;
+      jobs.clear();
+      viewer.show(answer);
+      viewer.select(model.selected);
+    } catch (failure) {
+      if (own.signal.aborted) return;
+      stale.textContent = failure instanceof Error ? failure.message : String(failure);
+    }
+  }
+
+  async function begin(section: Section): Promise<void> {
+    viewer.note(section, "Being computed …");
+    try {
+      const body = section === "motion" ? { time: time.value.trim(), set: viewer.moved() } : { set: {} };
+      const answer = await model.request<{ job: string }>(SECTIONS[section], body);
+      jobs.set(section, answer.job);
+      const before = early.filter((told) => told.job === answer.job);
+      early = [];
+      before.forEach(hear);
+    } catch (failure) {
+      viewer.note(section, failure instanceof Error ? failure.message : String(failure));
+    }
+  }
+
+  function hear(told: Told): void {
+    const section = [...jobs].find(([, job]) => job === told.job)?.[0];
+    if (section === undefined) {
+      if (told.job !== undefined) early = [...early.slice(-20), told];
+      return;
+    }
+    if (told.kind === "motion") viewer.showMotion(told["value"] as Motion);
+    else if (told.kind === "modes") viewer.showModes(told["value"] as Modes);
+    else if (told.kind === "equilibria") viewer.showEquilibria(told["value"] as Equilibria);
+    else if (told.kind === "failed" || told.kind === "cancelled") viewer.note(section, String(told["words"] ?? told.kind));
+    else if (told.kind === "progress") viewer.note(section, String(told["words"] ?? "Being computed …"));
+    if (told.kind === "done" || told.kind === "failed" || told.kind === "cancelled") jobs.delete(section);
+  }
+
+  model.on("view", () => {
+    window.clearTimeout(timer);
+    timer = window.setTimeout(() => void draw(), DRAW_AFTER);
+  });
+  model.on("selection", (name) => viewer.select(name));
+  model.on("theme", () => viewer.stage.ink());
+  model.on("told", hear);
 }

@@ -107,7 +107,8 @@ def spans(places: Places) -> Iterator[Span]:
         slides = {x for x, _ in places.slides(body)}
         tied = bool(slides & {x for load in system.loads if not load.given for x in load.coordinates})
         if not motion.offset.vanishes() and (before in places.carried or tied or not slides):
-            yield Span(Stretch.SLIDE if slides else Stretch.LINK, places.origins[before], places.origins[name], name)
+            kind, of = (Stretch.SLIDE, name) if slides else (Stretch.LINK, before)
+            yield Span(kind, places.origins[before], places.origins[name], of)
     for number, load in enumerate(system.loads, 1):
         if isinstance(load, PointSpring | PointDamper | IsotropicDamper):
             kind = Stretch.SPRING if isinstance(load, PointSpring) else Stretch.DAMPER

@@ -64,7 +64,8 @@ def ellipsoid(body: Body, values: Mapping[str, Fraction]) -> Ellipsoid | None:
         return None
     half = np.sqrt(np.maximum(squares, 0.0) * (2.5 / mass if mass > 0 else 1.0))
     half = np.maximum(half, THICKNESS * np.max(half))
-    return Ellipsoid(_numbers(half), _rows(columns.T), mass > 0)
+    rows = columns.T * np.sign(np.linalg.det(columns))  # right-handed: what is turned is not mirrored
+    return Ellipsoid(_numbers(half), _rows(rows), mass > 0)
 
 
 def _numbers(values: Any) -> Numbers:

@@ -6,7 +6,7 @@ coordinates that are joined by straight lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any
@@ -46,12 +46,17 @@ class Motion:
     units: tuple[tuple[str, str], ...] = ()
 
 
-def motion(system: System, request: Request, overrides: Mapping[str, Expression] | None = None) -> Motion:
+def motion(
+    system: System,
+    request: Request,
+    overrides: Mapping[str, Expression] | None = None,
+    watch: Callable[[float], None] = lambda t: None,
+) -> Motion:
     """The run of a system, in coordinates and their velocities whatever the description has.
 
     Raises Incomplete where a number is missing (nothing is made up for a run), and what ``simulate`` raises.
     """
-    return motion_of(simulate(scenario(system, overrides), replace(request, variables=COORDINATES)))
+    return motion_of(simulate(scenario(system, overrides), replace(request, variables=COORDINATES), watch))
 
 
 def motion_of(run: Simulation) -> Motion:

@@ -1,0 +1,149 @@
+// The canvas: three's renderer, drawn when something has changed, as finely as the machine keeps up with.
+
+import { Color, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
+
+import { make } from "../elements.js";
+import { Eye } from "./camera.js";
+import { Drawing } from "./drawing.js";
+import type { Picture } from "./types.js";
+
+/** Frames that take longer than this, in milliseconds, are drawn coarser; shorter than that, finer again. */
+const SLOW = 34;
+const QUICK = 14;
+const COARSEST = 0.5;
+
+export class Stage {
+  readonly element: HTMLElement;
+  readonly canvas = make("canvas", { tabindex: 0, role: "img", class: "viewer-canvas" });
+  readonly drawing = new Drawing();
+  readonly eye = new Eye(() => this.wanted());
+  /** Why nothing can be drawn; "" where it can. */
+  readonly broken: string;
+  /** Milliseconds of the last frames, in script and in all: for measuring. */
+  readonly spent: number[] = [];
+  private readonly renderer: WebGLRenderer | null;
+  private readonly name = make("div", { class: "viewer-name", "aria-hidden": "true" });
+  private asked = false;
+  private fine = 1;
+  private last = 0;
+  private named: { body: number; text: string } | null = null;
+  private moving = false;
+  private slow = 0;
+  private quick = 0;
+
+  constructor(private readonly before: (seconds: number) => boolean) {
+    let renderer: WebGLRenderer | null = null;
+    let broken = "";
+    try {
+      renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });
+      renderer.outputColorSpace = SRGBColorSpace;
+    } catch {
+      broken = "This browser draws nothing in three dimensions (no WebGL): positions are told below in words.";
+    }
+    this.renderer = renderer;
+    this.broken = broken;
+    this.element = make("div", { class: "viewer-stage" }, broken ? make("p", {}, broken) : this.canvas, this.name);
+    if (broken) return;
+    new ResizeObserver(() => this.resize()).observe(this.element);
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.canvas.addEventListener("webglcontextrestored", () => this.wanted());
+  }
+
+  /** Something has changed: one frame is drawn, however many ask for it. */
+  wanted(): void {
+    if (this.asked || !this.renderer) return;
+    this.asked = true;
+    requestAnimationFrame((stamp) => this.frame(stamp));
+  }
+
+  private frame(stamp: number): void {
+    this.asked = false;
+    const began = performance.now();
+    const since = this.last ? Math.min(0.25, (stamp - this.last) / 1000) : 0;
+    const going = this.before(this.moving ? since : 0);
+    if (going && this.moving && since > 0) this.adapt(1000 * since);
+    else if (!going && this.fine < 1) {
+      this.fine = 1; // what stands still is drawn as finely as can be
+      this.resize();
+    }
+    this.renderer!.render(this.drawing.scene, this.eye.camera);
+    this.label();
+    this.spent.push(performance.now() - began);
+    if (this.spent.length > 240) this.spent.shift();
+    this.moving = going;
+    this.last = going ? stamp : 0;
+    if (going) this.wanted();
+  }
+
+  private adapt(took: number): void {
+    this.slow = took > SLOW ? this.slow + 1 : 0;
+    this.quick = took < QUICK ? this.quick + 1 : 0;
+    if (this.slow >= 6 && this.fine > COARSEST) this.fine = Math.max(COARSEST, this.fine * 0.8);
+    else if (this.quick >= 120 && this.fine < 1) this.fine = Math.min(1, this.fine * 1.2);
+    else return;
+    this.slow = this.quick = 0;
+    this.resize();
+  }
+
+  resize(): void {
+    const wide = Math.max(1, this.element.clientWidth);
+    const tall = Math.max(1, this.element.clientHeight);
+    if (!this.renderer) return;
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1) * this.fine);
+    this.renderer.setSize(wide, tall, false);
+    this.eye.resize(wide, tall);
+    // Changing the size empties the canvas: it is filled again at once.
+    this.renderer.render(this.drawing.scene, this.eye.camera);
+  }
+
+  ink(): void {
+    const style = getComputedStyle(this.element);
+    const read = (name: string, otherwise: string) => style.getPropertyValue(name).trim() || otherwise;
+    const inks = { front: read("--front", "#1d2430"), soft: read("--line", "#c9ced6"), back: read("--back", "#ffffff") };
+    this.drawing.ink(inks);
+    this.drawing.scene.background = new Color(inks.back);
+    this.wanted();
+  }
+
+  /** The body nearest to a place of the canvas, if one is near. */
+  nearest(picture: Picture, values: Float64Array, x: number, y: number): number | null {
+    let [found, least] = [null as number | null, 28];
+    picture.bodies.forEach((body, k) => {
+      for (const point of [body.centre, body.origin]) {
+        const [px, py] = this.projected(values, point);
+        const far = Math.hypot(px - x, py - y);
+        if (far < least) [found, least] = [k, far];
+      }
+    });
+    return found;
+  }
+
+  private projected(values: Float64Array, point: [number, number, number]): [number, number] {
+    const place = new Vector3(...(point.map((k) => values[k]!) as [number, number, number])).project(this.eye.camera);
+    return [((place.x + 1) / 2) * this.element.clientWidth, ((1 - place.y) / 2) * this.element.clientHeight];
+  }
+
+  /** A name beside a body: that which was pressed. */
+  call(body: number | null, text = ""): void {
+    this.named = body === null ? null : { body, text };
+    this.wanted();
+  }
+
+  private place: (() => [number, number]) | null = null;
+
+  /** Where the called body is, looked up at every frame. */
+  follow(place: (body: number) => [Float64Array, [number, number, number]] | null): void {
+    this.place = () => {
+      const found = this.named && place(this.named.body);
+      return found ? this.projected(...found) : [-1000, -1000];
+    };
+  }
+
+  private label(): void {
+    this.name.hidden = this.named === null;
+    if (!this.named || !this.place) return;
+    if (this.name.textContent !== this.named.text) this.name.textContent = this.named.text;
+    const [x, y] = this.place();
+    this.name.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+  }
+}

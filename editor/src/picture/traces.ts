@@ -1,0 +1,72 @@
+// Energies and drift of a motion over time, on a small canvas of its own; pressing it goes there.
+
+import { make } from "../elements.js";
+import { told, type Track } from "./playing.js";
+
+export class Traces {
+  readonly element: HTMLElement;
+  private readonly canvas = make("canvas", { class: "viewer-trace-canvas", "aria-hidden": "true" });
+  private readonly reading = make("p", { class: "viewer-reading" });
+  private track: Track | null = null;
+  private rows: { name: string; values: number[]; colour: string; dashed: boolean }[] = [];
+
+  constructor(go: (t: number) => void) {
+    this.element = make("div", { class: "viewer-trace" }, this.canvas, this.reading);
+    const pressed = (event: PointerEvent) => {
+      if (this.track && event.buttons === 1) go((this.track.end * event.offsetX) / Math.max(1, this.canvas.clientWidth));
+    };
+    this.canvas.addEventListener("pointerdown", pressed);
+    this.canvas.addEventListener("pointermove", pressed);
+  }
+
+  show(track: Track): void {
+    this.track = track;
+    const { motion } = track;
+    const first = motion.energy[0] ?? 0;
+    const numbers = (values: (number | null)[]) => values.map((x) => x ?? NaN);
+    this.rows = [
+      { name: "kinetic energy", values: numbers(motion.kinetic), colour: "--accent", dashed: false },
+      { name: "change of energy", values: numbers(motion.energy).map((x) => x - first), colour: "--warn", dashed: true },
+    ];
+  }
+
+  draw(t: number): void {
+    const { track, canvas } = this;
+    if (!track) return;
+    const { motion } = track;
+    const k = Math.round(track.place(t));
+    const unit = motion.units.energy ? ` ${motion.units.energy}` : "";
+    const drift = motion.drift[k];
+    this.reading.textContent =
+      `kinetic ${told(motion.kinetic[k])}${unit} (line), energy ${told(motion.energy[k])}${unit} (its change dashed), ` +
+      `${motion.driftOf} ${drift === null || drift === undefined ? "–" : drift === 0 ? "0" : drift.toExponential(1)}`;
+    const ratio = window.devicePixelRatio || 1;
+    const [wide, tall] = [canvas.clientWidth, canvas.clientHeight];
+    if (canvas.width !== Math.round(wide * ratio)) canvas.width = Math.round(wide * ratio);
+    if (canvas.height !== Math.round(tall * ratio)) canvas.height = Math.round(tall * ratio);
+    const pen = canvas.getContext("2d");
+    if (!pen || wide === 0) return;
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, wide, tall);
+    const style = getComputedStyle(canvas);
+    const every = this.rows.flatMap((row) => row.values).filter(Number.isFinite);
+    const low = every.reduce((a, b) => Math.min(a, b), Infinity);
+    const size = every.reduce((a, b) => Math.max(a, b), -Infinity) - low || 1;
+    const x = (time: number) => (wide * time) / (track.end || 1);
+    const y = (value: number) => tall - 4 - ((tall - 8) * (value - low)) / size;
+    for (const row of this.rows) {
+      pen.strokeStyle = style.getPropertyValue(row.colour).trim() || "currentColor";
+      pen.lineWidth = 1.4;
+      pen.setLineDash(row.dashed ? [5, 3] : []);
+      pen.beginPath();
+      row.values.forEach((value, i) => pen.lineTo(x(track.times[i]!), y(value)));
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    pen.strokeStyle = style.color;
+    pen.beginPath();
+    pen.moveTo(x(t), 0);
+    pen.lineTo(x(t), tall);
+    pen.stroke();
+  }
+}

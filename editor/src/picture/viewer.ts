@@ -1,0 +1,321 @@
+// A picture with everything about it: the canvas, sliders, a motion with its traces, modes, equilibria, and words.
+
+import { make } from "../elements.js";
+import { equilibriaList, inWords, modesList, press, Sliders } from "./controls.js";
+import { Swing, told, Track } from "./playing.js";
+import { begun, close, Poses, type State } from "./program.js";
+import { Stage } from "./stage.js";
+import { Traces } from "./traces.js";
+import type { Shown } from "./drawing.js";
+import type { Equilibria, Modes, Motion, Picture } from "./types.js";
+import "./viewer.css";
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+/** Points of a path. */
+const PATH = 600;
+/** Sliders, traces and words follow a playing motion so often a second. */
+const TOLD = 10;
+
+type Playing = { what: "motion"; t: number } | { what: "mode"; k: number; seconds: number } | null;
+
+export class Viewer {
+  readonly stage: Stage;
+  /** A body was pressed, or none. */
+  onSelect: (name: string | null) => void = () => undefined;
+  private picture: Picture | null = null;
+  private poses: Poses | null = null;
+  private state: State = {};
+  private touched = false;
+  private track: Track | null = null;
+  private swings: Swing[] = [];
+  private equilibria: Equilibria | null = null;
+  private playing: Playing = null;
+  private going = false;
+  private amplitude = 1;
+  private lastTold = 0;
+  private readonly reduced = matchMedia("(prefers-reduced-motion: reduce)");
+  private readonly sliders = new Sliders((name, value) => this.slid(name, value));
+  private readonly traces = new Traces((t) => this.go(t));
+  private readonly play = make("button", { type: "button", class: "viewer-play", "aria-keyshortcuts": "Space" }, "Play");
+  private readonly scrub = make("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time" });
+  private readonly clock = make("output", { class: "viewer-clock" });
+  private readonly speed = make("select", { "aria-label": "Speed" });
+  private readonly bar = make("div", { class: "viewer-bar", hidden: true }, this.play, this.scrub, this.clock, this.speed);
+  private readonly said = make("p", { class: "viewer-said", "aria-live": "polite" });
+  private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "shown" | "words", HTMLDetailsElement>;
+
+  constructor(readonly host: HTMLElement) {
+    this.stage = new Stage((seconds) => this.step(seconds));
+    this.stage.follow((body) => {
+      const one = this.picture?.bodies[body];
+      return one && this.poses ? [this.poses.values, one.centre] : null;
+    });
+    const section = (title: string, open: boolean, ...inside: Node[]) =>
+      make("details", { open, class: "viewer-section" }, make("summary", {}, title), ...inside);
+    this.sections = {
+      coordinates: section("Coordinates", true, this.sliders.element),
+      motion: section("Motion", true),
+      modes: section("Linear modes", false),
+      equilibria: section("Equilibria", false),
+      shown: section("Shown", false, this.switches()),
+      words: section("In words", false),
+    };
+    for (const name of ["motion", "modes", "equilibria"] as const) this.sections[name].hidden = true;
+    this.sections.words.addEventListener("toggle", () => this.tell(true));
+    for (const speed of SPEEDS) this.speed.append(make("option", { value: speed, selected: speed === 1 }, `${speed}×`));
+    this.play.addEventListener("click", () => this.toggle());
+    this.scrub.addEventListener("input", () => this.go(Number(this.scrub.value)));
+    const eye = this.stage.eye;
+    const press = (words: string, label: string, does: () => void) => make("button", { type: "button", "aria-label": label, title: label, click: does }, words);
+    const corner = make("div", { class: "viewer-corner" },
+      press("+", "Closer", () => eye.closer(1.2)), press("−", "Further", () => eye.closer(1 / 1.2)), press("⌂", "First view", () => eye.reset()));
+    this.stage.element.append(corner);
+    const main = make("div", { class: "viewer-main" }, this.stage.element, this.bar, this.said);
+    host.replaceChildren(make("div", { class: "viewer" }, main, make("div", { class: "viewer-side" }, ...Object.values(this.sections))));
+    if (!this.stage.broken) {
+      eye.listen(this.stage.canvas, (x, y) => this.pressed(x, y));
+      this.stage.canvas.addEventListener("keydown", (event) => this.key(event));
+    }
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.stage.ink());
+    this.stage.resize();
+  }
+
+  // ---- what is shown -----------------------------------------------------------------------------------------------
+
+  /** Another picture. Coordinates that somebody has moved stay where they are, if they are still there. */
+  show(picture: Picture): void {
+    const old = this.touched && this.playing === null ? this.state : {};
+    this.picture = picture;
+    this.poses = new Poses(picture.program);
+    this.state = begun(picture);
+    for (const one of picture.coordinates) this.state[one.name] = old[one.name] ?? one.value;
+    this.stop();
+    this.forget();
+    this.sliders.build(picture.coordinates);
+    this.stage.drawing.build(picture, Float64Array.from(this.poses.at(begun(picture))));
+    this.stage.ink();
+    this.stage.eye.look(picture);
+    this.place();
+  }
+
+  /** A motion, played at once unless the reader wants things still. */
+  showMotion(motion: Motion): void {
+    this.track = new Track(motion);
+    this.traces.show(this.track);
+    this.fill("motion", this.traces.element, ...motion.sentences.map((text) => make("p", { class: "viewer-soft" }, text)));
+    const { track, poses } = this;
+    if (poses && track.times.length > 1) {
+      const count = Math.min(PATH, track.times.length);
+      this.stage.drawing.trace(count, (k) => poses.at(track.state((track.end * k) / (count - 1))));
+    }
+    this.playing = { what: "motion", t: 0 };
+    this.bar.hidden = false;
+    this.scrub.max = String(track.end);
+    this.run(!this.reduced.matches);
+    this.go(0, this.going);
+  }
+
+  showModes(modes: Modes): void {
+    const { picture } = this;
+    if (!picture) return;
+    this.swings = modes.modes.map((mode) => new Swing(modes, mode, picture));
+    const size = make("input", { type: "range", min: 0, max: 2, step: 0.05, value: 1, "aria-label": "Amplitude" });
+    size.addEventListener("input", () => {
+      this.amplitude = Number(size.value);
+      this.stage.wanted();
+    });
+    const words = (k: number) => this.swings[k]!.words(picture.units.time);
+    this.fill("modes", modesList(modes, words, (k) => this.showMode(k)), make("label", { class: "viewer-slider" }, make("span", {}, "amplitude"), size));
+  }
+
+  showEquilibria(found: Equilibria): void {
+    this.equilibria = found;
+    this.fill("equilibria", equilibriaList(found, (k) => this.showEquilibrium(k)));
+  }
+
+  /** Words in place of a section's content: that something is being computed, or why there is nothing. */
+  note(section: "motion" | "modes" | "equilibria", text: string): void {
+    this.fill(section, make("p", { class: "viewer-soft" }, text));
+  }
+
+  select(name: string | null): void {
+    const at = this.picture?.bodies.findIndex((body) => body.name === name) ?? -1;
+    this.stage.call(at < 0 ? null : at, name ?? "");
+  }
+
+  /** Coordinates that sliders have put elsewhere than the description: what a motion may begin with. */
+  moved(): Record<string, string> {
+    if (!this.touched || this.playing !== null || !this.picture) return {};
+    const at = this.picture.coordinates.filter((one) => Math.abs((this.state[one.name] ?? 0) - one.value) > 1e-12);
+    return Object.fromEntries(at.map((one) => [one.name, (this.state[one.name] ?? 0).toFixed(9)]));
+  }
+
+  private fill(section: "motion" | "modes" | "equilibria", ...inside: Node[]): void {
+    const details = this.sections[section];
+    details.replaceChildren(details.firstElementChild!, ...inside);
+    details.hidden = false;
+    details.open = true;
+  }
+
+  /** What belonged to another picture. */
+  private forget(): void {
+    this.track = null;
+    this.swings = [];
+    this.equilibria = null;
+    this.stage.drawing.untrace();
+    for (const name of ["motion", "modes", "equilibria"] as const) this.sections[name].hidden = true;
+  }
+
+  private showMode(k: number): void {
+    this.playing = { what: "mode", k, seconds: 0 };
+    this.bar.hidden = false;
+    press(this.sections.modes, k);
+    press(this.sections.equilibria, null);
+    const swing = this.swings[k]!;
+    const slower = swing.speed === 1 ? "" : swing.speed < 1 ? `, shown ${told(1 / swing.speed)} times slower` : `, shown ${told(swing.speed)} times faster`;
+    this.say(`Mode ${k + 1}: ${swing.words(this.picture?.units.time)}${slower}.`);
+    this.run(true);
+  }
+
+  private showEquilibrium(k: number): void {
+    const one = this.equilibria!.equilibria[k]!;
+    this.stop();
+    press(this.sections.equilibria, k);
+    Object.assign(this.state, begun(this.picture!), one.values);
+    this.touched = true;
+    this.place();
+    this.say(`Equilibrium ${k + 1}: ${one.verdict.verdict}.`);
+  }
+
+  // ---- moving ------------------------------------------------------------------------------------------------------
+
+  /** One frame; whether there will be another. */
+  private step(seconds: number): boolean {
+    const { playing, picture, poses } = this;
+    if (!picture || !poses) return false;
+    if (playing?.what === "motion" && this.track) {
+      if (this.going) playing.t += seconds * this.track.rate * Number(this.speed.value);
+      if (playing.t > this.track.end) playing.t = 0;
+      this.state = this.track.state(playing.t);
+      this.stage.drawing.until(this.track.end > 0 ? playing.t / this.track.end : 1);
+    } else if (playing?.what === "mode") {
+      if (this.going) playing.seconds += seconds * Number(this.speed.value);
+      const swing = this.swings[playing.k]!;
+      this.state = swing.state(playing.seconds, begun(picture), this.amplitude);
+      if (picture.closure) close(poses, picture.closure, this.state, swing.moved);
+      this.stage.drawing.until(0);
+    } else this.stage.drawing.until(this.track ? 1 : 0);
+    this.stage.drawing.move(poses.at(this.state));
+    this.tell(!this.going);
+    return this.going;
+  }
+
+  private toggle(): void {
+    if (!this.playing && this.track) this.playing = { what: "motion", t: 0 };
+    if (this.playing) this.run(!this.going);
+  }
+
+  private run(on: boolean): void {
+    this.going = on;
+    this.play.textContent = on ? "Pause" : "Play";
+    this.play.setAttribute("aria-pressed", String(on));
+    this.stage.wanted();
+  }
+
+  private stop(): void {
+    this.run(false);
+    this.playing = null;
+    this.bar.hidden = this.track === null;
+    press(this.sections.modes, null);
+  }
+
+  private go(t: number, going = false): void {
+    if (!this.track) return;
+    press(this.sections.modes, null);
+    this.playing = { what: "motion", t: Math.min(this.track.end, Math.max(0, t)) };
+    this.run(going);
+  }
+
+  private slid(name: string, value: number): void {
+    const { picture, poses } = this;
+    if (!picture || !poses) return;
+    this.stop();
+    press(this.sections.equilibria, null);
+    this.touched = true;
+    this.state[name] = value;
+    const open = picture.closure ? close(poses, picture.closure, this.state, [name]) : [];
+    this.say(open.length > 0 ? `No position near this one keeps the constraints with ${name} = ${told(value)}: ${open.join(", ")} open.` : "");
+    this.place();
+  }
+
+  /** Shows the state as it is. */
+  private place(): void {
+    this.stage.wanted();
+    this.tell(true);
+  }
+
+  private key(event: KeyboardEvent): void {
+    const end = this.track?.end ?? 0;
+    const t = this.playing?.what === "motion" ? this.playing.t : 0;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === " ") this.toggle();
+    else if (event.key === ",") this.go(t - end / 100);
+    else if (event.key === ".") this.go(t + end / 100);
+    else if (!this.stage.eye.key(event)) return;
+    event.preventDefault();
+  }
+
+  private pressed(x: number, y: number): void {
+    if (!this.picture || !this.poses) return;
+    const found = this.stage.nearest(this.picture, this.poses.values, x, y);
+    const name = found === null ? null : this.picture.bodies[found]!.name;
+    this.select(name);
+    this.onSelect(name);
+  }
+
+  // ---- words -------------------------------------------------------------------------------------------------------
+
+  private say(text: string): void {
+    if (this.said.textContent !== text) this.said.textContent = text;
+  }
+
+  /** Sliders, clock, traces and words; while something plays not at every frame. */
+  private tell(now: boolean): void {
+    const stamp = performance.now();
+    if (!this.picture || !this.poses || (!now && stamp - this.lastTold < 1000 / TOLD)) return;
+    this.lastTold = stamp;
+    if (this.sections.coordinates.open) this.sliders.set(this.state);
+    const time = this.picture.units.time ? ` ${this.picture.units.time}` : "";
+    const { playing } = this;
+    this.scrub.hidden = playing?.what === "mode";
+    if (playing?.what === "motion") {
+      this.scrub.value = String(playing.t);
+      this.clock.textContent = `t = ${told(playing.t)}${time}`;
+      this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
+    } else this.clock.textContent = playing ? `mode ${playing.k + 1}` : "";
+    if (this.track && this.sections.motion.open) this.traces.draw(playing?.what === "motion" ? playing.t : 0);
+    if (this.going) return;
+    const { picture } = this;
+    const at = picture.coordinates.map((one) => `${one.name} = ${told(this.state[one.name])}${one.unit ? ` ${one.unit}` : ""}`);
+    this.stage.canvas.setAttribute("aria-label", `${picture.name}: ${picture.bodies.map((body) => body.name).join(", ")}. ${at.join(", ")}`);
+    if (this.sections.words.open) {
+      const values = this.poses.at(this.state);
+      this.sections.words.replaceChildren(this.sections.words.firstElementChild!, inWords(picture, values));
+    }
+  }
+
+  private switches(): HTMLElement {
+    const names: [keyof Shown, string][] = [
+      ["inertia", "ellipsoids of inertia"], ["arrows", "forces"], ["frames", "axes of bodies"], ["paths", "paths of mass centres"],
+    ];
+    return make("div", { class: "viewer-switches" }, ...names.map(([name, text]) => {
+      const box = make("input", { type: "checkbox" });
+      box.checked = this.stage.drawing.shown[name];
+      box.addEventListener("change", () => {
+        this.stage.drawing.shown[name] = box.checked;
+        this.stage.wanted();
+      });
+      return make("label", {}, box, ` ${text}`);
+    }));
+  }
+}

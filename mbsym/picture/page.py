@@ -1,0 +1,67 @@
+"""``view.html``: picture, motion, modes and equilibria of one system in one file that asks the network for nothing.
+
+The script and style are the viewer's bundle (editor/src/view.ts), which a content security policy knows by their
+hashes; what the description says stands in the file as text and as JSON, and never becomes an element.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from markupsafe import escape
+
+import mbsym
+from mbsym.model.system import System
+from mbsym.report.html_environment import embedded
+
+#: Where the bundles are that `make page` builds.
+BUNDLES = Path(mbsym.__file__).parent / "serving" / "page"
+
+
+def view_page(
+    system: System,
+    picture: dict[str, Any],
+    motion: dict[str, Any] | None = None,
+    modes: dict[str, Any] | None = None,
+    equilibria: dict[str, Any] | None = None,
+    notes: tuple[str, ...] = (),
+) -> str:
+    """The file's text, of what ``as_json``, ``motion_json``, ``modes_json`` and ``at_rest_json`` give.
+
+    ``notes`` are further sentences below the title.
+    """
+    script = _inside((BUNDLES / "view.js").read_text(encoding="utf-8"), "script")
+    style = _inside((BUNDLES / "view.css").read_text(encoding="utf-8"), "style")
+    policy = (
+        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; img-src data: blob:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    data = embedded({"picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
+    said = " ".join(x for x in (" ".join(system.description.split()), *notes) if x)
+    source = f" After {escape(system.source)}." if system.source else ""
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="referrer" '
+        f'content="no-referrer">\n<title>{escape(system.name)}</title>\n<style>{style}</style>\n</head>\n<body>\n'
+        f"<header>\n<h1>{escape(system.name)}</h1>\n<p>{escape(said)}{source}</p>\n</header>\n"
+        '<main id="viewer"><noscript>The picture needs JavaScript; nothing of it comes from the network.</noscript>'
+        f"</main>\n<footer>Made by mbsym {escape(mbsym.__version__)}. Drag or arrow keys: turn; Shift: move; "
+        "wheel or + and -: closer; 0: first view; space: play; comma and full stop: a hundredth on.</footer>\n"
+        f'<script type="application/json" id="picture-data">{data}</script>\n<script>{script}</script>\n'
+        "</body>\n</html>\n"
+    )
+
+
+def _inside(text: str, element: str) -> str:
+    """Text that cannot end the element in which it stands.  Raises ValueError where it would."""
+    if f"</{element}" in text.lower() or "<!--" in text:
+        raise ValueError(f"the bundle holds what ends a <{element}> element")
+    return text
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
