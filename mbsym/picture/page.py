@@ -13,12 +13,12 @@ from typing import Any
 
 from markupsafe import escape
 
-import mbsym
+from mbsym import __version__
 from mbsym.model.system import System
 from mbsym.report.html_environment import embedded
 
 #: Where the bundles are that `make page` builds.
-BUNDLES = Path(mbsym.__file__).parent / "serving" / "page"
+BUNDLES = Path(__file__).parents[1] / "serving" / "page"
 
 
 def view_page(
@@ -49,7 +49,7 @@ def view_page(
         f'content="no-referrer">\n<title>{escape(system.name)}</title>\n<style>{style}</style>\n</head>\n<body>\n'
         f"<header>\n<h1>{escape(system.name)}</h1>\n<p>{escape(said)}{source}</p>\n</header>\n"
         '<main id="viewer"><noscript>The picture needs JavaScript; nothing of it comes from the network.</noscript>'
-        f"</main>\n<footer>Made by mbsym {escape(mbsym.__version__)}. Drag or arrow keys: turn; Shift: move; "
+        f"</main>\n<footer>Made by mbsym {escape(__version__)}. Drag or arrow keys: turn; Shift: move; "
         "wheel or + and -: closer; 0: first view; space: play; comma and full stop: a hundredth on.</footer>\n"
         f'<script type="application/json" id="picture-data">{data}</script>\n<script>{script}</script>\n'
         "</body>\n</html>\n"
