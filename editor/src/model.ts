@@ -65,6 +65,8 @@ export class Model extends Listeners<Events> {
   viewed: string | null = null;
   /** The last view with bodies: what graph, form and picture go on showing while a line is half typed. */
   understood: View | null = null;
+  /** The text that `understood` is of: its places are counted there. */
+  understoodText: string | null = null;
   selected: string | null = null;
   connection: Connection = "there";
   /** The text as it stands in the file. */
@@ -261,7 +263,10 @@ export class Model extends Listeners<Events> {
       this.looking = null;
       this.view = view;
       this.viewed = text;
-      if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) this.understood = view;
+      if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) {
+        this.understood = view;
+        this.understoodText = text;
+      }
       if (this.selected !== null && !this.body(this.selected)) this.select(null);
       this.tell("view", view);
       // From the first key that this look is about until everything is told: read by the tests.
@@ -281,9 +286,10 @@ export class Model extends Listeners<Events> {
 
   /**
    * Does what form and graph ask for, as one step of the history. One after the other: each is asked about the text that
-   * the one before has left. Where the server complains nothing is done, and it is said.
+   * the one before has left; operations that depend on the view are given as a function. Where the server complains
+   * nothing is done, and it is said.
    */
-  change(operations: Operation[], words?: string): Promise<Outcome> {
+  change(operations: Operation[] | (() => Operation[]), words?: string): Promise<Outcome> {
     this.pending += 1;
     this.tell("busy", true);
     const next = this.changes
@@ -296,7 +302,11 @@ export class Model extends Listeners<Events> {
     return next;
   }
 
-  private async changeNow(operations: Operation[], words?: string): Promise<Outcome> {
+  private async changeNow(wanted: Operation[] | (() => Operation[]), words?: string): Promise<Outcome> {
+    // Worked out only now, of what the changes before have left.
+    if (typeof wanted === "function") await this.looked();
+    const operations = typeof wanted === "function" ? wanted() : wanted;
+    if (operations.length === 0) return { done: true, complaints: [] };
     for (let attempt = 0; attempt < 3; attempt += 1) {
       const text = this.text;
       let answer: Changed;
