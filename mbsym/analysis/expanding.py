@@ -15,6 +15,7 @@ from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.motion import relations
 from mbsym.model.small import SmallParameter
 from mbsym.problems.small_parameter import slow
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
-@dataclass(frozen=True)
-class Expansion:
+@dataclass(frozen=True, repr=False)
+class Expansion(Shown):
     """The manifold with the ring in which it is told.
 
     ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have

@@ -24,7 +24,7 @@ KNOWN = frozenset(
     (
         *("scene", "parameters_scene", "held_scene", "signs", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "claims", "checks", "trials", "check: linearisation"),
-        *("stabilisation", "check: stabilisation"),
+        *("stabilisation", "check: stabilisation", "small_parameters"),
     )
 )
 

@@ -28,6 +28,7 @@ from mbsym.analysis import (
     judging,
     polynomial,
     second_routes,
+    small,
 )
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
@@ -49,6 +50,7 @@ from mbsym.problems import (
     knowledge,
     linearisation,
     normal_forms,
+    small_parameter,
     stabilisation,
     stability,
 )
@@ -68,6 +70,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.telling import ToldSystem
 
 if TYPE_CHECKING:
+    from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.brackets import Brackets
     from mbsym.problems.canonical import Hamilton, Routh
@@ -92,7 +95,7 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 KNOW_CONSTRAINTS = frozenset(
     (
         *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
-        *("tied_in_coordinates", "first_order"),
+        *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
@@ -117,6 +120,7 @@ KNOW_SPEEDS = frozenset(
         "first_order",
         "invariant_sets",
         "polynomial_integrals",
+        "small_parameters",
         "claims",
         "checks",
     )
@@ -352,6 +356,15 @@ class Analysis(Stages):
 
     normal_forms: Problem[NormalForms] = Problem(
         11, "terms of higher order", normal_forms, higher.normal_forms_of, (*JUDGED, "normal forms"), says=True
+    )
+
+    small_parameters: Problem[SmallParameters] = Problem(
+        12,
+        "small parameters",
+        small_parameter,
+        small.small_parameters_of,
+        ("equations of motion", "energy"),
+        says=True,
     )
 
     # --- problem 5 in speeds, of a system that has some ---

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 #: The numbers under which ``mbsym.analysis`` lists them; here for those who only have to know what may be asked for.
-NUMBERS = tuple(range(1, 12))
+NUMBERS = tuple(range(1, 13))
 
 
 def ranges(numbers: Iterable[int] = NUMBERS) -> str:

@@ -27,6 +27,8 @@ from mbsym.report.canonical import forms_of, upper_brackets
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, provided, statements
+from mbsym.report.expansion_words import Coefficient
+from mbsym.report.expansion_words import Medium as SmallMedium
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import moving
 from mbsym.report.html_description import (
@@ -53,6 +55,7 @@ from mbsym.report.normal_form_words import Medium as HigherMedium
 from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
 from mbsym.report.sections.invariant_sets import even
+from mbsym.report.sections.small_parameters import told as of_small_parameters
 from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
 from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
@@ -62,7 +65,9 @@ from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.small import SmallParameters
     from mbsym.formulas.formula import Formula
+    from mbsym.model.system import System
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
@@ -119,6 +124,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "polynomial_sentences": lambda one: list(_filled(polynomial_sentences(one.found))),
         "normal_form_sentences": lambda one: list(_of_normal_forms(one, names)),
         "invariant_paragraphs": lambda one: list(_of_invariant_sets(one, names)),
+        "small_parameter_lines": lambda one: list(_of_small_parameters(one, system, names)),
         "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
@@ -250,6 +256,30 @@ def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[
             for k, one in enumerate(family.sets, start=1):
                 yield said(of_set(one, k, write))
     yield said(closing(found, write))
+
+
+def _of_small_parameters(found: SmallParameters, system: System, names: MathNames) -> Iterator[Markup]:
+    """The lines of problem 12, names and formulas in MathML."""
+    write = SmallMedium(
+        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
+        formula=lambda x: shown.math(shown.inline(x)),
+        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
+        word=lambda word: str(escape(word)),
+    )
+    for one in of_small_parameters(found, system, write):
+        if isinstance(one, list):
+            yield from (_coefficient(x, names) for x in one)
+        else:
+            text, values = one
+            yield from _filled([(text, {name: Markup(value) for name, value in values.items()})])
+
+
+def _coefficient(one: Coefficient, names: MathNames) -> Markup:
+    symbol = str(names[one.variable])
+    if one.rate:
+        symbol = f"<mover>{symbol}<mo>˙</mo></mover>"
+    order = f"<mrow><mo>(</mo><mn>{one.order}</mn><mo>)</mo></mrow>"
+    return shown.math(f"<msup>{symbol}{order}</msup>", mo("="), shown.inline(one.formula))
 
 
 _SIGNS = {"!=": "≠", ">=": "≥"}

@@ -16,7 +16,7 @@ from typing import Any
 LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
 
 #: Problems whose sentences stand in modules of their own, ``stabilisation_ru`` and so on.
-FURTHER = ("stabilisation", "invariant_sets", "normal_forms", "polynomial_integrals")
+FURTHER = ("stabilisation", "invariant_sets", "normal_forms", "polynomial_integrals", "small_parameters")
 
 _BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 

@@ -61,6 +61,7 @@ from mbsym.report.latex_invariant import of_invariant_sets
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_normal_forms import of_normal_forms
 from mbsym.report.latex_references import keys_of, references, theorems_named
+from mbsym.report.latex_small import of_small_parameters
 from mbsym.report.latex_stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex_told import packed, paragraphs
 from mbsym.report.latex_words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
@@ -150,6 +151,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "OPENING": OPENING,
         "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
         "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),
+        "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),

@@ -106,6 +106,7 @@ _FRAGMENTS = (
     ("polynomial_integrals", 9, "polynomial integrals"),
     ("invariant_sets", 10, "steady motions and invariant manifolds"),
     ("normal_forms", 11, "terms of higher order"),
+    ("small_parameters", 12, "small parameters"),
     ("claims", None, "claims"),
     ("checks", None, "self-check"),
 )

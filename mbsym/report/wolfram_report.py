@@ -24,19 +24,21 @@ from mbsym.model.system import System
 from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
+from mbsym.report.expansion_words import coefficients
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import prescribed_value
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
 from mbsym.report.said import filled
-from mbsym.report.sections import invariant_sets, polynomial_integrals
+from mbsym.report.sections import invariant_sets, polynomial_integrals, small_parameters
 from mbsym.report.sections.normal_forms import PLAIN as HIGHER
 from mbsym.report.sections.stabilisation import PLAIN
 from mbsym.report.stabilisation_words import sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.small import SmallParameters
 
 DIALECT = Dialect(
     call=wolfram_call,
@@ -86,6 +88,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
         normal_form_sentences=[filled(said) for said in higher_sentences(found[11], HIGHER)] if 11 in found else [],
         invariant_lines=list(invariant_sets.lines(found[10], analysis)) if 10 in found else [],
+        small_parameter_lines=list(small_parameters.lines(found[12], analysis)) if 12 in found else [],
+        small_parameter_formulas=list(_of_small_parameters(found[12])) if 12 in found else [],
         forms=forms,
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
@@ -103,6 +107,19 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         provided=provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs)) if 6 in found else "",
         checks=analysis.checks,
     )
+
+
+def _of_small_parameters(found: SmallParameters) -> Iterator[tuple[str, str]]:
+    """Definitions: coefficients as {variable, power, formula}, effective potentials by phase."""
+    if found.slow is not None:
+        listed_ones = list(coefficients(found.slow))
+        for name, rate in (("slowManifold", False), ("slowFlow", True)):
+            kept = (x for x in listed_ones if x.rate is rate)
+            yield name, listed(f"{{{string(x.variable)}, {x.order}, {x.formula.wolfram()}}}" for x in kept)
+    averaged = [one for one in found.averaged if one.found is not None]
+    if averaged:
+        both = (f"{{{string(x.phase)}, {x.found.potential.wolfram()}}}" for x in averaged if x.found is not None)
+        yield "effectivePotentials", listed(both)
 
 
 def _rate(velocity: str, names: WolframNames) -> str:

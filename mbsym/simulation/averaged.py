@@ -28,17 +28,18 @@ PERIODS = 60
 class Measured:
     """``distances`` at ``parts`` of the given eps: the largest |q - Q| over ``time``, in units of the largest |Q|.
 
-    ``orders`` are log2 of their ratios: about 1 where the expansion is right and eps small.
+    ``orders`` are log2 of their ratios: about ``expected`` where the expansion is right and eps small.
     """
 
     time: float
     parts: tuple[Fraction, ...]
     distances: tuple[float, ...]
+    expected: int = 1
 
     @property
     def orders(self) -> tuple[float, ...]:
         pairs = zip(self.distances, self.distances[1:], strict=False)
-        return tuple(log(a / b, 2) if a > 0 and b > 0 else float("nan") for a, b in pairs)
+        return tuple(log(a / b, 2) for a, b in pairs if a > 0 and b > 0)
 
 
 def measured(

@@ -91,7 +91,7 @@ def test_only_what_the_formats_show_is_derived(
 @pytest.mark.parametrize(
     ("option", "value", "hint"),
     [
-        ("--problems", "99", "1 to 11"),
+        ("--problems", "99", "1 to 12"),
         ("--problems", "x", "1-5"),
         ("--problems", "5-1", "problem"),
         ("--format", "word", "latex"),

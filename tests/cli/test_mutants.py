@@ -42,6 +42,7 @@ NOT_ALWAYS = {
     "fragments/polynomial_integrals.tex",
     "fragments/invariant_sets.tex",
     "fragments/normal_forms.tex",
+    "fragments/small_parameters.tex",
 }
 
 

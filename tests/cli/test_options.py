@@ -212,7 +212,7 @@ def test_all_options_of_run_at_once(tmp_path: Path) -> None:
         "--terms: error[bad-number]: -1 is out of bounds: at least 1",
     ]
     assert "hint: a range goes upwards: write 3-5" in done.stderr
-    assert "hint: problems are numbered 1 to 11" in done.stderr
+    assert "hint: problems are numbered 1 to 12" in done.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -1,0 +1,99 @@
+"""Problem 12 in the pipeline: what is expanded of a description, each part with its result or why there is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.model.system import System
+from mbsym.problems.averaging import Averaged
+from mbsym.problems.small_parameter.result import Outcome
+
+if TYPE_CHECKING:
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.pipeline import Analysis
+
+#: Slow manifolds are expanded to the first of these orders at which the roots of the flow on it are judged.
+ORDERS = (2, 3)
+
+
+@dataclass(frozen=True, repr=False)
+class Averaging(Shown):
+    """The effective potential for one fast phase; ``failure``: why there is none.
+
+    ``analysis`` is that of the averaged description, for problem 6.
+    """
+
+    phase: str
+    found: Averaged | None = None
+    analysis: Analysis | None = None
+    failure: str = ""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SmallParameters(Shown):
+    """``small``: the small parameter, "" where none is named; ``slow`` its slow manifold, or ``no_slow`` why not.
+
+    ``averaged``: one for each prescribed quantity whose rate is a parameter, as it is for a fast phase.
+    """
+
+    small: str = ""
+    powers: tuple[tuple[str, int], ...] = ()
+    slow: Expansion | None = None
+    no_slow: str = ""
+    averaged: tuple[Averaging, ...] = ()
+
+    @property
+    def nothing(self) -> bool:
+        """Whether the description has nothing to expand in."""
+        return not self.small and not self.averaged
+
+
+def small_parameters_of(analysis: Analysis) -> SmallParameters:
+    """Raises NoClosedForm for a system with constraints that has something to expand in."""
+    system = analysis.system
+    phases = fast_phases(system)
+    if system.small is None and not phases:
+        return SmallParameters()
+    if system.constraints:
+        refuse_constraints(system, "not expanded")
+    averaged = tuple(_averaging(analysis, phase) for phase in phases)
+    if system.small is None:
+        return SmallParameters(averaged=averaged)
+    slow, missing = _slow(analysis)
+    return SmallParameters(system.small.name, system.small.powers, slow, missing, averaged)
+
+
+def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:
+    from mbsym.analysis.expanding import expansion
+
+    found = None
+    for order in ORDERS:
+        try:
+            further = expansion(analysis, order)
+        except (Failure, ZeroDivisionError) as reason:
+            return (found, "") if found is not None else (None, str(reason))
+        decided = further.manifold.steady is None or further.slow[0] is not Outcome.UNDECIDED
+        if found is None or decided:
+            found = further
+        if decided:
+            break
+    return found, ""
+
+
+def _averaging(analysis: Analysis, phase: str) -> Averaging:
+    from mbsym.analysis.pipeline import Analysis as Whole
+
+    try:
+        found = averaging_of(analysis, phase)
+        broken = analysis.broken(("energy",))
+        if broken is not None:
+            raise NoClosedForm(broken.reason)
+    except Failure as reason:
+        return Averaging(phase, failure=str(reason))
+    averaged: System = averaged_system(analysis.system, found)
+    return Averaging(phase, found, Whole(averaged, (6,)))

@@ -1,0 +1,94 @@
+"""Problem 12, small parameters: what results.json and the terminal show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.analysis.small import Averaging, SmallParameters
+from mbsym.formulas.formula import Formula
+from mbsym.model.system import System
+from mbsym.report.expansion_json import expansion_data, measured_data
+from mbsym.report.expansion_measured import average_measured, flow_measured
+from mbsym.report.expansion_words import (
+    Medium,
+    coefficients,
+    of_averaging,
+    of_measured,
+    of_none,
+    opening,
+    sentences,
+)
+from mbsym.report.plain import LONGEST, Write
+from mbsym.report.said import Said, filled
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+def data(found: SmallParameters, system: System, write: Write) -> dict[str, Any]:
+    """The section of results.json."""
+    slow = found.slow
+    return {
+        "small": found.small or None,
+        "powers": dict(found.powers),
+        "slow_manifold": None if slow is None else expansion_data(slow, write),
+        "no_slow_manifold": found.no_slow,
+        "measured": None if slow is None else measured_data(flow_measured(found, system)),
+        "averaged": [_averaging(found, one, system, write) for one in found.averaged],
+    }
+
+
+def _averaging(whole: SmallParameters, one: Averaging, system: System, write: Write) -> dict[str, Any]:
+    found = one.found
+    if found is None:
+        return {"phase": one.phase, "reason": one.failure}
+    assert one.analysis is not None
+    verdict = one.analysis.optional("stability")
+    word = None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
+    return {
+        "phase": one.phase,
+        "rate": found.rate,
+        "small": list(found.small),
+        "vibrational": write(found.vibrational),
+        "potential": write(found.potential),
+        "averaged_motion_at_values": word,
+        "measured": measured_data(average_measured(whole, one.phase, system)),
+    }
+
+
+def told(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:
+    """Sentences, and lists of coefficients where they stand between them."""
+    yield from of_none(found, write)
+    if found.slow is not None:
+        yield from opening(found.slow, write)
+        yield list(coefficients(found.slow))
+        yield from sentences(found.slow, write)
+        yield from of_measured(found.small, flow_measured(found, system), write)
+    for one in found.averaged:
+        measured = "" if one.found is None else average_measured(found, one.phase, system)
+        yield from of_averaging(one, measured, write)
+
+
+def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal."""
+    for one in told(found, analysis.system, SHORT):
+        if isinstance(one, list):
+            yield from (f"  {x.variable}{mark(x.rate)}({x.order}) = {short(x.formula)}" for x in one)
+        else:
+            yield filled(one)
+
+
+def mark(rate: bool) -> str:
+    """What a rate has behind the name of its variable."""
+    return "'" if rate else ""
+
+
+def short(x: Formula) -> str:
+    text = str(x)
+    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
+
+
+SHORT = Medium(names=", ".join, formula=short, condition=lambda x, relation: f"{short(x)} {relation} 0", word=str)
+#: The same, nothing shortened.
+PLAIN = Medium(names=", ".join, formula=str, condition=lambda x, relation: f"{x} {relation} 0", word=str)

@@ -1,0 +1,182 @@
+"""How far the flow on a slow manifold is from the motion itself: measured, at the given eps and at parts of it.
+
+The motion of all equations (a tight simulation, from the bodies) starts on the manifold, z(0) = h(s(0), eps); the flow
+s' = f(s, eps), cut off after the order of the expansion, starts at the same s(0).  Their largest distance over a fixed
+time should shrink like eps^(order + 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import isfinite, log
+from typing import Any
+
+import numpy as np
+from flint import fmpq
+
+from mbsym.algebra.quotients import Series
+from mbsym.analysis.expanding import Expansion
+from mbsym.expressions.tree import Expression, number
+from mbsym.model.system import System
+from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.numerics.states import scenario_in_states
+from mbsym.simulation.request import Request
+from mbsym.simulation.run import simulate
+
+Floats = Any  # arrays of float64
+Flow = Callable[[Floats], Floats]
+Evaluated = Callable[[Floats], float]
+
+#: Rows in which the two motions are compared, and eps in parts of that of the given numbers.
+ROWS, PARTS = 201, (Fraction(1), Fraction(1, 2), Fraction(1, 4))
+#: Of both integrations.
+TOLERANCE = 1e-12
+#: Distances below are those of the integrations, not of the expansion.
+LEAST = 1e-10
+#: So many times the shortest time in which the flow at the beginning changes.
+SPAN = 10.0
+
+
+class NotMeasured(Exception):
+    """Why there is no measurement."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """``distances`` at ``parts`` of the given eps: the largest |s - S| over ``time``, in units of the largest |S|.
+
+    ``orders`` are log2 of their ratios, about ``expected`` where the expansion is right and eps small.
+    """
+
+    time: float
+    parts: tuple[Fraction, ...]
+    distances: tuple[float, ...]
+    expected: int
+
+    @property
+    def exact(self) -> bool:
+        """Whether the distances are no larger than the errors of the integrations."""
+        return self.distances[0] < LEAST
+
+    @property
+    def orders(self) -> tuple[float, ...]:
+        """As far as the distances are not those of the integrations."""
+        pairs = zip(self.distances, self.distances[1:], strict=False)
+        return tuple(log(a / b, 2) for a, b in pairs if b > LEAST)
+
+
+def measured(
+    system: System,
+    found: Expansion,
+    time: float | None = None,
+    values: Mapping[str, Fraction] | None = None,
+    watch: Callable[[str], None] = lambda what: None,
+) -> Measured:
+    """Both motions from the initial state of the description, its fast variables put onto the manifold.
+
+    Raises Incomplete where numbers are missing, NotMeasured where motions end early, or nothing changes.
+    """
+    assert system.small is not None
+    overrides: dict[str, Expression] = {name: number(value) for name, value in (values or {}).items()}
+    base = scenario_in_states(scenario(system, overrides, declared=True))
+    names = (*base.system.coordinates, *base.system.velocities)
+    start = {name: Fraction(float(value)) for name, value in zip(names, base.state, strict=True)}
+    manifold = found.manifold
+    scales = dict(system.small.powers) or {system.small.name: 1}
+    distances: list[float] = []
+    for part in PARTS:
+        watch(f"eps/{part.denominator}" if part != 1 else "eps")
+        scaled = {name: number(base.parameters[name] * part**power) for name, power in scales.items()}
+        own = scenario(system, overrides | scaled, declared=True)
+        eps = part * (Fraction(1) if system.small.powers else base.parameters[system.small.name])
+        here = _Numbers(found, base.parameters, eps)
+        flow, first = here.flow(), [start[name] for name in manifold.slow]
+        if time is None:
+            time = _span(flow, np.array(first, dtype=float))
+        begun = start | dict(zip(manifold.fast, here.on_manifold(first), strict=True))
+        whole = _whole(replace(own, declared=tuple(begun[name] for name in names)), time, manifold.slow)
+        reduced = _reduced(flow, np.array(first, dtype=float), time)
+        size = np.abs(reduced).max(axis=1)
+        size[size == 0] = 1.0
+        distances.append(float((np.abs(whole - reduced).max(axis=1) / size).max()))
+    assert time is not None
+    return Measured(time, PARTS, tuple(distances), manifold.order + 1)
+
+
+class _Numbers:
+    """The series of an expansion at numbers for its parameters, and eps."""
+
+    def __init__(self, found: Expansion, parameters: Mapping[str, Fraction], eps: Fraction) -> None:
+        self.found, self.eps = found, eps
+        field = found.manifold.field.field
+        self.places = [found.names.index(name) for name in found.manifold.slow]
+        self.known = [
+            fmpq(parameters[name].numerator, parameters[name].denominator) if name in field.parameters else None
+            for name in found.names
+        ]
+
+    def on_manifold(self, s: Sequence[Fraction]) -> list[Fraction]:
+        """h(s, eps), exactly."""
+        at = [fmpq(0) if x is None else x for x in self.known]
+        for place, x in zip(self.places, s, strict=True):
+            at[place] = fmpq(x.numerator, x.denominator)
+        total = []
+        for one in self.found.manifold.functions:
+            value = fmpq(0)
+            for k, c in one.coefficients.items():
+                value += c.top(*at) / c.bottom(*at) * fmpq(self.eps.numerator, self.eps.denominator) ** k
+            total.append(Fraction(int(value.p), int(value.q)))
+        return total
+
+    def flow(self) -> Flow:
+        """s -> s', in floating point, cut off after the order of the expansion."""
+        rows = [self._row(one) for one in self.found.manifold.flow]
+        return lambda s: np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
+
+    def _row(self, one: Series) -> list[tuple[Evaluated, Evaluated]]:
+        return [
+            (self._polynomial(c.top, self.eps**k), self._polynomial(c.bottom, Fraction(1)))
+            for k, c in one.coefficients.items()
+        ]
+
+    def _polynomial(self, p: Any, factor: Fraction) -> Evaluated:
+        exponents, numbers = [], []
+        for monomial, c in p.to_dict().items():
+            value = c * fmpq(factor.numerator, factor.denominator)
+            for x, e in zip(self.known, monomial, strict=True):
+                value = value * x ** int(e) if x is not None and e else value
+            exponents.append([int(monomial[place]) for place in self.places])
+            numbers.append(int(value.p) / int(value.q))
+        powers, factors = np.array(exponents), np.array(numbers)
+        return lambda s: float(factors @ np.prod(s**powers, axis=1))
+
+
+def _span(flow: Flow, s: Floats) -> float:
+    """How long: some multiple of 1/|df/ds| at the beginning, in two digits."""
+    step = 1e-6 * (1 + np.abs(s))
+    slopes = [(flow(s + d) - flow(s - d)) / (2 * h) for d, h in zip(np.diag(step), step, strict=True)]
+    rate = float(np.linalg.norm(np.array(slopes), 2))
+    if not isfinite(rate) or rate < 1e-9:
+        raise NotMeasured("the flow on the manifold does not change there; ask for a --time")
+    return float(f"{SPAN / rate:.2g}")
+
+
+def _whole(own: Scenario, time: float, slow: Sequence[str]) -> Floats:
+    """The slow variables along the motion of all equations, shape (slow, ROWS)."""
+    run = simulate(own, Request(time=time, samples=ROWS, tolerance=TOLERANCE, estimate=False))
+    if not run.whole:
+        raise NotMeasured("the motion ends early")
+    return np.array([run[name] for name in slow])
+
+
+def _reduced(flow: Flow, s: Floats, time: float) -> Floats:
+    from scipy.integrate import solve_ivp
+
+    times = np.linspace(0.0, time, ROWS)
+    with np.errstate(all="ignore"):
+        done = solve_ivp(lambda _, x: flow(x), (0.0, time), s, "DOP853", times, rtol=TOLERANCE, atol=1e-14)
+    if not done.success or not np.isfinite(done.y).all():
+        raise NotMeasured("the flow on the manifold ends early")
+    return np.asarray(done.y)
