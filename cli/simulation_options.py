@@ -87,7 +87,11 @@ way_options = group(
     click.option("--max-step", metavar="H", help="No step is longer (0.01), so that nothing short is stepped over."),
     click.option("--arithmetic", metavar=f"[{'|'.join(ARITHMETIC)}]", default="float64", show_default=True),
     click.option("--step-limit", metavar="N", default="10000000", show_default=True),
-    click.option("--invariants", is_flag=True, help="Add the first integrals of problem 7 as columns."),
+    click.option(
+        "--invariants",
+        is_flag=True,
+        help="Add first integrals as columns: those of problem 7; of small systems others found at these numbers, too.",
+    ),
     click.option(
         "--estimate/--no-estimate",
         default=None,

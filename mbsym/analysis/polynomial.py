@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -74,6 +74,31 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
         vectors, speeds = equations.vectors, equations.speeds
     numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
+    known = _known(whole, field, numbers, transfer, listed)
+    grouped_by = [tuple(x for x in components if x in whole.variables) for _, components in vectors]
+    grouped = {name for vector in grouped_by for name in vector}
+    speeds = tuple(name for name in speeds if name in whole.variables)
+    alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
+    found = [one for one in grouped_by if one]
+    kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
+    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known))
+
+
+def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:
+    """The same with further integrals that are known, which hold no parameters but those of ``there.field``."""
+    gone = {name: fmpq(0) for name in there.whole.parameters if name not in there.field.parameters}
+    further = _known(there.whole, there.field, gone, there.transfer, listed)
+    return replace(there, known=(*there.known, *further))
+
+
+def _known(
+    whole: PolynomialField,
+    field: PolynomialField,
+    numbers: Mapping[str, Any],
+    transfer: Transfer,
+    listed: Sequence[Integral],
+) -> list[tuple[str, Any]]:
+    """Names and numerators of integrals, of those that are functions on the field."""
     known = []
     for one in listed:
         try:
@@ -82,13 +107,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
             continue  # it holds the time, or positions on which the equations do not depend
         if not any(bottom.degrees()[k] for k in whole.places):
             known.append((one.name, _at(whole, field, numbers, top)))
-    grouped_by = [tuple(x for x in components if x in whole.variables) for _, components in vectors]
-    grouped = {name for vector in grouped_by for name in vector}
-    speeds = tuple(name for name in speeds if name in whole.variables)
-    alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
-    found = [one for one in grouped_by if one]
-    kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
-    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known))
+    return known
 
 
 def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, Any], p: Any) -> Any:

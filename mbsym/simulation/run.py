@@ -82,7 +82,7 @@ def simulate(
     scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):
         analysis = Analysis(scenario.system, (7,)) if request.invariants else None
-        integrals, missing = _integrals(analysis)
+        integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
         if declared:
             scenario = scenario_in_states(scenario)
@@ -204,13 +204,15 @@ def _trajectory(
     return integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, before)
 
 
-def _integrals(analysis: Analysis | None) -> tuple[tuple[Any, ...], str]:
-    """The first integrals of problem 7 but for the energy, and why there are none."""
+def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any, ...], str]:
+    """The first integrals of problem 7 but for the energy, those found besides at these numbers; why there are none."""
     if analysis is None:
         return (), ""
+    from mbsym.analysis.found import found_integrals
     from mbsym.problems.integrals import ENERGY
 
     try:
-        return tuple(item for item in analysis.integrals if item.kind != ENERGY), ""
+        known = tuple(item for item in analysis.integrals if item.kind != ENERGY)
+        return (*known, *found_integrals(analysis, scenario.parameters)), ""
     except Unavailable as reason:
         return (), str(reason)

@@ -61,3 +61,23 @@ def test_a_system_of_matrices_has_no_lagrangian_here():
     done = run("systems/gyroscopic-pair.yaml")
     assert (done.exit_code, done.stdout) == (1, "")
     assert "given by its matrices" in done.stderr
+
+
+def simulated(*words):
+    done = CliRunner().invoke(main, ["simulate", *words, "--time", "2", "--invariants", "--no-estimate", "-f", "csv"])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+@pytest.mark.slow
+def test_a_run_watches_what_is_found_at_its_numbers(tmp_path):
+    """Kovalevskaya's integral at A = B = 2 C, of weight 4; none at A = 3; T - U - F x of a cart that is pushed."""
+    told = simulated("systems/euler-poisson.yaml", "-o", str(tmp_path))
+    assert "integral of weight 4 (proved): largest relative drift" in told
+    rows = (tmp_path / "trajectory.csv").read_text("utf-8").splitlines()
+    column = rows[0].split(",").index("polynomial_4")
+    values = [float(row.split(",")[column]) for row in rows[1:]]
+    assert max(values) - min(values) < 1e-7 * max(map(abs, values))
+    assert "of weight 4" not in simulated("systems/euler-poisson.yaml", "--set", "A=3", "-o", str(tmp_path))
+    pushed = simulated("systems/cart-pendulum.yaml", "--set", "F=3", "-o", str(tmp_path))
+    assert "integral of a symmetry (time) (proved): largest relative drift" in pushed
