@@ -19,14 +19,18 @@ def along_lines(there: Setting, found: Along, degree: int) -> Iterator[str]:
         yield from _special(there, one)
     if not found.values:
         yield f"at no rational value of {found.name} from {found.low} to {found.high} was a further one found"
+    for value in found.undecided:
+        yield f"whether there are more at {found.name} = {value} is undecided"
     for p in found.irrational:
         yield f"undecided at the zeros of {str(p).replace('x', found.name)}"
-    others = "At all other values" if found.values else "At all values"
+    others = "At all other values" if found.values or found.undecided else "At all values"
     interval = f"of {found.name} from {found.low} to {found.high}"
-    if found.whole:
+    if not found.usual:
+        yield f"What there is for almost all {found.name} is not known to be all: of other values nothing is proved."
+    elif found.whole:
         yield (
             f"{others} {interval}, rational or not, there is none of weight up to {degree} "
-            "(proved, but for algebraic numbers whose polynomials need coefficients beyond 10^9)."
+            "(proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9)."
         )
     else:
         yield (

@@ -71,8 +71,10 @@ def _along(there: Setting, line: Along) -> dict[str, Any]:
         "low": str(line.low),
         "high": str(line.high),
         "values": [{"value": str(one.value), **_special(there, one)} for one in line.values],
+        "undecided_at": [str(one) for one in line.undecided],
         "undecided_at_zeros_of": [[str(c) for c in p.coeffs()] for p in line.irrational],
         "no_others": line.whole,
+        "no_other_rational": line.usual,
     }
 
 

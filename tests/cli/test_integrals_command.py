@@ -119,3 +119,12 @@ def test_systems_in_angles_have_rates_sines_and_cosines():
     driven = run("systems/cart-pole.yaml")
     assert driven.exit_code == 1
     assert "the prescribed F occurs" in driven.stderr
+
+
+def test_a_root_of_what_is_known_is_one_more():
+    """Clebsch's body with A = C keeps q, of which only the square is a combination of what there is in general."""
+    numbers = [f"--set={one}" for one in ("B=2", "C=1", "N=1", "R=1", "M=1")]
+    data = json.loads(run(CLEBSCH, *numbers, "--degree", "2", "--vary", "A=1/2:5", "--json").stdout)
+    told = {one["value"]: [x["formula"] for x in one["integrals"]] for one in data["along"]["values"]}
+    assert told == {"1": ["q"], "2": ["r"]}
+    assert (data["along"]["undecided_at"], data["along"]["no_others"]) == ([], True)

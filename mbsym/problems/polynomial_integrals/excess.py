@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from flint import fmpq, fmpq_mat, fmpq_poly
+
 from mbsym.problems.polynomial_integrals.drops import Build
-from mbsym.problems.polynomial_integrals.levels import Level, cofactors, images_on, kernel_on, levels, standard
+from mbsym.problems.polynomial_integrals.levels import (
+    Level,
+    cofactors,
+    images_on,
+    kernel_on,
+    levels,
+    on_level,
+    standard,
+)
+from mbsym.problems.polynomial_integrals.lifting import monomial
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     ModularField,
@@ -19,8 +31,11 @@ from mbsym.problems.polynomial_integrals.modular import (
     monomials,
     remainder,
 )
-from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.result import OnLevel, PolynomialIntegrals
 from mbsym.problems.polynomial_integrals.search import products
+
+#: Columns of a matrix whose rank is found over QQ.
+MOST_EXACT = 400
 
 
 @dataclass(frozen=True)
@@ -39,6 +54,16 @@ class Excess:
         weights = range(1, usual.degree + 1)
         chosen = [None, *(usual.generators.index(one) for one in levels(usual))]
         self.blocks = [Block(weight, level) for level in chosen for weight in weights]
+
+    @cached_property
+    def on_levels(self) -> dict[int, OnLevel]:
+        """What holds for almost all parameters where an integral vanishes, by the number of that one."""
+        return {self.usual.generators.index(one): on_level(self.usual, one) for one in levels(self.usual)}
+
+    def _known(self, block: Block) -> list[tuple[int, Any]]:
+        """Weights and polynomials of what holds for almost all parameters."""
+        found = [(one.weight, one.polynomial) for k, one in enumerate(self.usual.generators) if k != block.level]
+        return found if block.level is None else [*found, *self.on_levels[block.level].integrals]
 
     def build(self, block: Block) -> Build:
         """The columns of the matrix whose kernel the integrals of a block are."""
@@ -92,13 +117,77 @@ class Excess:
         if not zero.terms:  # at these parameters the integral is zero everywhere: it has no levels
             return 0
         columns = standard(weights, block.weight, zero)
-        pairs = [(x.weight, there.terms(x.polynomial)) for k, x in enumerate(usual) if k != block.level]
+        pairs = [(weight, there.terms(f)) for weight, f in self._known(block)]
 
         def reduce(terms: Terms) -> Terms:
             return remainder(terms, zero.terms, there.prime)
 
         spanned = products(pairs, block.weight, True, there.prime, len(weights), reduce)
         return self.dimension(there, block) - len(echelon(list(map(reduce, spanned)), columns, there.prime)[0])
+
+    def build_products(self, block: Block) -> tuple[Build, int]:
+        """The products as columns, and their degree in the parameters; on a level times a power of the leading
+        coefficient of V, so that remainders are polynomials.
+        """
+        weights, usual = self.usual.grading.weights, self.usual.generators
+        count = len(self.usual.field.parameters)
+
+        def degree(f: Any) -> int:
+            return max(sum(map(int, m[:count])) for m in f.monoms())
+
+        known = self._known(block)
+        most = max((block.weight // weight * degree(f) for weight, f in known), default=0)
+        steps = 0 if block.level is None else block.weight // usual[block.level].weight
+
+        def images(there: ModularField) -> list[Terms]:
+            pairs = [(weight, there.terms(f)) for weight, f in known]
+            spanned = products(pairs, block.weight, True, there.prime, len(weights), lambda terms: terms)
+            if block.level is None or not spanned:
+                return spanned
+            zero = self._zero(there, block.level)
+            scale = pow(zero.terms[zero.leading], steps, there.prime)
+            rests = [remainder(one, zero.terms, there.prime) for one in spanned]
+            return [{m: c * scale % there.prime for m, c in one.items()} for one in rests]
+
+        return images, most + (0 if block.level is None else steps * degree(usual[block.level].polynomial))
+
+    def leading(self) -> list[Any]:
+        """Of every level the leading coefficient of V, as a polynomial over QQ in the only parameter."""
+        found = []
+        for one in levels(self.usual):
+            terms = one.polynomial.to_dict()
+            top = max(tuple(map(int, m[1:])) for m in terms)
+            powers = {int(m[0]): c for m, c in terms.items() if tuple(map(int, m[1:])) == top}
+            found.append(fmpq_poly([powers.get(k, 0) for k in range(max(powers) + 1)]))
+        return found
+
+    def exactly(self, value: Fraction, block: Block) -> int | None:
+        """The dimension of the kernel over QQ at a value of the only parameter; None where V has no such leading
+        monomial there, or the matrix is too large.
+        """
+        usual = self.usual
+        number = fmpq(value.numerator, value.denominator)
+        field = usual.field.at({usual.field.parameters[0]: number})
+        weights = usual.grading.weights
+        columns, multiples = list(monomials(weights, block.weight)), []
+        if block.level is not None:
+            one = usual.generators[block.level]
+            zero = self._zero(at_random(usual.field, PRIMES[0], "leading"), block.level)
+            images = [field.context.constant(number), *field.context.gens()]
+            level = one.polynomial.compose(*images, ctx=field.context)
+            if level == 0 or max(tuple(map(int, m)) for m in level.monoms()) != zero.leading:
+                return None
+            columns = standard(weights, block.weight, zero)
+            multiples = [monomial(field, m) * level for m in cofactors(usual, block.weight, zero)]
+        if len(columns) + len(multiples) > MOST_EXACT:
+            return None
+        found = [field.derivative(monomial(field, m)).to_dict() for m in columns] + [f.to_dict() for f in multiples]
+        rows = {key: k for k, key in enumerate(dict.fromkeys(key for one in found for key in one))}
+        table = [[fmpq(0)] * max(1, len(rows)) for _ in found]
+        for k, one in enumerate(found):
+            for key, c in one.items():
+                table[k][rows[key]] = c
+        return len(found) - int(fmpq_mat(table).rank()) if found else 0
 
     def signature(self, there: ModularField) -> tuple[int, ...]:
         """The excess of every block."""

@@ -120,9 +120,11 @@ class Special:
 class Along:
     """The special values of a parameter in an interval.
 
-    ``irrational``: polynomials over QQ at whose zeros the rank may drop, too: undecided.  ``whole``: it is proved that
-    there is no other value, rational or not, but for algebraic numbers whose polynomials need coefficients beyond 10^9;
-    otherwise that is so of rational ones with numerator and denominator up to 10^9.
+    ``irrational``: polynomials over QQ at whose zeros a rank may drop, too: undecided.  ``undecided``: values at which
+    it does, and what there is was not found, or not all of it.  ``usual``: for almost all values the list is complete;
+    without that nothing is proved of others.  ``whole``: it is proved that there is no other value, rational or not,
+    but for algebraic numbers whose primitive polynomials over ZZ have coefficients beyond 10^9; otherwise that is so of
+    rational ones with numerator and denominator up to 10^9.
     """
 
     name: str
@@ -131,6 +133,8 @@ class Along:
     values: tuple[Special, ...]
     irrational: tuple[Any, ...]
     whole: bool
+    undecided: tuple[Fraction, ...] = ()
+    usual: bool = True
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals import along, cases, grading, levels, on_level, polynomial_integrals
 from mbsym.problems.polynomial_integrals.drops import interpolated, rational
-from mbsym.problems.polynomial_integrals.modular import PRIMES
+from mbsym.problems.polynomial_integrals.excess import Block, Excess
+from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField
 
 SPEEDS, VECTOR = ("p", "q", "r"), ("g1", "g2", "g3")
 
@@ -143,3 +144,56 @@ def test_interpolation_and_fractions_modulo_a_prime():
     assert [int(p[k]) for k in range(p.degree() + 1)] == [prime - 5, 0, 0, 1]
     assert rational(22 * pow(7, -1, prime) % prime, prime) == Fraction(22, 7)
     assert rational(-3 % prime, prime) == -3
+
+
+def test_kernels_over_the_rationals_are_those_modulo_the_prime():
+    """Two routes; at A = 4 of B = 4 C Chaplygin's is one more on the level of the area integral, elsewhere none is."""
+    field, _ = heavy(("A",), {"B": 4, "C": 1, "x0": 1, "y0": 0, "z0": 0})
+    excess = Excess(usual(field))
+    level = next(k for k, one in enumerate(excess.usual.generators) if one.weight == 3)
+    for value in (Fraction(4), Fraction(7, 3)):
+        image = value.numerator * pow(value.denominator, -1, PRIMES[0]) % PRIMES[0]
+        there = ModularField(field, PRIMES[0], {"A": image})
+        for block in excess.blocks:
+            exact = excess.exactly(value, block)
+            assert exact == excess.dimension(there, block)
+            larger = (value, block) == (Fraction(4), Block(3, level))
+            assert exact - excess.dimensions[block] == larger
+
+
+def test_a_value_at_which_known_integrals_coincide_is_found():
+    """x' = y' = 0 of weight 1, z' = x: f = x and x + t y are two but at t = 0, where y is one more: no kernel grows."""
+    context = fmpq_mpoly_ctx.get(["t", "x", "y", "z"], Ordering.lex)
+    t, x, y, _ = context.gens()
+    zero = context.constant(0)
+    field = PolynomialField(context, ("t",), ("x", "y", "z"), (zero, zero, x), context.constant(1))
+    weights = grading(field, (("x", "y", "z"),))
+    found = polynomial_integrals(field, weights, 1, [("first", x), ("second", x + t * y)])
+    assert [one.name for one in found.generators] == ["first", "second"]
+    line = along(found, Fraction(-1), Fraction(1))
+    assert [(one.value, [w for w, _ in one.integrals]) for one in line.values] == [(Fraction(0), [1])]
+
+
+def test_without_a_complete_list_nothing_is_proved_of_other_values():
+    field, _ = heavy(("A",), {"B": 2, "C": 1, "x0": 1, "y0": 0, "z0": 0})
+    found = usual(field)
+    lacking = replace(found, generators=found.generators[1:])
+    line = along(lacking, Fraction(3), Fraction(4))
+    assert (line.usual, line.whole) == (False, False)
+
+
+def test_long_products_of_zeros_leave_irrational_values_open():
+    """x' = (t - 10^5)(t - 10^5 - 1) y: heights of zeros multiply to beyond 10^9, unless jumps are seen."""
+    context = fmpq_mpoly_ctx.get(["t", "x", "y"], Ordering.lex)
+    t, _, y = context.gens()
+    high = 10**5
+    tops = ((t - high) * (t - high - 1) * y, 0 * y)
+    field = PolynomialField(context, ("t",), ("x", "y"), tops, context.constant(1))
+    found = polynomial_integrals(field, grading(field, (("x",), ("y",))), 1)
+    line = along(found, Fraction(0), Fraction(2 * high))
+    assert [one.value for one in line.values] == [high, high + 1]
+    assert line.whole  # each kernel over QQ is larger by one: both factors are accounted for
+    blind = pytest.MonkeyPatch()
+    with blind.context() as patch:
+        patch.setattr(Excess, "exactly", lambda self, value, block: None)
+        assert not along(found, Fraction(0), Fraction(2 * high)).whole
