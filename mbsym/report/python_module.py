@@ -9,6 +9,7 @@ import builtins
 import keyword
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from textwrap import fill, wrap
 from typing import TYPE_CHECKING
@@ -27,6 +28,7 @@ from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
 from mbsym.report.environment import rendered
+from mbsym.report.formula_code import formula_functions
 from mbsym.report.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.identifiers import prefix_of
 from mbsym.report.lookups import identifier, python_definition
@@ -43,6 +45,7 @@ RESERVED = {
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
     "Parameters", "INTEGRALS", "UNITS", "with_unit",
+    "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
     "speed_simulate", "y", "right", "matrix",
 }  # fmt: skip
@@ -77,6 +80,8 @@ DIALECT = Dialect(
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
+    from mbsym.analysis import PROBLEMS
+
     system, (code, no_code) = analysis.system, programs_of(analysis)
     writer = _Module(system, bool(analysis.forms))
     tied = None
@@ -133,6 +138,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         prefix=prefix_of(system.name),
         example=f"{next(iter(system.parameter_names), next(iter(system.coordinates), 'x'))}=2",
         integrals=conserved,
+        formulas=[
+            replace(one, results=tuple((plain(key), x) for key, x in one.results), missing=plain(one.missing))
+            for one in formula_functions(analysis, problems, writer)
+        ],
+        titles={number: PROBLEMS[number].title for number in problems},
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
         slopes=_slopes(writer, known),
         no_slopes=plain(known.no_slopes or known.no_forward),

@@ -164,7 +164,7 @@ TARGETS = {
         Target(
             "python",
             "model.py",
-            (5, 7),
+            (5, 7, 9, 10, 11, 12),
             "a numpy module of the equations, from the straight-line program",
             _python,
             program=True,
