@@ -256,7 +256,7 @@ class Graph {
       End: () => this.go(this.layout.order.at(-1)),
       "-": () => this.fold(here.name, true),
       "+": () => this.fold(here.name, false),
-      Enter: () => document.querySelector<HTMLElement>("#form input, #form select, #form button")?.focus(),
+      Enter: () => document.querySelector<HTMLElement>("#form-body input")?.focus(),
       Insert: () => this.structure.add(here.name),
       a: () => this.structure.add(here.name),
       F2: () => this.structure.rename(here.name),

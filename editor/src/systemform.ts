@@ -63,7 +63,7 @@ function records(model: Model, section: string, title: string, columns: Column[]
     label: name,
     rows: columns.map(({ key, options, formula }) => {
       if (section === "parameters" && key === "value") return parameterValue(model, name);
-      return part(model, section, name, key, isFirst(key), { ...(options ? { options } : {}), formula: formula ?? false, placeholder: key });
+      return part(model, section, name, key, isFirst(key), { ...(options ? { options } : {}), formula: formula ?? false, placeholder: key, wide: key === "meaning" });
     }),
     actions: nodeAt(model, [section, name]) ? [{ words: "×", label: `Delete ${name} from ${title.toLowerCase()}`, act: () => model.change([remove([section, name])], `${name} deleted`) }] : [],
   }));

@@ -61,12 +61,19 @@ class Window:
         self.page, self.path = page, path
         self.troubles: list[str] = []
         page.set_default_timeout(PATIENCE)
-        page.on("console", lambda one: one.type in ("error", "warning") and self.troubles.append(one.text))
+        page.on("console", self.heard)
         page.on("pageerror", lambda one: self.troubles.append(str(one)))
         page.add_init_script(
             "window.violations = []; document.addEventListener('securitypolicyviolation',"
             " e => window.violations.push(`${e.violatedDirective} ${e.blockedURI}`));"
         )
+
+    def heard(self, one: Any) -> None:
+        """Errors and warnings; not what a software renderer says of its own speed, nor answers that the page expects
+        (a description that cannot be drawn yet, a file that somebody else has written)."""
+        expected = ("GL Driver Message", "status of 400", "status of 409", "status of 422")
+        if one.type in ("error", "warning") and not any(words in one.text for words in expected):
+            self.troubles.append(one.text)
 
     def open(self, address: str) -> None:
         """Loads the page and waits for the first look at the text."""
@@ -100,6 +107,37 @@ class Window:
     def body(self, name: str) -> Any:
         """The body in the graph."""
         return self.page.locator("#graph [role=treeitem]").filter(has=self.page.get_by_text(name, exact=True))
+
+    def field(self, label: str, value: str) -> None:
+        """Types into a field of the form, or chooses by its first letters."""
+        field = self.page.locator("#form").get_by_label(label, exact=True)
+        if field.evaluate("e => e.tagName") == "SELECT":
+            field.focus()
+            field.select_option(value)
+        else:
+            field.click()
+            self.press("Control+a")
+            self.typed(value)
+            self.press("Tab")
+        self.settled()
+
+    def add(self, button: str, *values: str) -> None:
+        """A button of the form that asks for some values, one after the other."""
+        self.page.locator("#form").get_by_role("button", name=button, exact=True).click()
+        self.page.locator("dialog[open]").wait_for()
+        for index, value in enumerate(values):
+            if index:
+                self.press("Tab")
+            self.press("Control+a")
+            self.typed(value)
+        self.press("Enter")
+        self.page.locator("dialog[open]").wait_for(state="detached")
+        self.settled()
+
+    def form_of(self, which: str) -> None:
+        """The form of the body or of the system, with all its sections open."""
+        self.page.locator("#form").get_by_role("button", name=which, exact=True).click()
+        self.page.evaluate("document.querySelectorAll('#form details').forEach(e => { e.open = true; })")
 
     @property
     def bodies(self) -> dict[str, str]:
