@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from mbsym.expressions.place import Complaint, Complaints
@@ -14,7 +15,7 @@ from mbsym.source.lines import check_characters, normalised
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
 from mbsym.source.recognition import is_text
 from mbsym.source.text_reader import read_text
-from mbsym.source.yaml_reader import read_yaml
+from mbsym.source.yaml_reader import Extent, read_yaml
 
 #: So many complaints are shown, in all and of one kind; when so many were met, reading stops.
 MAX_COMPLAINTS = 200
@@ -54,16 +55,43 @@ def read(text: str, filename: str = "<string>", folder: Path | None = None) -> t
     The text itself tells its spelling; where it does not, a name ending in ``.txt`` means editor text.  Files that it
     names are looked for in ``folder``.
     """
+    found = read_placed(text, filename, folder)
+    return found.system, found.complaints
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What reading gives: ``tree`` is what the text says before it is understood, ``editor`` whether in editor text."""
+
+    system: System | None
+    complaints: Complaints
+    tree: Node | None
+    editor: bool
+
+
+def read_placed(
+    text: str,
+    filename: str = "<string>",
+    folder: Path | None = None,
+    extents: dict[int, Extent] | None = None,
+    understand: bool = True,
+) -> Found:
+    """The same with the placed tree, and where each node of a YAML text stands.
+
+    ``understand`` False: the tree alone.
+    """
     text = normalised(text)
     complaints = _BoundedComplaints()
-    system, stopped = None, False
+    system, node, editor, stopped = None, None, False, False
     try:
         if check_characters(text, complaints):
-            node, editor = _placed_tree(text, filename, complaints)
-            system = None if node is None else build(node, complaints, by_use=editor, folder=folder)
+            editor = is_text(text, filename)
+            node = read_text(text, complaints) if editor else read_yaml(text, complaints, extents)
+            if node is not None and understand:
+                system = build(node, complaints, by_use=editor, folder=folder)
     except TooManyComplaints:
         system, stopped = None, True
-    return system, Complaints([*complaints.sorted(), *complaints.rest(stopped)])
+    return Found(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
 
 
 def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, bool]:

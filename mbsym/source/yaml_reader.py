@@ -7,7 +7,8 @@ plain tree, and what it says must not depend on YAML's finer points.
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import yaml
 
@@ -17,6 +18,8 @@ from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequenc
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
+_Collection = TypeVar("_Collection", Sequence, Mapping)
+
 #: More open brackets than this are refused before the scanner sees them: its work grows with their square.
 _MAX_BRACKETS = 100
 
@@ -25,12 +28,28 @@ class _Refused(Exception):
     """Internal: the document cannot be composed; the complaint is recorded."""
 
 
-def read_yaml(text: str, complaints: Complaints) -> Node | None:
-    """The placed tree of a YAML text (already normalised), or None with complaints."""
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """Where a node stands as written: the characters ``start`` to ``end`` of the normalised text, quotes included.
+
+    ``style``: of a scalar "" (plain), ', ", | or >; of a collection "flow" or "block".  What an indented scalar or
+    collection ends with (blank lines, comments) may be counted in.
+    """
+
+    start: int
+    end: int
+    style: str
+
+
+def read_yaml(text: str, complaints: Complaints, extents: dict[int, Extent] | None = None) -> Node | None:
+    """The placed tree of a YAML text (already normalised), or None with complaints.
+
+    ``extents`` is filled with where each node stands, by ``id(node)``.
+    """
     if not _brackets_bounded(text, complaints):
         return None
     try:
-        return _Composer(text, complaints).document()
+        return (_Composer(text, complaints) if extents is None else _Marking(text, complaints, extents)).document()
     except _Refused:
         return None
     except yaml.MarkedYAMLError as error:
@@ -197,6 +216,36 @@ class _Composer:
         if not start.flow_style and first is not None:
             return first
         return self.between(start.start_mark, end.end_mark)
+
+
+class _Marking(_Composer):
+    """The same, and keeps where each node stands."""
+
+    def __init__(self, text: str, complaints: Complaints, extents: dict[int, Extent]) -> None:
+        super().__init__(text, complaints)
+        self.extents = extents
+        self.ended: Any = None
+
+    def scalar(self, event: Any) -> Scalar:
+        node = super().scalar(event)
+        style = event.style or ""
+        self.extents[id(node)] = Extent(event.start_mark.index, event.end_mark.index, style)
+        return node
+
+    def sequence(self, start: Any, depth: int) -> Sequence:
+        return self.kept(super().sequence(start, depth), start)
+
+    def mapping(self, start: Any, depth: int) -> Mapping:
+        return self.kept(super().mapping(start, depth), start)
+
+    def kept(self, node: _Collection, start: Any) -> _Collection:
+        style = "flow" if start.flow_style else "block"
+        self.extents[id(node)] = Extent(start.start_mark.index, self.ended.end_mark.index, style)
+        return node
+
+    def collection_span(self, start: Any, end: Any, first: Span | None) -> Span:
+        self.ended = end  # the last that is asked of a collection, when what is in it has been read
+        return super().collection_span(start, end, first)
 
 
 def _inside(lines: list[str], mark: Any) -> tuple[int, int]:

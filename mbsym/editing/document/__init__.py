@@ -1,0 +1,5 @@
+"""One text, three views: what form and graph show of a description, and the edits of its text that operations mean."""
+
+from mbsym.editing.document.view import formula, look
+
+__all__ = ["formula", "look"]

@@ -1,0 +1,245 @@
+"""What form and graph show of a description: bodies with their fields, loads, constraints, the tree as written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from mbsym.editing.document.formulas import content, math, mathml_of
+from mbsym.editing.document.spelling import flow
+from mbsym.editing.document.understood import rates_of, understood
+from mbsym.editing.document.written import (
+    Refused,
+    Written,
+    child,
+    data_of,
+    entry_of,
+    is_understood,
+    node_at,
+    original_offsets,
+    written,
+)
+from mbsym.expressions.parser import parse_expression
+from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.tree import Expression
+from mbsym.source.keys import ALIASES, BODY
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
+
+Json = dict[str, Any]
+
+#: Keys of a body whose values are no formulas.
+_NO_FORMULAS = ("name", "attached to", "rotation", "inertia about", "coordinates", "shapes", "speeds", "orientation")
+
+#: Keys under which loads and constraints name bodies.
+BODY_KEYS = ("body", "centre", "center", "about", "axes", "reaction on", "on")
+
+#: So often what cannot be read is looked past.
+_TRIES = 4
+
+
+def look(text: str, name: str) -> Json:
+    """What can be had of a text, which may be half typed: bodies, loads, constraints, the tree, all complaints.
+
+    Offsets (``from``, ``to``) count the characters of ``text``.  Where a section cannot be read the others are shown;
+    the complaints are always those of the whole text.
+    """
+    found = written(text, name)
+    shown = found if found.tree is not None else _what_can_be_had(found)
+    tree = shown.tree if isinstance(shown.tree, Mapping) else None
+    view: Json = {
+        "name": _text(tree, "name"),
+        "format": "text" if shown.editor else "yaml",
+        "tree": None if tree is None else _node(shown, tree, []),
+        "bodies": [] if tree is None else list(_bodies(shown, tree)),
+        "constraints": [] if tree is None else list(ties(shown, tree, "constraints")),
+        "loads": [] if tree is None else list(ties(shown, tree, "loads")),
+        "complaints": [complaint_view(found, one) for one in found.complaints],
+    }
+    offsets = original_offsets(text)
+    return view if offsets is None else _moved(view, offsets)
+
+
+def formula(source: str) -> Json:
+    """A formula as it is typed: ``{"mathml": ...}``, or ``{"complaint": ...}`` with offsets in ``source``."""
+    complaints = Complaints()
+    tree = parse_expression(source, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    if tree is not None and not complaints.errors:
+        return {"mathml": math(content(tree))}
+    one = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))
+    start = one.span.column - 1 if one.span else 0
+    end = start + one.span.length if one.span else len(source)
+    return {"complaint": _told(one, start, end, 1, start + 1)}
+
+
+# --- what cannot be read ----------------------------------------------------------------------------------------------
+
+
+def _what_can_be_had(found: Written) -> Written:
+    """The text with the section in which it cannot be read left out (as blanks: all places stay)."""
+    text, complaints = found.text, found.complaints
+    for _ in range(_TRIES):
+        place = next((one.span for one in complaints.errors if one.span is not None), None)
+        if place is None:
+            break
+        lines = text.split("\n")
+        wrong = min(place.line, len(lines)) - 1
+        first = next((k for k in range(wrong, -1, -1) if _begins(lines[k])), None)
+        if first is None:
+            break
+        last = next((k for k in range(max(wrong, first + 1), len(lines)) if _begins(lines[k])), len(lines))
+        if last <= wrong:
+            last = wrong + 1
+        text = "\n".join([*lines[:first], *(" " * len(line) for line in lines[first:last]), *lines[last:]])
+        again = written(text, found.name, understand=False)
+        if again.tree is not None:
+            return again
+        complaints = again.complaints
+    return found
+
+
+def _begins(line: str) -> bool:
+    return bool(re.match(r"[A-Za-z\"']", line))
+
+
+# --- bodies -----------------------------------------------------------------------------------------------------------
+
+
+def _bodies(found: Written, tree: Mapping) -> Iterator[Json]:
+    bodies, rates = child(tree, "bodies"), rates_of(found, tree)
+    for index, node in enumerate(bodies.items if isinstance(bodies, Sequence) else ()):
+        start, end = found.extent(node)
+        name = _text(node, "name")
+        parent = " ".join(_text(node, "attached to").split())
+        yield {
+            "name": " ".join(name.split()),
+            "path": ["bodies", index],
+            "parent": None if parent in ("", "0") else parent,
+            "from": start,
+            "to": end,
+            "fields": _fields(found, tree, node, index, rates),
+        }
+
+
+def _fields(found: Written, tree: Mapping, body: Node, index: int, rates: dict[str, Expression]) -> Json:
+    fields: Json = {}
+    derived = understood(found, tree, body, index, rates)
+    for key in BODY:
+        entry = entry_of(body, key)
+        path = ["bodies", index, key if entry is None else entry.key.text]
+        if entry is None or (found.editor and is_understood(entry)):
+            fields[key] = {"path": path, "source": None, "from": None, "to": None, "mathml": None}
+        else:
+            start, end = found.extent(entry.value)
+            source = source_of(found, entry.value)
+            math = None if key in _NO_FORMULAS else mathml_of(entry.value)
+            fields[key] = {"path": path, "source": source, "from": start, "to": end, "mathml": math}
+        fields[key]["derived"] = derived.get(key) if fields[key]["source"] is None else None
+    return fields
+
+
+def source_of(found: Written, node: Node) -> str:
+    """A node as it is spelled, in one line."""
+    if isinstance(node, Scalar):
+        return found.source(node)
+    start, end = found.extent(node)
+    spelled = found.text[start:end]
+    if "\n" not in spelled and spelled[:1] in ("[", "{", "("):
+        return spelled
+    try:
+        return flow(data_of(node))
+    except Refused:  # a key twice
+        return spelled
+
+
+def _items(node: Node) -> tuple[Node, ...]:
+    return node.items if isinstance(node, Sequence) else ()
+
+
+# --- loads, constraints -----------------------------------------------------------------------------------------------
+
+
+def ties(found: Written, tree: Mapping, section: str) -> Iterator[Json]:
+    """Loads or constraints: their kinds and the bodies that they name."""
+    nodes = child(tree, section)
+    for index, node in enumerate(_items(nodes) if nodes is not None else ()):
+        start, end = found.extent(node)
+        entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
+        kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
+        bodies = [] if entry is None else list(dict.fromkeys(named_bodies(kind, entry.value)))
+        path = [section, index]
+        yield {"name": f"{kind} {index + 1}", "kind": kind, "path": path, "bodies": bodies, "from": start, "to": end}
+
+
+def named_bodies(kind: str, node: Node) -> Iterator[str]:
+    """The bodies that a load or constraint names, the inertial frame not counted."""
+    if kind == "generalized force" or isinstance(node, Scalar):
+        return
+    if isinstance(node, Sequence):
+        for item in node.items:
+            yield from named_bodies(kind, item)
+        return
+    for entry in node.entries:
+        value = entry.value
+        if entry.key.text == "between":
+            yield from named_bodies(kind, value)
+        elif entry.key.text in BODY_KEYS and isinstance(value, Scalar):
+            name = " ".join(value.text.split())
+            if name not in ("0", "ground", ""):
+                yield name
+
+
+# --- the tree ---------------------------------------------------------------------------------------------------------
+
+
+def _node(found: Written, node: Node, path: list[str | int], entry: Entry | None = None) -> Json:
+    start, end = found.extent(node)
+    shown: Json = {"path": path, "from": start, "to": end}
+    if entry is not None:
+        first, last = found.key(entry)
+        shown["key"] = {"from": first, "to": last}
+    match node:
+        case Scalar():
+            return shown | {"kind": "scalar", "source": found.source(node)}
+        case Sequence(items):
+            children = [_node(found, item, [*path, index]) for index, item in enumerate(items)]
+            return shown | {"kind": "sequence", "children": children}
+    children = [
+        _node(found, one.value, [*path, one.key.text], one)
+        for one in node.entries
+        if not (found.editor and is_understood(one))
+    ]
+    return shown | {"kind": "mapping", "children": children}
+
+
+def _text(node: Node | None, key: str) -> str:
+    found = node_at(node, (key,))
+    return found.text if isinstance(found, Scalar) else ""
+
+
+# --- complaints -------------------------------------------------------------------------------------------------------
+
+
+def complaint_view(found: Written, one: Complaint) -> Json:
+    """A complaint with its place; what concerns the whole text stands at its beginning."""
+    if one.span is None:
+        return _told(one, 0, 0, 1, 1)
+    start = found.offset(one.span)
+    return _told(one, start, min(len(found.text), start + one.span.length), one.span.line, one.span.column)
+
+
+def _told(one: Complaint, start: int, end: int, line: int, column: int) -> Json:
+    told = {"severity": one.severity, "code": one.code, "message": one.message, "hint": one.hint}
+    return told | {"from": start, "to": end, "line": line, "column": column}
+
+
+def _moved(value: Any, offsets: list[int]) -> Any:
+    """The same with offsets of the text as it was given."""
+    if isinstance(value, list):
+        return [_moved(item, offsets) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {
+        key: offsets[item] if key in ("from", "to") and isinstance(item, int) else _moved(item, offsets)
+        for key, item in value.items()
+    }
