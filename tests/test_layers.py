@@ -31,7 +31,7 @@ BELOW = {
     "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
     "studies": "expressions algebra model mechanics formulas problems analysis numerics simulation",
-    "editing": "expressions algebra model source formulas analysis",
+    "editing": "expressions algebra model source formulas analysis report",
     "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
     "diff": "expressions algebra formulas report",
     "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",

@@ -6,7 +6,7 @@ import re
 
 from mbsym.editing.document.written import Data, Refused, data_of
 from mbsym.expressions.place import Complaints
-from mbsym.source.placed import Node, Scalar
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.yaml_reader import read_yaml
 
 _SAFE = re.compile(r"[A-Za-z0-9(./-][A-Za-z0-9 _.()*/+'<>=!-]*\Z")
@@ -20,7 +20,7 @@ def parsed(source: str) -> Node | None:
     """What a source in flow style says, or None where it is not YAML."""
     complaints = Complaints()
     node = read_yaml(f"[{source}\n]" if source.strip() else "[]", complaints)
-    if complaints or node is None or isinstance(node, Scalar) or not hasattr(node, "items"):
+    if complaints or not isinstance(node, Sequence):
         return None
     return node.items[0] if len(node.items) == 1 else None
 
@@ -69,8 +69,8 @@ def _reads_plain(value: str) -> bool:
     if "\n" in value or value[0] in "\"'[{|>&*!%@`#?,]}" or ": " in value or " #" in value or value.endswith(":"):
         return False
     node = read_yaml(f"key: {value}\n", Complaints())
-    entries = getattr(node, "entries", ())
-    return len(entries) == 1 and isinstance(entries[0].value, Scalar) and entries[0].value.text == value
+    entry = node.entries[0] if isinstance(node, Mapping) and len(node.entries) == 1 else None
+    return entry is not None and isinstance(entry.value, Scalar) and entry.value.text == value
 
 
 def key(name: str) -> str:
