@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import Expression, Name, number
+from mbsym.expressions.tree import Expression, Name, names, number
 from mbsym.model.loads import ForceFunction
 from mbsym.model.substitution import folded, put
 from mbsym.model.system import System
@@ -38,10 +38,30 @@ def averaging_of(analysis: Analysis, phase: str, small: Sequence[str] = ()) -> A
         raise NoClosedForm("averaging is in physical time: leave the description's own time out")
     rate = next(item.rate for item in system.prescribed if item.name == phase)
     assert isinstance(rate, Name)
+    _refuse_company(system, phase, rate.name)
     chosen = tuple(small) or averaging.small_parameters(analysis.scene, analysis.energy, phase, rate.name)
     if not chosen:
         raise NoClosedForm(f"which parameters are small is not plain: name what {phase} shakes")
+    _refuse_ties(system, (rate.name, *chosen))
     return averaging.averaged(analysis.scene, analysis.energy, phase, rate.name, chosen)
+
+
+def _refuse_company(system: System, phase: str, rate: str) -> None:
+    """Raises NoClosedForm where another prescribed quantity is as fast: it takes part in the averages."""
+    for item in system.prescribed:
+        if item.name != phase and rate in names(item.rate):
+            raise NoClosedForm(f"{item.name} is as fast as {phase}: both have a rate with {rate}")
+
+
+def _refuse_ties(system: System, scaled: Sequence[str]) -> None:
+    """Raises NoClosedForm where a relation ties what is small or large: powers of eps would be hidden in it."""
+    for relation in system.relations:
+        tied = [name for name in scaled if name == relation.name or name in names(relation.value)]
+        if tied:
+            raise NoClosedForm(
+                f"{tied[0]} is tied by the relation for {relation.name}: what is small or large must be free",
+                remedy="put the relation into the formulas",
+            )
 
 
 def averaged_system(system: System, found: Averaged) -> System:

@@ -14,6 +14,7 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
+from mbsym.analysis.stages import Unavailable
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.motion import relations
@@ -127,7 +128,7 @@ def _refuse(
     for name in scales:
         if name in related:
             raise NoClosedForm(
-                f"{name} is given by a relation: it has no power of {small.name} of its own",
+                f"{name} is given by a relation: it is not small, or scaled, by itself",
                 remedy="solve the relation for another parameter",
             )
         if name in values:
@@ -162,6 +163,8 @@ def _motion(analysis: Analysis) -> dict[str, Any] | str:
         return "no unperturbed motion is given"
     try:
         found = analysis.first_order
+    except Unavailable as unavailable:
+        return unavailable.reason
     except Failure as reason:
         return str(reason)
     return {name: value.polynomial for name, value in zip(found.names, found.values, strict=True)}

@@ -54,12 +54,12 @@ class SmallParameters(Shown):
 
 
 def small_parameters_of(analysis: Analysis) -> SmallParameters:
-    """Raises NoClosedForm for a system with constraints that has something to expand in."""
+    """Raises Constrained for a system with constraints that names a small parameter."""
     system = analysis.system
     phases = fast_phases(system)
     if system.small is None and not phases:
         return SmallParameters()
-    if system.constraints:
+    if system.small is not None:
         refuse_constraints(system, "not expanded")
     averaged = tuple(_averaging(analysis, phase) for phase in phases)
     if system.small is None:

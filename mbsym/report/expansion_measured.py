@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mbsym.simulation.expanded import Measured
 
 NO_NUMBERS = "the description does not give all numbers and an initial state"
+DIVIDED = "a denominator vanishes at the given numbers"
 
 _FLOWS: WeakKeyDictionary[SmallParameters, Measured | str] = WeakKeyDictionary()
 _AVERAGES: WeakKeyDictionary[SmallParameters, dict[str, MeasuredAverage | str]] = WeakKeyDictionary()
@@ -41,7 +42,9 @@ def measured_or_why(
         return measured(system, found, time, values)
     except Incomplete:
         return NO_NUMBERS
-    except (NotMeasured, Failure, ValueError, ZeroDivisionError, OverflowError) as reason:
+    except ZeroDivisionError:
+        return DIVIDED
+    except (NotMeasured, Failure, ValueError, OverflowError) as reason:
         return str(reason)
 
 
@@ -64,5 +67,7 @@ def _average(found: SmallParameters, phase: str, system: System) -> MeasuredAver
         return measured(system, one.analysis.system, one.found)
     except Incomplete:
         return NO_NUMBERS
-    except (Failure, ValueError, ZeroDivisionError, OverflowError) as reason:
+    except ZeroDivisionError:
+        return DIVIDED
+    except (Failure, ValueError, OverflowError) as reason:
         return str(reason)

@@ -44,5 +44,6 @@ SENTENCES = {
 WORDS = {
     "small parameters": "parámetros pequeños",
     "a condition too long to be written out": "una condición demasiado larga para escribirla",
+    "a denominator vanishes at the given numbers": "un denominador se anula con los números dados",
     "the description does not give all numbers and an initial state": "la descripción no da todos los números y un estado inicial",
 }

@@ -44,5 +44,6 @@ SENTENCES = {
 WORDS = {
     "small parameters": "малые параметры",
     "a condition too long to be written out": "условие, слишком длинное, чтобы его выписать",
+    "a denominator vanishes at the given numbers": "знаменатель обращается в нуль при заданных числах",
     "the description does not give all numbers and an initial state": "в описании даны не все числа и не всё начальное состояние",
 }

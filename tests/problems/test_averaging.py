@@ -150,3 +150,25 @@ def test_the_command(tmp_path):
     refused = CliRunner().invoke(main, ["average", "systems/double-pendulum.yaml", "--small", "q", "--time", "x"])
     assert refused.exit_code == 2
     assert {"--phase", "--small", "--time"} <= {line.split(":")[0] for line in refused.output.splitlines()}
+
+
+def test_a_second_phase_of_the_same_rate_is_refused():
+    """Two phases that go together: what psi does would be held as constant in the averages over phi."""
+    text = PENDULUM.format(
+        pivot="[0, a*cos(phi) + a*cos(psi), 0]", damper="damper: {coordinate: theta, coefficient: c}", theta="0"
+    )
+    both = mbsym.loads(text.replace("phi: {rate: W}", "phi: {rate: W}, psi: {rate: 2*W}"))
+    with pytest.raises(NoClosedForm, match="psi is as fast as phi"):
+        averaging_of(both, "phi")
+
+
+@pytest.mark.parametrize("relation", ["a: l/c", "W: c/a", "g: c*W"])
+def test_relations_that_tie_what_is_small_or_large_are_refused(relation):
+    """With g = c W gravity would be of order 1/eps, and the effective potential another one."""
+    text = PENDULUM.format(pivot="[0, a*cos(phi), 0]", damper="damper: {coordinate: theta, coefficient: 0}", theta="0")
+    text = text.replace("values: {m: 1, l: 1, g: 9, a: 1/10, W: 60, c: 0}", "").replace(
+        "c: {sign: nonnegative}", "c: positive"
+    )
+    tied = mbsym.loads(text.replace("motion:", f"relations: {{{relation}}}\nmotion:"))
+    with pytest.raises(NoClosedForm, match="is tied by the relation"):
+        averaging_of(tied, "phi")
