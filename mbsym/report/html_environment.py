@@ -22,19 +22,7 @@ def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[
 
     ``scripts`` names the files of that folder that the page runs.  An unknown name in a template is an error.
     """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only reports need it
-
     folder = templates() / "html"
-    environment = Environment(
-        bytecode_cache=compiled(),
-        loader=FileSystemLoader(folder),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.globals.update(known)
     style = (folder / "page.css").read_text(encoding="utf-8")
     code = [(folder / name).read_text(encoding="utf-8") for name in scripts]
     values |= {
@@ -42,6 +30,23 @@ def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[
         "scripts": [Markup(text) for text in code],
         "policy": _policy(style, code),
     }
+    return fragment(template, known, **values)
+
+
+def fragment(template: str, known: Mapping[str, Callable[..., Any]], **values: Any) -> str:
+    """A template without style and scripts: a part of somebody's page."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only reports need it
+
+    environment = Environment(
+        bytecode_cache=compiled(),
+        loader=FileSystemLoader(templates() / "html"),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.globals.update(known)
     return environment.get_template(template).render(**values)
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from math import gcd
 
 from flint import fmpq
@@ -42,6 +44,38 @@ LONGEST = 6000
 LONGEST_CONDITION = 450
 
 RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264"}
+
+
+#: Whether formulas carry what other programs read: an editor copies it, a report goes without.
+_SPELLED: ContextVar[bool] = ContextVar("spelled", default=False)
+#: Of longer ones exports have it.
+LONGEST_SPELLED = 1500
+
+
+@contextmanager
+def spelled() -> Iterator[None]:
+    """Formulas and matrices have the attributes data-latex, data-wolfram and data-python: the value as text.
+
+    Where a line says ``name = value`` it is the value that they spell.
+    """
+    token = _SPELLED.set(True)
+    try:
+        yield
+    finally:
+        _SPELLED.reset(token)
+
+
+def spellings(value: Formula | Matrix) -> str:
+    """The attributes; "" where nobody wants them, and of what is too long."""
+    if not _SPELLED.get() or value.terms > LONGEST_SPELLED:
+        return ""
+    wolfram = value.wolfram() if isinstance(value, Formula) else _nested(value)
+    written = {"latex": value.latex(), "wolfram": wolfram, "python": str(value)}
+    return "".join(f' data-{name}="{escape(text)}"' for name, text in written.items())
+
+
+def _nested(value: Matrix) -> str:
+    return "{" + ", ".join("{" + ", ".join(x.wolfram() for x in line) + "}" for line in value) + "}"
 
 
 def math(*parts: str) -> Markup:
@@ -92,7 +126,7 @@ def line(left: str, value: Formula, long: frozenset[int] = frozenset(), right: s
     if value.terms > LONGEST or id(value) in long:
         return text_line(left, mo(sign) if left else "", mtext(f"({not_printed(value)})"), right)
     pieces = mathml_pieces(value.ring, value.polynomial)
-    written = whole([_joined(left, mo(sign) if left else "", pieces[0]), *pieces[1:]], right)
+    written = whole([_joined(left, mo(sign) if left else "", pieces[0]), *pieces[1:]], right, spellings(value))
     if leaves(shape_of(value.ring, value.polynomial)) <= FOLDED:
         return written
     size = escape(counted_things(value.terms, "term"))
@@ -100,10 +134,10 @@ def line(left: str, value: Formula, long: frozenset[int] = frozenset(), right: s
     return Markup(f"<details><summary>{head} <small>{size}</small></summary>{written}</details>")
 
 
-def whole(pieces: Sequence[str], right: str = "") -> Markup:
+def whole(pieces: Sequence[str], right: str = "", attributes: str = "") -> Markup:
     """Pieces as a line that may break between them."""
     ended = [*pieces[:-1], _joined(pieces[-1], right)]
-    return Markup(f'<div class="formula">{" ".join(f"<math>{piece}</math>" for piece in ended)}</div>')
+    return Markup(f'<div class="formula"{attributes}>{" ".join(f"<math>{piece}</math>" for piece in ended)}</div>')
 
 
 def text_line(*parts: str) -> Markup:
@@ -123,7 +157,8 @@ def _size(value: Formula) -> int:
 
 def inline(value: Formula) -> Markup:
     """Finished MathML of a formula in one piece."""
-    return Markup(mathml_text(value.ring, value.polynomial))
+    written, attributes = mathml_text(value.ring, value.polynomial), spellings(value)
+    return Markup(f"<mrow{attributes}>{written}</mrow>" if attributes else written)
 
 
 def components(values: Column, long: frozenset[int] = frozenset()) -> Markup:
@@ -137,13 +172,15 @@ def matrix(value: Matrix, long: frozenset[int] = frozenset()) -> Markup:
     """A matrix in brackets, or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long or x.terms > 60 for line in value for x in line):
         return Markup("")
-    number = _common_number(value)
+    number, attributes = _common_number(value), spellings(value)
     if number > 1:
         value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in line] for line in value.polynomials])
     if sum(max(map(_size, column)) for column in zip(*value, strict=True)) > WIDEST:
         return Markup("")
-    written = table([[inline(x) for x in line] for line in value])
-    return Markup(written if number == 1 else mn(number) + TIMES + written)
+    written = table([[mathml_text(x.ring, x.polynomial) for x in line] for line in value])
+    if number != 1:
+        written = mn(number) + TIMES + written
+    return Markup(f"<mrow{attributes}>{written}</mrow>" if attributes else written)
 
 
 def _common_number(value: Matrix) -> int:

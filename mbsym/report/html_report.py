@@ -81,6 +81,19 @@ ORDER = tuple(NUMBERS)
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
+    motion, no_motion = asked_motion(analysis.system)
+    scripts = ("report.js", "motion.js") if motion is not None else ("report.js",)
+    known, values = context(analysis, problems)
+    return page("report.html.j2", known, scripts, motion=motion, no_motion=no_motion, **values)
+
+
+def context(
+    analysis: Analysis, problems: Sequence[int], whole: bool = True
+) -> tuple[dict[str, Callable[..., Any]], dict[str, Any]]:
+    """What templates about these problems may call, and what they tell.
+
+    Not the ``whole`` is what a problem's own template needs: claims and checks, which are about all of them, are left.
+    """
     from mbsym.analysis import PROBLEMS
 
     system = analysis.system
@@ -128,13 +141,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
-    motion, no_motion = asked_motion(system)
-    return page(
-        "report.html.j2",
-        known,
-        ("report.js", "motion.js") if motion is not None else ("report.js",),
-        motion=motion,
-        no_motion=no_motion,
+    values = dict(
         system=system,
         title_of=title_of,
         rate=labelled("", rate_unit(system)),
@@ -158,13 +165,14 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         LYAPUNOV=LYAPUNOV,
         forms=forms,
         reactions=analysis.optional("reactions") if system.reactions and 3 in problems else (),
-        claims=analysis.claims,
-        checks=analysis.checks,
-        brief=brief(analysis, 0.0),
+        claims=analysis.claims if whole else (),
+        checks=analysis.checks if whole else (),
+        brief=brief(analysis, 0.0) if whole else None,
         diagram=diagram(system) if system.bodies else "",
         version=__version__,
         digest=meaning(system),
     )
+    return known, values
 
 
 def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:

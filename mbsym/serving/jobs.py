@@ -1,0 +1,267 @@
+"""Jobs, each in a process of its own: begun at once, bounded, cancelled by ending the process.
+
+One process waits ready, with everything loaded, so that a job begins without the wait for imports; where the system can
+fork (Linux) it comes from one that has loaded them already.  A process that dies costs its job, which fails with words.
+
+Events are dictionaries: those of ``tasks``, with the ``job`` they belong to, and ``done``, ``failed`` (words),
+``cancelled`` (words); exactly one of these three ends a job.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import count
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import BaseContext
+from time import monotonic
+from typing import Any
+
+from mbsym.serving.worker import OUT_OF_MEMORY, attend
+
+Event = dict[str, Any]
+
+#: Seconds and bytes that a job may have; so many run at once, and older ones make room.
+MOST_SECONDS, MOST_MEMORY, MOST_AT_ONCE = 900.0, 4 * 2**30, 4
+
+#: Whoever has waited so long for a process to be ready does without.
+MOST_LOADING = 120.0
+
+_ENDS = ("done", "failed", "cancelled")
+
+#: One thread of arithmetic for each process.
+_SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+def _context() -> BaseContext:
+    if sys.platform != "linux":  # elsewhere libraries do not bear to be forked
+        return multiprocessing.get_context("spawn")
+    found = multiprocessing.get_context("forkserver")
+    found.set_forkserver_preload(["mbsym.serving.warmed"])
+    return found
+
+
+@dataclass(eq=False)
+class _Process:
+    """A process that is ready, or will be, and our end of its connection."""
+
+    process: Any
+    connection: Connection
+
+    def kill(self) -> None:
+        with suppress(Exception):
+            self.process.kill()
+
+    def bury(self) -> int | None:
+        """Its exit code."""
+        with suppress(Exception):
+            self.connection.close()
+        self.process.join(10)
+        code: int | None = self.process.exitcode
+        with suppress(ValueError):
+            self.process.close()
+        return code
+
+
+@dataclass(eq=False)
+class _Job:
+    name: str
+    kind: str
+    page: str
+    tell: Callable[[Event], None]
+    process: _Process | None = None
+    over: bool = False
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def say(self, event: Event) -> None:
+        """Nothing after the end."""
+        with self.lock:
+            if self.over:
+                return
+            self.over = event["kind"] in _ENDS
+            self.tell({"job": self.name, **event})
+
+    def end(self, words: str, kind: str = "cancelled") -> None:
+        self.say({"kind": kind, "words": words})
+        if self.process is not None:
+            self.process.kill()
+
+
+class Jobs:
+    """``tell`` gets every event, from any thread."""
+
+    def __init__(
+        self, tell: Callable[[Event], None], seconds: float = MOST_SECONDS, memory: int = MOST_MEMORY
+    ) -> None:
+        self._tell, self._seconds, self._memory = tell, seconds, memory
+        self._context = _context()
+        self._running: dict[str, _Job] = {}
+        self._spare: _Process | None = None
+        self._lock = threading.Lock()
+        self._spare_lock = threading.Lock()
+        self._numbers = count(1)
+        self._closed = False
+
+    def warm(self) -> None:
+        """Has a process ready.  Takes as long as the imports: not for an event loop."""
+        with self._spare_lock:
+            if self._spare is None and not self._closed:
+                with suppress(OSError):
+                    self._spare = self._started()
+
+    def begin(self, task: Mapping[str, Any], page: str = "", tell: Callable[[Event], None] | None = None) -> str:
+        """The name of a job that has begun.
+
+        An older one of the same kind and ``page`` is cancelled; so is the oldest of all where too many run.  Its events
+        go to ``tell`` where there is one, and then it is nobody's to replace.
+        """
+        job = _Job(str(next(self._numbers)), str(task["kind"]), page, tell or self._tell)
+        with self._lock:
+            if self._closed:
+                job.say({"kind": "cancelled", "words": "the server ends"})
+                return job.name
+            own = [x for x in self._running.values() if x.tell is self._tell]
+            old = [x for x in own if tell is None and (x.kind, x.page) == (job.kind, page)]
+            others = [x for x in self._running.values() if x not in old]
+            self._running[job.name] = job
+        for one in old:
+            one.end("begun again")
+        for one in others[: max(0, len(others) + 1 - MOST_AT_ONCE)]:
+            one.end("it made room for another")
+        threading.Thread(target=self._attend, args=(job, dict(task)), daemon=True, name=f"job {job.name}").start()
+        return job.name
+
+    def cancel(self, name: str) -> bool:
+        """Whether there was such a job."""
+        with self._lock:
+            job = self._running.get(name)
+        if job is None:
+            return False
+        job.end("cancelled")
+        return True
+
+    def cancel_page(self, page: str) -> None:
+        """Nobody looks at what these would find."""
+        with self._lock:
+            left = [x for x in self._running.values() if x.page == page]
+        for job in left:
+            job.end("nobody is there")
+
+    def result(self, task: Mapping[str, Any], page: str = "", seconds: float = 60.0) -> Event:
+        """What a job of one message tells: that, or its failure.  Waits; not for an event loop."""
+        found: list[Event] = []
+        over = threading.Event()
+
+        def heard(event: Event) -> None:
+            if event["kind"] not in ("done", "progress"):
+                found.append(event)
+            if event["kind"] in _ENDS:
+                over.set()
+
+        name = self.begin(task, page, heard)
+        if not over.wait(seconds):
+            self.cancel(name)
+            return {"kind": "failed", "words": f"stopped after {seconds:g} s"}
+        return found[-1] if found else {"kind": "failed", "words": "its process told nothing"}
+
+    def close(self) -> None:
+        """Ends all of them."""
+        with self._lock:
+            self._closed = True
+            left = list(self._running.values())
+        for job in left:
+            job.end("the server ends")
+        with self._spare_lock:
+            spare, self._spare = self._spare, None
+        if spare is not None:
+            spare.kill()
+            spare.bury()
+
+    # --- one job, in a thread that waits for it -----------------------------------------------------------------------
+
+    def _attend(self, job: _Job, task: dict[str, Any]) -> None:
+        try:
+            job.process = process = self._taken()
+        except OSError as error:
+            job.say({"kind": "failed", "words": f"no process can be started: {error.strerror or error}"})
+            self._forget(job)
+            return
+        try:
+            if job.over:  # cancelled before it began
+                process.kill()
+            self._heard(job, process, task)
+        except Exception as error:
+            job.say({"kind": "failed", "words": f"internal error: {type(error).__name__}: {error}"})
+        finally:
+            process.kill()
+            code = process.bury()
+            job.say({"kind": "failed", "words": self._last_words(code)})
+            self._forget(job)
+
+    def _heard(self, job: _Job, process: _Process, task: dict[str, Any]) -> None:
+        """Hands over the task, and tells what is told until the process has ended or time is up."""
+        connection = process.connection
+        try:
+            connection.send(task)
+            end = monotonic() + MOST_LOADING
+            while not job.over:
+                if not wait([connection], max(0.0, end - monotonic())):
+                    job.end(f"stopped after {self._seconds:g} s", "failed")
+                    return
+                message = connection.recv()
+                if message["kind"] == "ready":
+                    end = monotonic() + self._seconds
+                else:
+                    job.say(message)
+        except (EOFError, OSError):  # it has ended; its code says why
+            return
+
+    def _last_words(self, code: int | None) -> str:
+        if code == OUT_OF_MEMORY:
+            return f"more than {self._memory // 2**20} MB were wanted"
+        if code is not None and code < 0:
+            with suppress(ValueError):
+                return f"its process was ended by {signal.Signals(-code).name}"
+        return "its process is gone" if code is None else f"its process ended with code {code}"
+
+    def _forget(self, job: _Job) -> None:
+        with self._lock:
+            self._running.pop(job.name, None)
+
+    # --- processes ----------------------------------------------------------------------------------------------------
+
+    def _taken(self) -> _Process:
+        """The one that waits, and another in its place soon; raises OSError where there can be none."""
+        with self._spare_lock:
+            found, self._spare = self._spare, None
+        if found is not None and not found.process.is_alive():
+            found.bury()
+            found = None
+        taken = found or self._started()
+        threading.Thread(target=self.warm, daemon=True, name="spare").start()
+        return taken
+
+    def _started(self) -> _Process:
+        ours, theirs = multiprocessing.Pipe()
+        before = {name: os.environ.get(name) for name in _SINGLE}
+        os.environ.update(_SINGLE)
+        try:
+            process = self._context.Process(target=attend, args=(theirs, self._memory), daemon=True)  # type: ignore[attr-defined]
+            process.start()
+        except BaseException:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+            for name, value in before.items():
+                if value is None:
+                    os.environ.pop(name, None)
+                else:
+                    os.environ[name] = value
+        return _Process(process, ours)
